@@ -1,0 +1,2 @@
+//! The command `solid`.
+fn main() {}

@@ -1,0 +1,1 @@
+//! Slow and right answers.

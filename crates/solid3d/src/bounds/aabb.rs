@@ -1,0 +1,86 @@
+//! The axis-aligned bounding box.
+
+use glam::{DAffine3, DVec3};
+
+/// An axis-aligned box, closed: boxes that touch overlap.
+///
+/// An empty box has `min` above `max` in some coordinate; [`Aabb::EMPTY`] is the neutral element of
+/// [`union`](Aabb::union).
+///
+/// ```
+/// use solid3d::{Aabb, glam::DVec3};
+/// let a = Aabb::new(DVec3::ZERO, DVec3::ONE);
+/// let b = Aabb::new(DVec3::ONE, DVec3::splat(2.0));
+/// assert!(a.overlaps(&b)); // they touch
+/// assert_eq!(a.union(&b).max, DVec3::splat(2.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// The corner with the least coordinates.
+    pub min: DVec3,
+    /// The corner with the greatest coordinates.
+    pub max: DVec3,
+}
+
+impl Aabb {
+    /// Bounds nothing.
+    pub const EMPTY: Aabb = Aabb { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// The box between two opposite corners.
+    pub const fn new(min: DVec3, max: DVec3) -> Self {
+        Aabb { min, max }
+    }
+
+    /// The smallest box around points; [`Aabb::EMPTY`] for none.
+    pub fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Aabb::EMPTY, |b, p| Aabb { min: b.min.min(p), max: b.max.max(p) })
+    }
+
+    /// Whether two boxes share a point.
+    pub fn overlaps(&self, other: &Aabb) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
+    /// Whether `other` lies in this box.
+    pub fn contains(&self, other: &Aabb) -> bool {
+        self.min.cmple(other.min).all() && other.max.cmple(self.max).all()
+    }
+
+    /// The smallest box around two.
+    pub fn union(&self, other: &Aabb) -> Aabb {
+        Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The box grown by `margin` on each side.
+    pub fn inflated(&self, margin: f64) -> Aabb {
+        Aabb { min: self.min - margin, max: self.max + margin }
+    }
+
+    /// The centre.
+    pub fn center(&self) -> DVec3 {
+        0.5 * self.min + 0.5 * self.max
+    }
+
+    /// Half the size.
+    pub fn half_extents(&self) -> DVec3 {
+        0.5 * self.max - 0.5 * self.min
+    }
+
+    /// Half the surface area: the cost measure of the surface-area heuristic.
+    pub fn half_area(&self) -> f64 {
+        let d = self.max - self.min;
+        d.x * d.y + d.y * d.z + d.z * d.x
+    }
+
+    /// The smallest box around the image of this box under an affine map, up to rounding.
+    pub fn transformed(&self, map: &DAffine3) -> Aabb {
+        let center = map.transform_point3(self.center());
+        let half = abs(&map.matrix3) * self.half_extents();
+        Aabb { min: center - half, max: center + half }
+    }
+}
+
+/// The matrix of absolute values.
+pub(crate) fn abs(m: &glam::DMat3) -> glam::DMat3 {
+    glam::DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs())
+}
