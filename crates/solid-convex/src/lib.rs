@@ -1,1 +1,35 @@
-//! Convex shapes as support mappings, and the GJK family of algorithms on them.
+//! Convex shapes as support mappings, and the algorithms that need nothing else of a shape: the
+//! Gilbert-Johnson-Keerthi (GJK) family.
+//!
+//! A *support mapping* of a convex object `A` takes a direction `d` to a point of `A` that lies furthest along
+//! `d`. Given the support mappings of two objects under affine placements, GJK finds a separating axis, a common
+//! point, or the closest points (van den Bergen, *Collision Detection in Interactive 3D Computer Animation*, 1999,
+//! sections 4.4.1 to 4.4.4).
+//!
+//! ```
+//! use solid_convex::{Cuboid, Outcome, Sphere, gjk};
+//! use glam::{DAffine3, DVec3};
+//!
+//! let ball = Sphere::new(1.0)?;
+//! let block = Cuboid::new(DVec3::new(2.0, 2.0, 2.0))?;
+//! let apart = DAffine3::from_translation(DVec3::new(3.0, 0.0, 0.0));
+//! let outcome = gjk::intersection(&ball, &DAffine3::IDENTITY, &block, &apart);
+//! assert!(matches!(outcome, Outcome::Separated { .. }));
+//! # Ok::<(), solid_convex::SizeError>(())
+//! ```
+//!
+//! This crate knows no tree and no world; `solid3d` builds on it.
+
+mod difference;
+pub mod gjk;
+mod kinds;
+mod simplex;
+mod size;
+mod support;
+
+pub use gjk::{Closest, Outcome, Witness};
+pub use kinds::{Capsule, Cone, Cuboid, Cylinder, IndexedPoints, Points, Sphere};
+pub use size::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError};
+pub use support::Support;
+
+pub use glam;

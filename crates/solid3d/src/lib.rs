@@ -1,6 +1,14 @@
-//! 3D collision detection.
+//! 3D collision detection: SOLID (Gino van den Bergen, *Collision Detection in Interactive 3D Computer Animation*,
+//! 1999), anew.
 
 pub mod bounds;
+mod error;
+mod shape;
+mod world;
 
 pub use bounds::Aabb;
+pub use error::{Error, Result};
 pub use glam;
+pub use shape::{ComplexShapeBuilder, Shape, ShapeKind};
+pub use solid_convex as convex;
+pub use world::ObjectId;

@@ -1,0 +1,109 @@
+//! The Minkowski difference of two placed objects, as a support mapping of its own.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::Support;
+
+/// A support point of `A - B`, with the points of the two objects it comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SupportPoint {
+    /// The point of the difference. Space: the difference's own.
+    pub w: DVec3,
+    /// The point of `A`. Space: local to `A`.
+    pub a: DVec3,
+    /// The point of `B`. Space: local to `B`.
+    pub b: DVec3,
+}
+
+impl SupportPoint {
+    /// Whether both come from the same points of the two objects.
+    pub fn same_features(&self, other: &SupportPoint) -> bool {
+        self.a == other.a && self.b == other.b
+    }
+}
+
+/// `A - B` for two placed objects. (The thesis writes "Minkowski sum of A and -B", section 4.2.)
+///
+/// Space: along the world's axes, in a unit of length that is the power of two just above half the size of the data,
+/// so that every coordinate is below 2 whatever unit the caller uses, and no answer depends on it.
+/// Positions are relative to the placement of `A`, so that a pair far from the world's origin loses nothing.
+pub(crate) struct Difference<'a, A: ?Sized, B: ?Sized> {
+    a: &'a A,
+    b: &'a B,
+    linear_a: DMat3,
+    linear_b: DMat3,
+    transposed_a: DMat3,
+    transposed_b: DMat3,
+    /// The origin of `B` as seen from that of `A`.
+    offset: DVec3,
+    /// World lengths times this are lengths of the difference; a power of two.
+    scale: f64,
+}
+
+/// A bound on the error of `v.dot(w) / |v|_1` as the least value along `v` over the difference, in its unit (coordinates
+/// are below 2), for a computed support point `w`. Placing a point costs a matrix product and two subtractions, its
+/// support mapping some ulps, turning the direction into either local space another product, the choice of the furthest
+/// point two scalar products, and the product with `v` one more: together less than 40 roundings of 2^-53 each.
+pub(crate) const SUPPORT_ERROR: f64 = 64.0 / (1u64 << 53) as f64;
+
+impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
+    pub fn new(a: &'a A, placement_a: &DAffine3, b: &'a B, placement_b: &DAffine3) -> Self {
+        let offset = placement_b.translation - placement_a.translation;
+        let size = extent(&placement_a.matrix3, a.reach())
+            + extent(&placement_b.matrix3, b.reach())
+            + offset.abs().max_element();
+        let scale = unit_scale(size);
+        let (linear_a, linear_b) = (placement_a.matrix3 * scale, placement_b.matrix3 * scale);
+        Difference {
+            a,
+            b,
+            linear_a,
+            linear_b,
+            transposed_a: linear_a.transpose(),
+            transposed_b: linear_b.transpose(),
+            offset: offset * scale,
+            scale,
+        }
+    }
+
+    /// A support point in the direction `-v`: where `v` points from `B` to `A`, the point that is least along `v`.
+    /// Theorem 4.7 for each of the two objects.
+    pub fn support_against(&self, v: DVec3) -> SupportPoint {
+        let a = self.a.support(self.transposed_a * -v);
+        let b = self.b.support(self.transposed_b * v);
+        SupportPoint { w: self.linear_a * a - (self.linear_b * b + self.offset), a, b }
+    }
+
+    /// `y.w - x.w`, from the differences of the local points: the error is relative to the edge, not to the positions.
+    pub fn edge(&self, x: &SupportPoint, y: &SupportPoint) -> DVec3 {
+        self.linear_a * (y.a - x.a) - self.linear_b * (y.b - x.b)
+    }
+
+    /// Where to start: from the middle of `B` to that of `A`, and along x when they coincide.
+    pub fn initial_direction(&self) -> DVec3 {
+        let v = self.linear_a * self.a.center() - (self.linear_b * self.b.center() + self.offset);
+        if v.abs().max_element() > SUPPORT_ERROR { v } else { DVec3::X }
+    }
+
+    /// World lengths times this are lengths of the difference; a power of two.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+}
+
+/// The largest coordinate of the image of a box of half extents `reach`.
+fn extent(linear: &DMat3, reach: DVec3) -> f64 {
+    let DMat3 { x_axis, y_axis, z_axis } = *linear;
+    (x_axis.abs() * reach.x + y_axis.abs() * reach.y + z_axis.abs() * reach.z).max_element()
+}
+
+/// The power of two that takes `size` to [1, 2); 1 for size 0.
+fn unit_scale(size: f64) -> f64 {
+    if size == 0.0 {
+        return 1.0;
+    }
+    let exponent = ((size.to_bits() >> 52) & 0x7ff) as i64 - 1023;
+    // Sizes are below 1e201 (see MAGNITUDE_MAX); below 2^-1000 there is nothing left to tell apart.
+    let power = (-exponent).min(1000);
+    f64::from_bits(((1023 + power) as u64) << 52)
+}

@@ -1,0 +1,44 @@
+//! The capsule.
+
+use glam::DVec3;
+
+use super::sphere::ball_support;
+use crate::size::positive;
+use crate::support::with_sign;
+use crate::{SizeError, Support};
+
+/// All points within a radius of a segment on the axis y, centred at the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule {
+    radius: f64,
+    half_height: f64,
+}
+
+impl Capsule {
+    /// A capsule; `height` is the distance between the centres of its round ends. Both sizes from
+    /// [`MAGNITUDE_MIN`](crate::MAGNITUDE_MIN) to [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX).
+    pub fn new(radius: f64, height: f64) -> Result<Self, SizeError> {
+        Ok(Capsule { radius: positive("radius", radius)?, half_height: 0.5 * positive("height", height)? })
+    }
+
+    /// The radius.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The distance between the centres of the round ends.
+    pub fn height(&self) -> f64 {
+        2.0 * self.half_height
+    }
+}
+
+impl Support for Capsule {
+    fn support(&self, direction: DVec3) -> DVec3 {
+        let end = with_sign(self.half_height, direction.y);
+        ball_support(self.radius, direction) + DVec3::new(0.0, end, 0.0)
+    }
+
+    fn reach(&self) -> DVec3 {
+        DVec3::new(self.radius, self.radius + self.half_height, self.radius)
+    }
+}

@@ -1,0 +1,42 @@
+//! The capped cylinder.
+
+use glam::DVec3;
+
+use crate::size::positive;
+use crate::support::{rim, with_sign};
+use crate::{SizeError, Support};
+
+/// A capped cylinder on the axis y, centred at the origin (thesis, section 4.4.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    radius: f64,
+    half_height: f64,
+}
+
+impl Cylinder {
+    /// A cylinder; both sizes from [`MAGNITUDE_MIN`](crate::MAGNITUDE_MIN) to [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX).
+    pub fn new(radius: f64, height: f64) -> Result<Self, SizeError> {
+        Ok(Cylinder { radius: positive("radius", radius)?, half_height: 0.5 * positive("height", height)? })
+    }
+
+    /// The radius.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The height.
+    pub fn height(&self) -> f64 {
+        2.0 * self.half_height
+    }
+}
+
+impl Support for Cylinder {
+    fn support(&self, direction: DVec3) -> DVec3 {
+        let (x, z) = rim(self.radius, direction.x, direction.z);
+        DVec3::new(x, with_sign(self.half_height, direction.y), z)
+    }
+
+    fn reach(&self) -> DVec3 {
+        DVec3::new(self.radius, self.half_height, self.radius)
+    }
+}

@@ -1,0 +1,45 @@
+//! The ball.
+
+use glam::DVec3;
+
+use crate::size::positive;
+use crate::{SizeError, Support};
+
+/// A ball centred at the origin (thesis, section 4.4.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    radius: f64,
+}
+
+impl Sphere {
+    /// A ball; `radius` from [`MAGNITUDE_MIN`](crate::MAGNITUDE_MIN) to [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX).
+    pub fn new(radius: f64) -> Result<Self, SizeError> {
+        Ok(Sphere { radius: positive("radius", radius)? })
+    }
+
+    /// The radius.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+/// The point at distance `radius` from the origin in `direction`; the origin for the zero direction.
+pub(super) fn ball_support(radius: f64, direction: DVec3) -> DVec3 {
+    let largest = direction.abs().max_element();
+    if largest == 0.0 {
+        return DVec3::ZERO;
+    }
+    // Dividing first keeps the squares away from overflow and underflow.
+    let direction = direction / largest;
+    direction * (radius / direction.length())
+}
+
+impl Support for Sphere {
+    fn support(&self, direction: DVec3) -> DVec3 {
+        ball_support(self.radius, direction)
+    }
+
+    fn reach(&self) -> DVec3 {
+        DVec3::splat(self.radius)
+    }
+}

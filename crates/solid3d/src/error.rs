@@ -1,0 +1,116 @@
+//! What can be wrong with what the caller gave.
+
+use glam::DVec3;
+use solid_convex::{MAGNITUDE_MAX, SizeError};
+
+use crate::world::ObjectId;
+
+/// Bad input. The message names the argument, its value and its limit; nothing was changed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A radius, height or size is out of range.
+    #[error(transparent)]
+    Size(#[from] SizeError),
+    /// A shape without any vertex.
+    #[error("{argument} is empty; a shape needs at least one vertex")]
+    NoVertices {
+        /// The argument's name.
+        argument: &'static str,
+    },
+    /// A shape without any primitive: no triangle in a mesh, nothing in a complex shape.
+    #[error("{argument} is empty; a shape needs at least one primitive")]
+    NoPrimitives {
+        /// The argument's name.
+        argument: &'static str,
+    },
+    /// A vertex is not finite, or too far out.
+    #[error(
+        "vertex {index} is {value}; each coordinate must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
+    )]
+    Vertex {
+        /// Its place in the buffer.
+        index: usize,
+        /// Its position.
+        value: DVec3,
+    },
+    /// A primitive names a vertex that is not there.
+    #[error("primitive {primitive} names vertex {index}, but there are {vertices} vertices")]
+    VertexIndex {
+        /// The primitive's place, in the order in which they were given.
+        primitive: usize,
+        /// The index.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A primitive has too few vertices.
+    #[error("primitive {primitive} has {count} vertices; it needs at least {least}")]
+    PrimitiveSize {
+        /// The primitive's place, in the order in which they were given.
+        primitive: usize,
+        /// How many vertices it has.
+        count: usize,
+        /// How many it needs.
+        least: usize,
+    },
+    /// More vertices, primitives or indices than 32-bit numbers can name.
+    #[error("{argument} has {count} elements; the limit is {}", u32::MAX)]
+    TooMany {
+        /// The argument's name.
+        argument: &'static str,
+        /// How many it has.
+        count: usize,
+    },
+    /// A deformation with another number of vertices than the shape has.
+    #[error("positions has {count} elements, but the shape has {expected} vertices")]
+    PositionCount {
+        /// How many were given.
+        count: usize,
+        /// How many the shape has.
+        expected: usize,
+    },
+    /// A shape that has no vertex buffer was to be deformed.
+    #[error("a {kind} has no vertex buffer; only meshes and complex shapes deform")]
+    NotDeformable {
+        /// The shape's kind.
+        kind: crate::ShapeKind,
+    },
+    /// A placement has an entry that is not finite, or too large.
+    #[error(
+        "placement has the entry {value}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
+    )]
+    PlacementEntry {
+        /// The entry.
+        value: f64,
+    },
+    /// A placement flattens space.
+    #[error(
+        "placement is singular (its axes {x}, {y}, {z} lie in a plane); every axis needs a direction of its own"
+    )]
+    SingularPlacement {
+        /// The image of the axis x.
+        x: DVec3,
+        /// The image of the axis y.
+        y: DVec3,
+        /// The image of the axis z.
+        z: DVec3,
+    },
+    /// An object that is not in the world, or no longer.
+    #[error("{argument} is {id:?}, which is not in this world (removed, or of another world)")]
+    UnknownObject {
+        /// The argument's name.
+        argument: &'static str,
+        /// The object.
+        id: ObjectId,
+    },
+    /// A pair of an object with itself.
+    #[error("a pair needs two objects, but both are {id:?}")]
+    SameObject {
+        /// The object.
+        id: ObjectId,
+    },
+}
+
+/// A result whose error names what was wrong with the input.
+pub type Result<T> = std::result::Result<T, Error>;

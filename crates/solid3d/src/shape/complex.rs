@@ -1,0 +1,95 @@
+//! The complex shape: a soup of convex primitives over one vertex buffer, under a tree (thesis, section 6.3.1).
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::validate;
+use crate::error::{Error, Result};
+
+/// A soup of convex primitives. Clones share what a deformation leaves alone.
+#[derive(Clone, Debug)]
+pub(crate) struct Complex {
+    primitives: Arc<Primitives>,
+    vertices: Vec<DVec3>,
+}
+
+/// Which vertices make up each primitive: its hull is the primitive. Invariant: there is at least one, each names at
+/// least one vertex, and every index is in range.
+#[derive(Debug)]
+pub(super) enum Primitives {
+    /// All are triangles.
+    Triangles(Vec<[u32; 3]>),
+    /// Primitive `i` is the hull of `indices[first[i]..first[i + 1]]`.
+    Mixed { first: Vec<u32>, indices: Vec<u32> },
+}
+
+impl Primitives {
+    fn len(&self) -> usize {
+        match self {
+            Primitives::Triangles(triangles) => triangles.len(),
+            Primitives::Mixed { first, .. } => first.len() - 1,
+        }
+    }
+
+    fn get(&self, primitive: u32) -> &[u32] {
+        let i = primitive as usize;
+        match self {
+            Primitives::Triangles(triangles) => &triangles[i],
+            Primitives::Mixed { first, indices } => &indices[first[i] as usize..first[i + 1] as usize],
+        }
+    }
+}
+
+impl Complex {
+    pub fn mesh(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
+        validate::vertex_count("vertices", vertices.len())?;
+        validate::primitive_count("triangles", triangles.len())?;
+        for (primitive, triangle) in triangles.iter().enumerate() {
+            validate::indices(primitive, triangle, vertices.len())?;
+        }
+        Self::new(vertices, Primitives::Triangles(triangles))
+    }
+
+    /// The vertices are checked here; the primitives were by the caller.
+    pub(super) fn new(vertices: Vec<DVec3>, primitives: Primitives) -> Result<Self> {
+        validate::vertices(&vertices)?;
+        Ok(Complex { primitives: Arc::new(primitives), vertices })
+    }
+
+    pub fn is_mesh(&self) -> bool {
+        matches!(*self.primitives, Primitives::Triangles(_))
+    }
+
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    pub fn triangles(&self) -> Option<&[[u32; 3]]> {
+        match &*self.primitives {
+            Primitives::Triangles(triangles) => Some(triangles),
+            Primitives::Mixed { .. } => None,
+        }
+    }
+
+    pub fn primitive_count(&self) -> usize {
+        self.primitives.len()
+    }
+
+    /// The indices of the vertices whose hull the primitive is.
+    pub fn primitive(&self, primitive: u32) -> &[u32] {
+        self.primitives.get(primitive)
+    }
+
+    pub fn check_positions(&self, positions: &[DVec3]) -> Result<()> {
+        if positions.len() != self.vertices.len() {
+            return Err(Error::PositionCount { count: positions.len(), expected: self.vertices.len() });
+        }
+        validate::vertices(positions)
+    }
+
+    /// Takes new positions, which were checked.
+    pub fn deform(&mut self, positions: &[DVec3]) {
+        self.vertices.copy_from_slice(positions);
+    }
+}

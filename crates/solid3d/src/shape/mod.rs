@@ -1,0 +1,195 @@
+//! Shapes: geometry in its own space, instanced by any number of objects.
+
+mod builder;
+mod complex;
+mod kind;
+mod polytope;
+mod validate;
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
+
+pub use builder::ComplexShapeBuilder;
+pub(crate) use complex::Complex;
+pub use kind::ShapeKind;
+use polytope::Polytope;
+
+use crate::error::{Error, Result};
+
+/// Geometry in its own space. Cheap to clone: clones share the geometry.
+///
+/// Shapes are closed sets, so objects that touch collide. A mesh and a complex shape are the union of their primitives:
+/// a mesh is a surface, and what lies wholly inside it does not collide with it.
+///
+/// ```
+/// use solid3d::{Shape, ShapeKind};
+/// let ball = Shape::sphere(0.5)?;
+/// assert_eq!(ball.kind(), ShapeKind::Sphere);
+/// let error = Shape::sphere(-1.0).unwrap_err();
+/// assert_eq!(error.to_string(), "radius is -1; it must be from 1e-100 to 1e100");
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Shape {
+    geometry: Geometry,
+}
+
+#[derive(Clone, Debug)]
+enum Geometry {
+    Sphere(Sphere),
+    Cuboid(Cuboid),
+    Cone(Cone),
+    Cylinder(Cylinder),
+    Capsule(Capsule),
+    Polytope(Arc<Polytope>),
+    Complex(Arc<Complex>),
+}
+
+/// The two classes that the algorithm table distinguishes (thesis, section 6.3.4).
+pub(crate) enum Class<'a> {
+    /// Known by its support mapping.
+    Convex(&'a dyn Support),
+    /// A soup of convex primitives under a tree.
+    Complex(&'a Complex),
+}
+
+impl Shape {
+    /// A ball centred at the origin.
+    pub fn sphere(radius: f64) -> Result<Shape> {
+        Ok(Geometry::Sphere(Sphere::new(radius)?).into())
+    }
+
+    /// A box centred at the origin, along the axes; `size` is the full size.
+    pub fn cuboid(size: impl Into<DVec3>) -> Result<Shape> {
+        Ok(Geometry::Cuboid(Cuboid::new(size.into())?).into())
+    }
+
+    /// A capped cone on the axis y, centred at the origin: apex at +height/2, base of the given radius at -height/2.
+    pub fn cone(radius: f64, height: f64) -> Result<Shape> {
+        Ok(Geometry::Cone(Cone::new(radius, height)?).into())
+    }
+
+    /// A capped cylinder on the axis y, centred at the origin.
+    pub fn cylinder(radius: f64, height: f64) -> Result<Shape> {
+        Ok(Geometry::Cylinder(Cylinder::new(radius, height)?).into())
+    }
+
+    /// All points within `radius` of a segment on the axis y, centred at the origin; `height` is the length of the
+    /// segment, from centre to centre of the round ends.
+    pub fn capsule(radius: f64, height: f64) -> Result<Shape> {
+        Ok(Geometry::Capsule(Capsule::new(radius, height)?).into())
+    }
+
+    /// The convex hull of any points: interior, duplicate, coplanar and collinear ones are welcome, and a single one
+    /// does. The hull is solid. Cost: O(n log n).
+    ///
+    /// ```
+    /// use solid3d::{Shape, glam::DVec3};
+    /// let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::splat(0.1)];
+    /// let shape = Shape::convex_hull(&corner)?;
+    /// assert_eq!(shape.vertices().unwrap().len(), 4); // the fifth is inside
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn convex_hull(points: &[DVec3]) -> Result<Shape> {
+        Ok(Geometry::Polytope(Arc::new(Polytope::new(points)?)).into())
+    }
+
+    /// A triangle mesh: a surface, closed or not. Triangles may be degenerate. Cost: O(n log n), for the tree.
+    ///
+    /// ```
+    /// use solid3d::{Shape, glam::DVec3};
+    /// let sheet = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y];
+    /// let shape = Shape::mesh(sheet, [[0, 1, 2], [0, 2, 3]])?;
+    /// assert_eq!(shape.primitive_count(), 2);
+    /// let error = Shape::mesh(sheet, [[0, 1, 4]]).unwrap_err();
+    /// assert_eq!(error.to_string(), "primitive 0 names vertex 4, but there are 4 vertices");
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn mesh(vertices: impl Into<Vec<DVec3>>, triangles: impl Into<Vec<[u32; 3]>>) -> Result<Shape> {
+        Ok(Geometry::Complex(Arc::new(Complex::mesh(vertices.into(), triangles.into())?)).into())
+    }
+
+    /// The kind of the shape.
+    pub fn kind(&self) -> ShapeKind {
+        match &self.geometry {
+            Geometry::Sphere(_) => ShapeKind::Sphere,
+            Geometry::Cuboid(_) => ShapeKind::Cuboid,
+            Geometry::Cone(_) => ShapeKind::Cone,
+            Geometry::Cylinder(_) => ShapeKind::Cylinder,
+            Geometry::Capsule(_) => ShapeKind::Capsule,
+            Geometry::Polytope(_) => ShapeKind::ConvexHull,
+            Geometry::Complex(complex) if complex.is_mesh() => ShapeKind::Mesh,
+            Geometry::Complex(_) => ShapeKind::Complex,
+        }
+    }
+
+    /// How many primitives the shape consists of: 1 for a convex shape.
+    pub fn primitive_count(&self) -> usize {
+        match &self.geometry {
+            Geometry::Complex(complex) => complex.primitive_count(),
+            _ => 1,
+        }
+    }
+
+    /// The vertices of a convex hull (those on its surface), a mesh or a complex shape; `None` for the other kinds.
+    pub fn vertices(&self) -> Option<&[DVec3]> {
+        match &self.geometry {
+            Geometry::Polytope(polytope) => Some(polytope.vertices()),
+            Geometry::Complex(complex) => Some(complex.vertices()),
+            _ => None,
+        }
+    }
+
+    /// The triangles of a mesh, as indices into [`vertices`](Shape::vertices); `None` for the other kinds.
+    pub fn triangles(&self) -> Option<&[[u32; 3]]> {
+        match &self.geometry {
+            Geometry::Complex(complex) => complex.triangles(),
+            _ => None,
+        }
+    }
+
+    /// Deforms a mesh or a complex shape: gives its vertices new positions. Its tree is refitted, and rebuilt when
+    /// refitting has let its cost (by the surface-area heuristic) grow by more than 30 % since it was built.
+    ///
+    /// Clones made before keep the old positions. Cost: O(n). On an error nothing has changed.
+    ///
+    /// ```
+    /// use solid3d::{Shape, glam::DVec3};
+    /// let mut cloth = Shape::mesh([DVec3::ZERO, DVec3::X, DVec3::Y], [[0, 1, 2]])?;
+    /// let before = cloth.clone();
+    /// cloth.deform(&[DVec3::Z, DVec3::X, DVec3::Y])?;
+    /// assert_eq!(cloth.vertices().unwrap()[0], DVec3::Z);
+    /// assert_eq!(before.vertices().unwrap()[0], DVec3::ZERO);
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn deform(&mut self, positions: &[DVec3]) -> Result<()> {
+        match &mut self.geometry {
+            Geometry::Complex(complex) => {
+                complex.check_positions(positions)?;
+                Arc::make_mut(complex).deform(positions);
+                Ok(())
+            }
+            _ => Err(Error::NotDeformable { kind: self.kind() }),
+        }
+    }
+
+    pub(crate) fn class(&self) -> Class<'_> {
+        match &self.geometry {
+            Geometry::Sphere(shape) => Class::Convex(shape),
+            Geometry::Cuboid(shape) => Class::Convex(shape),
+            Geometry::Cone(shape) => Class::Convex(shape),
+            Geometry::Cylinder(shape) => Class::Convex(shape),
+            Geometry::Capsule(shape) => Class::Convex(shape),
+            Geometry::Polytope(shape) => Class::Convex(&**shape),
+            Geometry::Complex(shape) => Class::Complex(shape),
+        }
+    }
+}
+
+impl From<Geometry> for Shape {
+    fn from(geometry: Geometry) -> Self {
+        Shape { geometry }
+    }
+}
