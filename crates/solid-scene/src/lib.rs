@@ -1,1 +1,15 @@
-//! Animated scenes.
+//! Animated scenes for [`solid3d`]: files in, objects with shapes out, and their placements and vertex positions at any
+//! time.
+//!
+//! VRML97, glTF 2.0 (`.gltf`, `.glb`), OBJ, STL and PLY. Several files make one scene.
+
+mod error;
+mod load;
+mod part;
+mod pose;
+mod scene;
+
+pub use error::SceneError;
+pub use load::{Format, LoadOptions};
+pub use pose::{ObjectPose, Pose};
+pub use scene::{Scene, SceneObject};

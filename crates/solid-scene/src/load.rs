@@ -1,0 +1,57 @@
+//! Choosing the reader of a file.
+
+use std::path::Path;
+
+use crate::error::SceneError;
+use crate::part::Part;
+
+/// How to load files.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct LoadOptions {
+    /// Makes each group of an OBJ file an object, instead of one for the whole file.
+    pub split: bool,
+}
+
+/// A file format that scenes come in, told by the file's extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// VRML97: `.wrl`, `.vrml`.
+    Vrml97,
+    /// glTF 2.0: `.gltf`, `.glb`.
+    Gltf,
+    /// Wavefront OBJ: `.obj`.
+    Obj,
+    /// STL, ASCII or binary: `.stl`.
+    Stl,
+    /// PLY, ASCII or binary: `.ply`.
+    Ply,
+}
+
+impl Format {
+    /// The format that a file's extension tells, in any case; `None` for any other.
+    pub fn of(path: &Path) -> Option<Format> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "wrl" | "vrml" => Some(Format::Vrml97),
+            "gltf" | "glb" => Some(Format::Gltf),
+            "obj" => Some(Format::Obj),
+            "stl" => Some(Format::Stl),
+            "ply" => Some(Format::Ply),
+            _ => None,
+        }
+    }
+}
+
+/// Reads a file.
+pub(crate) fn load(path: &Path, _options: &LoadOptions) -> Result<Part, SceneError> {
+    let Some(format) = Format::of(path) else {
+        let message =
+            "unknown format; expected a file ending in .wrl, .vrml, .gltf, .glb, .obj, .stl or .ply";
+        return Err(SceneError::new(path, None, message));
+    };
+    match format {
+        Format::Vrml97 | Format::Gltf | Format::Obj | Format::Stl | Format::Ply => {
+            Err(SceneError::new(path, None, "no reader yet"))
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! What a reader makes of a file.
+
+use solid3d::Shape;
+
+use crate::pose::ObjectPose;
+
+/// A file's share of a scene.
+#[derive(Debug)]
+pub(crate) struct Part {
+    pub objects: Vec<PartObject>,
+    /// Moves and deforms the objects.
+    pub motion: Box<dyn Motion>,
+    /// Seconds until the animation ends or repeats; 0 for none.
+    pub duration: f64,
+    /// The unit of length, "metre" or "unspecified".
+    pub unit: &'static str,
+    /// What was passed over or guessed, in words for the user.
+    pub warnings: Vec<String>,
+}
+
+/// A node with geometry.
+#[derive(Debug)]
+pub(crate) struct PartObject {
+    /// The node's name, not yet unique; empty for none.
+    pub name: String,
+    /// The shape at time 0.
+    pub shape: Shape,
+    /// The nodes from the root to this one, itself included, as numbers of the file's own. An object whose path begins
+    /// with the path of another is on one root path with it (thesis, section 2.2), and is not tested against it.
+    pub path: Vec<u32>,
+    /// How many of its primitives are degenerate: without length, area or volume.
+    pub degenerate: usize,
+}
+
+/// An animation. Time in seconds from the start of the scene.
+pub(crate) trait Motion: Send + Sync + std::fmt::Debug {
+    /// Writes where each of the part's objects is; `poses` has one entry per object, in the part's order, from an
+    /// earlier sample or fresh.
+    fn sample(&self, time: f64, poses: &mut [ObjectPose]);
+}
+
+/// Nothing moves: every object stays where its placement says.
+#[derive(Debug)]
+pub(crate) struct Still(pub Vec<glam::DAffine3>);
+
+impl Motion for Still {
+    fn sample(&self, _time: f64, poses: &mut [ObjectPose]) {
+        for (pose, placement) in poses.iter_mut().zip(&self.0) {
+            pose.placement = *placement;
+        }
+    }
+}
