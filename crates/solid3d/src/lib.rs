@@ -1,6 +1,7 @@
 //! 3D collision detection.
 
 pub mod bounds;
+pub mod broad;
 
 pub use bounds::Aabb;
 pub use glam;
