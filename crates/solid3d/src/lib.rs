@@ -2,8 +2,13 @@
 //! 1999), anew.
 
 pub mod bounds;
+pub mod broad;
 mod error;
+mod pair;
+mod placement;
+pub mod query;
 mod shape;
+pub mod tree;
 mod world;
 
 pub use bounds::Aabb;

@@ -1,0 +1,109 @@
+//! The boxes of tree nodes: `f32`, rounded outward.
+
+use crate::bounds::Aabb;
+use crate::broad::Proxy;
+use glam::DVec3;
+
+/// How much a fat box exceeds its tight box on each side, as a fraction of the tight box's largest extent.
+/// Measured at 10,000 and 100,000 boxes: 0.05 to 0.2 differ by less than 15 %.
+const MARGIN: f64 = 0.1;
+
+/// Over how many frames like the last one a fat box should hold its tight box.
+const FRAMES_AHEAD: f64 = 4.0;
+
+/// The look-ahead is at most this multiple of the tight box's largest extent, so that a teleport leaves no giant.
+const AHEAD_MAX: f64 = 0.5;
+
+/// A box of `f32`, never empty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FatBox {
+    pub min: [f32; 3],
+    pub max: [f32; 3],
+}
+
+impl FatBox {
+    /// The smallest `f32` box around `bounds`.
+    ///
+    /// Coordinates beyond the range of `f32` are clamped to it. Such a box does not contain `bounds`, yet no overlap
+    /// is lost: rounding and clamping are monotone, so `a.min <= b.max` implies the same of their images.
+    pub fn around(bounds: &Aabb) -> Self {
+        FatBox { min: bounds.min.to_array().map(round_down), max: bounds.max.to_array().map(round_up) }
+    }
+
+    /// A box with room around `bounds`, and more where it is heading, judged by where it was.
+    pub fn with_room(proxy: Proxy, was: &Aabb, bounds: &Aabb) -> Self {
+        let extent = 2.0 * bounds.half_extents().max_element();
+        // Staggered by proxy, so that boxes that move alike do not all leave in the same frame.
+        let stagger = f64::from(proxy.wrapping_mul(0x9E37_79B9) >> 16) / 65536.0;
+        let margin = DVec3::splat(MARGIN * (0.75 + 0.5 * stagger) * extent);
+        let ahead_max = DVec3::splat(AHEAD_MAX * extent);
+        let below = (FRAMES_AHEAD * (was.min - bounds.min)).clamp(DVec3::ZERO, ahead_max);
+        let above = (FRAMES_AHEAD * (bounds.max - was.max)).clamp(DVec3::ZERO, ahead_max);
+        FatBox::around(&Aabb::new(bounds.min - margin - below, bounds.max + margin + above))
+    }
+
+    pub fn contains(&self, other: &FatBox) -> bool {
+        (0..3).all(|k| self.min[k] <= other.min[k] && other.max[k] <= self.max[k])
+    }
+
+    pub fn overlaps(&self, other: &FatBox) -> bool {
+        (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
+    }
+
+    pub fn union(&self, other: &FatBox) -> FatBox {
+        FatBox {
+            min: std::array::from_fn(|k| self.min[k].min(other.min[k])),
+            max: std::array::from_fn(|k| self.max[k].max(other.max[k])),
+        }
+    }
+
+    /// Half the surface area, in `f64`, where it cannot overflow.
+    pub fn half_area(&self) -> f64 {
+        let [x, y, z] = std::array::from_fn(|k| f64::from(self.max[k]) - f64::from(self.min[k]));
+        x * y + y * z + z * x
+    }
+
+    pub fn center(&self) -> [f32; 3] {
+        std::array::from_fn(|k| 0.5 * self.min[k] + 0.5 * self.max[k])
+    }
+}
+
+fn round_down(x: f64) -> f32 {
+    let y = x as f32;
+    let y = if f64::from(y) > x { y.next_down() } else { y };
+    y.clamp(-f32::MAX, f32::MAX)
+}
+
+fn round_up(x: f64) -> f32 {
+    -round_down(-x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_is_outward_and_monotone_over_the_whole_range() {
+        let mut values = vec![0.0, -0.0, 1.0, 0.1, 1e-100, 1e-40, 3e38, 3.5e38, 1e39, 1e100, 1.0 + 1e-12];
+        values.extend(values.clone().iter().map(|x| -x));
+        values.sort_by(f64::total_cmp);
+        for &x in &values {
+            let (down, up) = (round_down(x), round_up(x));
+            assert!(down.is_finite() && up.is_finite() && down <= up);
+            if x.abs() <= f64::from(f32::MAX) {
+                assert!(f64::from(down) <= x && x <= f64::from(up));
+            }
+        }
+        for w in values.windows(2) {
+            assert!(round_down(w[0]) <= round_down(w[1]) && round_up(w[0]) <= round_up(w[1]));
+            assert!(round_down(w[0]) <= round_up(w[1]));
+        }
+    }
+
+    #[test]
+    fn a_teleport_leaves_no_giant() {
+        let far = Aabb::new(DVec3::splat(-1e6), DVec3::splat(-1e6 + 1.0));
+        let fat = FatBox::with_room(3, &far, &Aabb::new(DVec3::ZERO, DVec3::ONE));
+        assert!(fat.max[0] < 2.0 && fat.min[0] > -1.0);
+    }
+}

@@ -1,0 +1,242 @@
+//! A dynamic 8-wide bounding-volume tree of fattened boxes.
+//!
+//! Each tight `f64` box lies in a fat `f32` box with room for some frames of motion. While it stays inside, a move costs
+//! one comparison. A box that has left gets a new fat box, is placed anew in the tree, and its overlaps with other fat
+//! boxes are found again. The pairs of fat boxes are kept; the pairs shown are those whose tight boxes overlap too.
+//!
+//! When more than one in [`REBUILD_AT_ONE_IN`] boxes leave in one frame, the whole tree is built anew and one traversal
+//! of the tree against itself finds all pairs; that is then cheaper. Either path gives the same pairs.
+
+mod build;
+mod fat_box;
+mod node;
+mod pair_pool;
+mod tree;
+
+use super::{BroadPhase, Counters, Proxy, assert_valid};
+use crate::bounds::Aabb;
+use build::Builder;
+use fat_box::FatBox;
+use pair_pool::PairPool;
+use tree::{DEPTH_MAX, Tree};
+
+/// Everything is built anew when more than one in this many boxes leave their fat boxes in one frame.
+const REBUILD_AT_ONE_IN: usize = 10;
+
+/// Broad phase by a dynamic wide tree of fattened boxes; the default.
+///
+/// ```
+/// use solid3d::broad::{BroadPhase, DynamicTree};
+/// use solid3d::{Aabb, glam::DVec3};
+/// let mut broad = DynamicTree::default();
+/// for i in 0..100 {
+///     let corner = DVec3::new(f64::from(i), 0.0, 0.0);
+///     broad.insert(i, Aabb::new(corner, corner + 0.75));
+/// }
+/// broad.flush();
+/// assert!(broad.sorted_pairs().is_empty());
+/// broad.update(0, Aabb::new(DVec3::new(50.8, 0.0, 0.0), DVec3::new(51.2, 1.0, 1.0)));
+/// broad.flush();
+/// assert_eq!(broad.sorted_pairs(), [(0, 51)]); // the fat boxes of 50 and 0 overlap, the boxes do not
+/// ```
+#[derive(Debug, Default)]
+pub struct DynamicTree {
+    /// By proxy: the current box where the proxy is in use.
+    tight: Vec<Aabb>,
+    /// By proxy: contains `FatBox::around(tight)`. The box in the tree, unless queued.
+    fat: Vec<FatBox>,
+    status: Vec<Status>,
+    tree: Tree,
+    /// The pairs of fat boxes in the tree that overlap, exactly, except of queued proxies until the next flush.
+    pairs: PairPool,
+    /// Proxies whose fat boxes are not in the tree as they are, each once; some may have been removed since.
+    queue: Vec<Proxy>,
+    /// Whether a tight box changed, was added or removed since the last flush.
+    dirty: bool,
+    alive: usize,
+    /// Changes of the tree since it was last built.
+    changes: usize,
+    counters: Counters,
+    builder: Builder,
+    stack: Vec<u32>,
+    pair_stack: Vec<(u32, u32)>,
+    leaf_stack: Vec<(Proxy, u32)>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Status {
+    alive: bool,
+    /// Stands in the queue.
+    queued: bool,
+    /// Hangs in the tree.
+    in_tree: bool,
+}
+
+impl DynamicTree {
+    fn is_alive(&self, proxy: Proxy) -> bool {
+        self.status.get(proxy as usize).is_some_and(|s| s.alive)
+    }
+
+    fn enqueue(&mut self, proxy: Proxy) {
+        let status = &mut self.status[proxy as usize];
+        if !std::mem::replace(&mut status.queued, true) {
+            self.queue.push(proxy);
+        }
+    }
+
+    /// Builds the tree anew from all living boxes.
+    fn rebuild(&mut self) {
+        let Self { status, fat, tree, builder, .. } = self;
+        for s in status.iter_mut() {
+            s.in_tree = s.alive;
+        }
+        let living = (0..).zip(status.iter()).filter_map(|(proxy, s)| s.alive.then_some(proxy));
+        builder.build(tree, living, fat);
+        self.changes = 0;
+        self.counters.rebuilds += 1;
+    }
+
+    /// Brings all pairs up to date by one traversal of a new tree.
+    fn flush_all(&mut self) {
+        self.rebuild();
+        for proxy in self.queue.drain(..) {
+            self.status[proxy as usize].queued = false;
+        }
+        let Self { tree, pairs, pair_stack, leaf_stack, .. } = self;
+        pairs.clear();
+        self.counters.node_visits +=
+            tree.overlapping_pairs(pair_stack, leaf_stack, |a, b| pairs.insert(a, b));
+    }
+
+    /// Brings the pairs of the queued boxes up to date, one by one.
+    fn flush_queued(&mut self) {
+        let mut too_deep = false;
+        for &proxy in &self.queue {
+            let fat = self.fat[proxy as usize];
+            let status = &mut self.status[proxy as usize];
+            self.pairs.remove_all_of(proxy);
+            if status.in_tree && self.tree.leaf_box(proxy).overlaps(&fat) {
+                // It drifts: it may hang where it hung.
+                self.tree.set_box(proxy, &fat);
+            } else {
+                if status.in_tree {
+                    self.tree.remove(proxy);
+                }
+                status.in_tree = true;
+                too_deep |= self.tree.insert(proxy, &fat) > DEPTH_MAX;
+            }
+        }
+        self.changes += self.queue.len();
+        self.counters.reinsertions += self.queue.len() as u64;
+        if too_deep || self.changes > self.alive {
+            self.rebuild();
+        }
+        let Self { tree, pairs, status, stack, .. } = self;
+        for &proxy in &self.queue {
+            // Of two queued boxes the one that comes last finds the pair: the first is marked as done by then.
+            status[proxy as usize].queued = false;
+            self.counters.node_visits += tree.query(&self.fat[proxy as usize], stack, |other| {
+                if other != proxy && !status[other as usize].queued {
+                    pairs.insert(proxy, other);
+                }
+            });
+        }
+        self.queue.clear();
+    }
+}
+
+impl BroadPhase for DynamicTree {
+    fn insert(&mut self, proxy: Proxy, bounds: Aabb) {
+        assert_valid(proxy, &bounds);
+        let slot = proxy as usize;
+        if slot >= self.tight.len() {
+            self.tight.resize(slot + 1, Aabb::EMPTY);
+            self.fat.resize(slot + 1, FatBox { min: [0.0; 3], max: [0.0; 3] });
+            self.status.resize(slot + 1, Status::default());
+            self.tree.grow(slot + 1);
+            self.pairs.grow(slot + 1);
+        }
+        assert!(!self.status[slot].alive, "proxy {proxy} is already in use");
+        self.status[slot].alive = true;
+        self.tight[slot] = bounds;
+        self.fat[slot] = FatBox::with_room(proxy, &bounds, &bounds);
+        self.alive += 1;
+        self.dirty = true;
+        self.enqueue(proxy);
+    }
+
+    fn update(&mut self, proxy: Proxy, bounds: Aabb) {
+        assert_valid(proxy, &bounds);
+        assert!(self.is_alive(proxy), "proxy {proxy} is not in use");
+        let was = std::mem::replace(&mut self.tight[proxy as usize], bounds);
+        self.dirty = true;
+        if !self.fat[proxy as usize].contains(&FatBox::around(&bounds)) {
+            self.fat[proxy as usize] = FatBox::with_room(proxy, &was, &bounds);
+            self.enqueue(proxy);
+        }
+    }
+
+    fn remove(&mut self, proxy: Proxy) {
+        assert!(self.is_alive(proxy), "proxy {proxy} is not in use");
+        let status = &mut self.status[proxy as usize];
+        status.alive = false;
+        if std::mem::take(&mut status.in_tree) {
+            self.tree.remove(proxy);
+            self.pairs.remove_all_of(proxy);
+            self.changes += 1;
+        }
+        self.alive -= 1;
+        self.dirty = true;
+    }
+
+    fn flush(&mut self) {
+        self.dirty = false;
+        let status = &mut self.status;
+        self.queue.retain(|&proxy| {
+            status[proxy as usize].queued = status[proxy as usize].alive;
+            status[proxy as usize].alive
+        });
+        if self.queue.len() * REBUILD_AT_ONE_IN > self.alive {
+            self.flush_all();
+        } else if !self.queue.is_empty() {
+            self.flush_queued();
+        }
+    }
+
+    fn for_each_pair(&self, visit: &mut dyn FnMut(Proxy, Proxy)) {
+        assert!(!self.dirty, "boxes changed since the last flush");
+        self.pairs.for_each(|a, b| {
+            if self.tight[a as usize].overlaps(&self.tight[b as usize]) {
+                visit(a, b);
+            }
+        });
+    }
+
+    fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    fn validate(&self) {
+        self.pairs.validate();
+        let in_tree = self.status.iter().filter(|s| s.in_tree).count();
+        assert_eq!(self.tree.validate(), in_tree);
+        assert_eq!(self.status.iter().filter(|s| s.alive).count(), self.alive);
+        assert_eq!(self.status.iter().filter(|s| s.queued).count(), self.queue.len());
+        for (proxy, status) in (0..).zip(&self.status) {
+            assert!(status.alive || !status.in_tree);
+            if status.alive {
+                let fat = self.fat[proxy as usize];
+                assert!(fat.contains(&FatBox::around(&self.tight[proxy as usize])));
+                assert!(status.queued || status.in_tree && self.tree.leaf_box(proxy) == fat);
+            }
+        }
+        self.pairs.for_each(|a, b| {
+            let (s, t) = (self.status[a as usize], self.status[b as usize]);
+            assert!(s.in_tree && t.in_tree, "pair ({a}, {b}) of a box that is not there");
+            assert!(
+                s.queued || t.queued || self.fat[a as usize].overlaps(&self.fat[b as usize]),
+                "the fat boxes of pair ({a}, {b}) are apart"
+            );
+        });
+    }
+}

@@ -1,0 +1,249 @@
+//! The tree of boxes: insert, move, remove, query.
+//!
+//! Insertion goes down into the child whose box grows least, and splits a leaf lane of a full node. That is the
+//! simplest rule that keeps boxes small; it does not balance. Degradation is bounded from outside: the engine builds
+//! the tree anew after as many changes as there are leaves, so the build's cost is shared among them, and at once when
+//! an insertion ends deeper than [`DEPTH_MAX`].
+
+use super::fat_box::FatBox;
+use super::node::{Child, Kind, Node, Place, WIDTH, lanes};
+use crate::broad::Proxy;
+
+/// No node stays deeper than this after a flush; recursion and stacks are bounded by it.
+pub(super) const DEPTH_MAX: usize = 64;
+
+/// The root is node 0, always there, perhaps without children.
+pub(super) const ROOT: u32 = 0;
+
+/// A tree over boxes named by proxies. Every lane's box is exactly the union of the boxes below it.
+#[derive(Debug)]
+pub(super) struct Tree {
+    pub nodes: Vec<Node>,
+    /// Nodes not in use.
+    pub free: Vec<u32>,
+    /// By proxy: where its leaf hangs.
+    pub places: Vec<Place>,
+}
+
+impl Default for Tree {
+    fn default() -> Self {
+        Tree { nodes: vec![Node::empty(Place::NONE)], free: Vec::new(), places: Vec::new() }
+    }
+}
+
+impl Tree {
+    /// Makes room for proxies below `proxies`.
+    pub fn grow(&mut self, proxies: usize) {
+        self.places.resize(proxies, Place::NONE);
+    }
+
+    /// Adds a leaf; gives its depth.
+    pub fn insert(&mut self, proxy: Proxy, b: &FatBox) -> usize {
+        let mut at = ROOT;
+        // Ends, because each step goes down.
+        for depth in 1.. {
+            let node = &mut self.nodes[at as usize];
+            if node.count() == 0 {
+                return self.attach(at, proxy, b, depth);
+            }
+            let lane = node.cheapest_lane(b);
+            match node.child(lane) {
+                Kind::Node(below) => {
+                    let grown = node.lane_box(lane).union(b);
+                    node.set_box(lane, &grown);
+                    at = below;
+                }
+                Kind::Leaf(_) if node.count() < WIDTH => return self.attach(at, proxy, b, depth),
+                Kind::Leaf(sibling) => {
+                    let sibling_box = node.lane_box(lane);
+                    let below = self.allocate(Place::new(at, lane));
+                    let node = &mut self.nodes[at as usize];
+                    node.set_child(lane, Child::node(below));
+                    node.set_box(lane, &sibling_box.union(b));
+                    self.attach(below, sibling, &sibling_box, depth + 1);
+                    return self.attach(below, proxy, b, depth + 1);
+                }
+            }
+        }
+        unreachable!("the loop above has no end but its returns")
+    }
+
+    fn attach(&mut self, node: u32, proxy: Proxy, b: &FatBox, depth: usize) -> usize {
+        let lane = self.nodes[node as usize].push(Child::leaf(proxy), b);
+        self.places[proxy as usize] = Place::new(node, lane);
+        depth
+    }
+
+    fn allocate(&mut self, parent: Place) -> u32 {
+        match self.free.pop() {
+            Some(index) => {
+                self.nodes[index as usize] = Node::empty(parent);
+                index
+            }
+            None => {
+                self.nodes.push(Node::empty(parent));
+                self.nodes.len() as u32 - 1
+            }
+        }
+    }
+
+    /// Takes a leaf out.
+    pub fn remove(&mut self, proxy: Proxy) {
+        let mut place = std::mem::replace(&mut self.places[proxy as usize], Place::NONE);
+        // Ends at the root, which has no place.
+        loop {
+            let (at, lane) = (place.node(), place.lane());
+            let node = &mut self.nodes[at as usize];
+            node.swap_remove(lane);
+            if lane < node.count() {
+                match node.child(lane) {
+                    Kind::Leaf(moved) => self.places[moved as usize] = place,
+                    Kind::Node(moved) => self.nodes[moved as usize].parent = place,
+                }
+            } else if node.count() == 0 && at != ROOT {
+                place = node.parent;
+                self.free.push(at);
+                continue;
+            }
+            return self.refit_above(at);
+        }
+    }
+
+    /// Gives a leaf another box where it hangs.
+    pub fn set_box(&mut self, proxy: Proxy, b: &FatBox) {
+        let place = self.places[proxy as usize];
+        self.nodes[place.node() as usize].set_box(place.lane(), b);
+        self.refit_above(place.node());
+    }
+
+    pub fn leaf_box(&self, proxy: Proxy) -> FatBox {
+        let place = self.places[proxy as usize];
+        self.nodes[place.node() as usize].lane_box(place.lane())
+    }
+
+    /// Makes the boxes above a node the unions of what is below them again, as far as something changes.
+    fn refit_above(&mut self, mut at: u32) {
+        while at != ROOT {
+            let node = &self.nodes[at as usize];
+            let (parent, bounds) = (node.parent, node.bounds());
+            at = parent.node();
+            let node = &mut self.nodes[at as usize];
+            if node.lane_box(parent.lane()) == bounds {
+                return;
+            }
+            node.set_box(parent.lane(), &bounds);
+        }
+    }
+
+    /// Visits the leaves whose boxes overlap `b`; gives the number of nodes visited. `stack` is scratch.
+    pub fn query(&self, b: &FatBox, stack: &mut Vec<u32>, mut visit: impl FnMut(Proxy)) -> u64 {
+        let mut visits = 0;
+        stack.clear();
+        stack.push(ROOT);
+        while let Some(at) = stack.pop() {
+            visits += 1;
+            let node = &self.nodes[at as usize];
+            for lane in lanes(node.overlap_mask(b)) {
+                match node.child(lane) {
+                    Kind::Node(below) => stack.push(below),
+                    Kind::Leaf(proxy) => visit(proxy),
+                }
+            }
+        }
+        visits
+    }
+
+    /// Visits all pairs of leaves whose boxes overlap, each once, by one traversal of the tree against itself; gives the
+    /// number of box-against-eight tests. `stack` is scratch.
+    pub fn overlapping_pairs(
+        &self,
+        stack: &mut Vec<(u32, u32)>,
+        scratch: &mut Vec<(Proxy, u32)>,
+        mut visit: impl FnMut(Proxy, Proxy),
+    ) -> u64 {
+        let mut visits = 0;
+        stack.clear();
+        stack.push((ROOT, ROOT));
+        while let Some((first, second)) = stack.pop() {
+            let (a, b) = (&self.nodes[first as usize], &self.nodes[second as usize]);
+            for lane_a in 0..a.count() {
+                visits += 1;
+                let box_a = a.lane_box(lane_a);
+                let mut mask = b.overlap_mask(&box_a);
+                if first == second {
+                    mask &= !1 << lane_a;
+                    if let Kind::Node(below) = a.child(lane_a) {
+                        stack.push((below, below));
+                    }
+                }
+                for lane_b in lanes(mask) {
+                    match (a.child(lane_a), b.child(lane_b)) {
+                        (Kind::Leaf(p), Kind::Leaf(q)) => visit(p, q),
+                        (Kind::Node(m), Kind::Node(n)) => stack.push((m, n)),
+                        (Kind::Leaf(p), Kind::Node(n)) => {
+                            visits += self.query_below(p, &box_a, n, scratch, &mut visit);
+                        }
+                        (Kind::Node(m), Kind::Leaf(q)) => {
+                            visits += self.query_below(q, &b.lane_box(lane_b), m, scratch, &mut visit);
+                        }
+                    }
+                }
+            }
+        }
+        visits
+    }
+
+    /// Visits the pairs of a leaf with the leaves below a node.
+    fn query_below(
+        &self,
+        leaf: Proxy,
+        b: &FatBox,
+        top: u32,
+        stack: &mut Vec<(Proxy, u32)>,
+        visit: &mut impl FnMut(Proxy, Proxy),
+    ) -> u64 {
+        let mut visits = 0;
+        stack.clear();
+        stack.push((leaf, top));
+        while let Some((leaf, at)) = stack.pop() {
+            visits += 1;
+            let node = &self.nodes[at as usize];
+            for lane in lanes(node.overlap_mask(b)) {
+                match node.child(lane) {
+                    Kind::Node(below) => stack.push((leaf, below)),
+                    Kind::Leaf(proxy) => visit(leaf, proxy),
+                }
+            }
+        }
+        visits
+    }
+
+    /// Checks boxes, links and depth; gives the number of leaves.
+    pub fn validate(&self) -> usize {
+        let (mut leaves, mut seen) = (0, 0);
+        let mut stack = vec![(ROOT, 1)];
+        assert_eq!(self.nodes[ROOT as usize].parent, Place::NONE);
+        while let Some((at, depth)) = stack.pop() {
+            seen += 1;
+            assert!(depth <= DEPTH_MAX, "depth {depth}");
+            let node = &self.nodes[at as usize];
+            assert!(at == ROOT || node.count() > 0, "an empty node");
+            for lane in 0..node.count() {
+                let place = Place::new(at, lane);
+                match node.child(lane) {
+                    Kind::Leaf(proxy) => {
+                        assert_eq!(self.places[proxy as usize], place);
+                        leaves += 1;
+                    }
+                    Kind::Node(below) => {
+                        assert_eq!(self.nodes[below as usize].parent, place);
+                        assert_eq!(self.nodes[below as usize].bounds(), node.lane_box(lane));
+                        stack.push((below, depth + 1));
+                    }
+                }
+            }
+        }
+        assert_eq!(seen + self.free.len(), self.nodes.len(), "a node is lost");
+        leaves
+    }
+}

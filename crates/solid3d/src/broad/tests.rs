@@ -1,0 +1,307 @@
+//! The laws of the broad phase, held by both engines against brute force.
+
+use super::{BroadPhase, BroadPhaseKind, Proxy};
+use crate::bounds::Aabb;
+use glam::DVec3;
+use proptest::prelude::*;
+use rand::rngs::StdRng;
+use rand::{Rng, SeedableRng};
+use std::collections::BTreeMap;
+
+const KINDS: [BroadPhaseKind; 2] = [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune];
+
+/// Both engines and the truth, fed alike.
+struct Trial {
+    boxes: BTreeMap<Proxy, Aabb>,
+    engines: Vec<Box<dyn BroadPhase>>,
+    pairs_seen: usize,
+}
+
+impl Trial {
+    fn new() -> Self {
+        Trial { boxes: BTreeMap::new(), engines: KINDS.iter().map(|k| k.build()).collect(), pairs_seen: 0 }
+    }
+
+    fn insert(&mut self, proxy: Proxy, b: Aabb) {
+        self.boxes.insert(proxy, b);
+        self.engines.iter_mut().for_each(|e| e.insert(proxy, b));
+    }
+
+    fn update(&mut self, proxy: Proxy, b: Aabb) {
+        self.boxes.insert(proxy, b);
+        self.engines.iter_mut().for_each(|e| e.update(proxy, b));
+    }
+
+    fn remove(&mut self, proxy: Proxy) {
+        self.boxes.remove(&proxy);
+        self.engines.iter_mut().for_each(|e| e.remove(proxy));
+    }
+
+    fn check(&mut self, what: &str) {
+        let all: Vec<_> = self.boxes.iter().collect();
+        let mut truth = Vec::new();
+        for (i, (a, box_a)) in all.iter().enumerate() {
+            truth.extend(all[i + 1..].iter().filter(|(_, b)| box_a.overlaps(b)).map(|(b, _)| (**a, **b)));
+        }
+        self.pairs_seen += truth.len();
+        for (engine, kind) in self.engines.iter_mut().zip(KINDS) {
+            engine.validate();
+            engine.flush();
+            engine.validate();
+            assert_eq!(engine.sorted_pairs(), truth, "{kind:?}, {what}");
+        }
+    }
+}
+
+/// What a scene's boxes are like.
+#[derive(Clone, Copy, Debug)]
+enum Scene {
+    Uniform,
+    /// Integer coordinates: many equal ones, many touches, flat and point boxes.
+    Lattice,
+    Identical,
+    /// Sizes and places over two hundred decades.
+    AllScales,
+    /// Few tight clusters and one box far away.
+    Clusters,
+    /// One huge box over all.
+    Ground,
+}
+
+const SCENES: [Scene; 6] =
+    [Scene::Uniform, Scene::Lattice, Scene::Identical, Scene::AllScales, Scene::Clusters, Scene::Ground];
+
+fn any_box(scene: Scene, proxy: Proxy, rng: &mut StdRng) -> Aabb {
+    let mut vector = |lo: f64, hi: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(lo..hi)));
+    match scene {
+        Scene::Uniform => {
+            let min = vector(0.0, 5.0);
+            Aabb::new(min, min + vector(0.2, 1.5))
+        }
+        Scene::Lattice => {
+            let min = vector(0.0, 8.0).floor();
+            Aabb::new(min, min + vector(0.0, 2.5).floor())
+        }
+        Scene::Identical => {
+            let min = DVec3::splat(vector(0.0, 3.0).x.floor());
+            Aabb::new(min, min + 0.5)
+        }
+        Scene::AllScales => {
+            let min = vector(-1.0, 1.0) * 10f64.powf(vector(-100.0, 100.0).x);
+            let size = vector(0.0, 1.0) * 10f64.powf(vector(-100.0, 100.0).x);
+            Aabb::new(min, min + size)
+        }
+        Scene::Clusters if proxy == 0 => Aabb::new(DVec3::splat(1e30), DVec3::splat(2e30)),
+        Scene::Clusters => {
+            let center = DVec3::splat(100.0 * f64::from(proxy % 3));
+            let min = center + vector(-1e-3, 1e-3);
+            Aabb::new(min, min + vector(0.0, 5e-4))
+        }
+        Scene::Ground if proxy == 0 => {
+            Aabb::new(DVec3::new(-100.0, -100.0, -1.0), DVec3::new(100.0, 100.0, 0.5))
+        }
+        Scene::Ground => {
+            let min = vector(0.0, 6.0);
+            Aabb::new(min, min + 0.8)
+        }
+    }
+}
+
+/// A box nearby: drifts, or grows and shrinks, or stays on the lattice.
+fn moved(scene: Scene, b: &Aabb, rng: &mut StdRng) -> Aabb {
+    let size = b.max - b.min;
+    let mut vector = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-0.3..0.3)));
+    match scene {
+        Scene::Lattice => {
+            let min = (b.min + (vector() * 5.0).trunc()).rem_euclid(DVec3::splat(8.0));
+            Aabb::new(min, min + size)
+        }
+        Scene::Identical => {
+            let min = DVec3::splat((b.min.x + 1.0).rem_euclid(3.0));
+            Aabb::new(min, min + size)
+        }
+        _ => {
+            let (low, high) = (size * vector(), size * vector());
+            let (min, max) = (b.min + low, b.max + high);
+            Aabb::new(min.min(max), max.max(min))
+        }
+    }
+}
+
+#[test]
+fn both_engines_agree_with_brute_force_in_long_animations() {
+    for (seed, scene) in (100..).zip(SCENES) {
+        let mut pairs_seen = 0;
+        for (share_moving, boxes) in [(0.02, 150), (0.3, 60), (1.0, 40), (1.0, 9), (0.5, 2)] {
+            let mut rng = StdRng::seed_from_u64(seed);
+            let mut trial = Trial::new();
+            for proxy in 0..boxes {
+                trial.insert(proxy, any_box(scene, proxy, &mut rng));
+            }
+            for frame in 0..150 {
+                let what =
+                    format!("seed {seed}, {scene:?}, {boxes} boxes, moving {share_moving}, frame {frame}");
+                trial.check(&what);
+                for proxy in 0..boxes + 5 {
+                    let Some(&b) = trial.boxes.get(&proxy) else {
+                        if rng.random_bool(0.3) {
+                            trial.insert(proxy, any_box(scene, proxy, &mut rng));
+                        }
+                        continue;
+                    };
+                    match rng.random_range(0.0..1.0) {
+                        x if x < 0.005 => trial.remove(proxy),
+                        x if x < 0.01 => trial.update(proxy, any_box(scene, proxy, &mut rng)),
+                        x if x < 0.015 => {
+                            trial.remove(proxy);
+                            trial.insert(proxy, any_box(scene, proxy, &mut rng));
+                        }
+                        x if x < 0.015 + share_moving => {
+                            trial.update(proxy, moved(scene, &b, &mut rng));
+                            if rng.random_bool(0.1) {
+                                let b = trial.boxes[&proxy];
+                                trial.update(proxy, moved(scene, &b, &mut rng));
+                            }
+                        }
+                        _ => {}
+                    }
+                }
+            }
+            pairs_seen += trial.pairs_seen;
+        }
+        assert!(pairs_seen > 5_000, "seed {seed}, {scene:?}: only {pairs_seen} pairs");
+    }
+}
+
+#[test]
+fn everything_teleports_in_every_frame() {
+    // Exhausts the swaps of a frame of the sweep and prune, and rebuilds the tree.
+    let mut rng = StdRng::seed_from_u64(7);
+    let mut trial = Trial::new();
+    for frame in 0..20 {
+        for proxy in 0..700 {
+            let min = DVec3::from_array(std::array::from_fn(|_| rng.random_range(0.0..10.0)));
+            let b = Aabb::new(min, min + 1.0);
+            if frame == 0 { trial.insert(proxy, b) } else { trial.update(proxy, b) }
+        }
+        trial.check(&format!("frame {frame}"));
+    }
+    assert!(trial.engines[0].counters().rebuilds >= 20);
+    let sweeps = trial.engines[1].counters().sweeps;
+    assert!(sweeps > 1, "no frame ran out of swaps: {sweeps}");
+}
+
+#[test]
+fn a_chain_of_insertions_cannot_make_the_tree_deep() {
+    // Each box is far smaller than the last and lies beside it: greedy insertion alone goes ever deeper.
+    let mut trial = Trial::new();
+    for proxy in 0..2000 {
+        let x = 0.97f64.powi(proxy as i32);
+        trial.insert(proxy, Aabb::new(DVec3::splat(x), DVec3::splat(1.005 * x)));
+        if proxy % 40 == 0 {
+            trial.check("chain");
+        }
+    }
+    trial.check("chain");
+}
+
+#[test]
+fn what_does_not_move_costs_nothing() {
+    for kind in KINDS {
+        let mut broad = kind.build();
+        for proxy in 0..1000 {
+            let min = DVec3::new(f64::from(proxy % 10), f64::from(proxy / 10 % 10), f64::from(proxy / 100));
+            broad.insert(proxy, Aabb::new(min, min + 0.9));
+        }
+        broad.flush();
+        let before = broad.counters();
+        for proxy in 0..1000 {
+            let min = DVec3::new(f64::from(proxy % 10), f64::from(proxy / 10 % 10), f64::from(proxy / 100));
+            broad.update(proxy, Aabb::new(min, min + 0.9));
+        }
+        broad.flush();
+        assert_eq!(broad.counters(), before, "{kind:?}");
+    }
+}
+
+#[test]
+fn the_same_calls_give_the_same_order() {
+    for kind in KINDS {
+        let run = || {
+            let mut rng = StdRng::seed_from_u64(3);
+            let mut broad = kind.build();
+            let mut order = Vec::new();
+            for frame in 0..30 {
+                for proxy in 0..100 {
+                    let b = any_box(Scene::Uniform, proxy, &mut rng);
+                    if frame == 0 {
+                        broad.insert(proxy, b);
+                    } else if proxy % 9 == frame % 9 {
+                        broad.update(proxy, b);
+                    }
+                }
+                broad.flush();
+                broad.for_each_pair(&mut |a, b| order.push((a, b)));
+            }
+            (order, broad.counters())
+        };
+        assert_eq!(run(), run(), "{kind:?}");
+    }
+}
+
+#[test]
+#[should_panic(expected = "changed since the last flush")]
+fn unflushed_pairs_are_refused() {
+    let mut broad = BroadPhaseKind::DynamicTree.build();
+    broad.insert(0, Aabb::new(DVec3::ZERO, DVec3::ONE));
+    broad.for_each_pair(&mut |_, _| {});
+}
+
+#[test]
+#[should_panic(expected = "empty or not finite")]
+fn a_box_of_nan_is_refused() {
+    BroadPhaseKind::SweepAndPrune.build().insert(0, Aabb::new(DVec3::NAN, DVec3::ONE));
+}
+
+#[test]
+#[should_panic(expected = "already in use")]
+fn a_proxy_is_inserted_once() {
+    let mut broad = BroadPhaseKind::SweepAndPrune.build();
+    broad.insert(0, Aabb::new(DVec3::ZERO, DVec3::ONE));
+    broad.insert(0, Aabb::new(DVec3::ZERO, DVec3::ONE));
+}
+
+/// One call, on small integers so that coincidences are common.
+#[derive(Clone, Copy, Debug)]
+enum Call {
+    Put(Proxy, [i8; 3], [u8; 3]),
+    Remove(Proxy),
+    Flush,
+}
+
+fn calls() -> impl Strategy<Value = Vec<Call>> {
+    let put = (0u32..12, [-4i8..4, -4..4, -4..4], [0u8..4, 0..4, 0..4])
+        .prop_map(|(proxy, min, size)| Call::Put(proxy, min, size));
+    let call = prop_oneof![6 => put, 1 => (0u32..12).prop_map(Call::Remove), 1 => Just(Call::Flush)];
+    proptest::collection::vec(call, 1..80)
+}
+
+proptest! {
+    #[test]
+    fn any_sequence_of_calls_gives_the_pairs_of_brute_force(calls in calls()) {
+        let mut trial = Trial::new();
+        for call in calls {
+            match call {
+                Call::Put(proxy, min, size) => {
+                    let min = DVec3::from_array(min.map(f64::from));
+                    let b = Aabb::new(min, min + DVec3::from_array(size.map(f64::from)));
+                    if trial.boxes.contains_key(&proxy) { trial.update(proxy, b) } else { trial.insert(proxy, b) }
+                }
+                Call::Remove(proxy) if trial.boxes.contains_key(&proxy) => trial.remove(proxy),
+                Call::Remove(_) => {}
+                Call::Flush => trial.check("calls"),
+            }
+        }
+        trial.check("calls");
+    }
+}
