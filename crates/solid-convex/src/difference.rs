@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::Support;
+use crate::{Support, unit_scale};
 
 /// A support point of `A - B`, with the points of the two objects it comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,15 +95,4 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
 fn extent(linear: &DMat3, reach: DVec3) -> f64 {
     let DMat3 { x_axis, y_axis, z_axis } = *linear;
     (x_axis.abs() * reach.x + y_axis.abs() * reach.y + z_axis.abs() * reach.z).max_element()
-}
-
-/// The power of two that takes `size` to [1, 2); 1 for size 0.
-fn unit_scale(size: f64) -> f64 {
-    if size == 0.0 {
-        return 1.0;
-    }
-    let exponent = ((size.to_bits() >> 52) & 0x7ff) as i64 - 1023;
-    // Sizes are below 1e201 (see MAGNITUDE_MAX); below 2^-1000 there is nothing left to tell apart.
-    let power = (-exponent).min(1000);
-    f64::from_bits(((1023 + power) as u64) << 52)
 }

@@ -29,7 +29,7 @@ mod support;
 
 pub use gjk::{Closest, Outcome, Witness};
 pub use kinds::{Capsule, Cone, Cuboid, Cylinder, IndexedPoints, Points, Sphere};
-pub use size::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError};
+pub use size::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError, unit_scale};
 pub use support::Support;
 
 pub use glam;

@@ -36,3 +36,20 @@ pub(crate) fn positive(argument: &'static str, value: f64) -> Result<f64, SizeEr
         Err(SizeError { argument, value })
     }
 }
+
+/// The power of two that takes `size` to [1, 2), and 1 for size 0: multiplying by it loses nothing.
+///
+/// Whatever is scaled by it first can be computed with neither overflow nor underflow, and with the same digits in any
+/// unit of length. `size` must be at least 0 and finite; below 2^-1000 it counts as that.
+///
+/// ```
+/// assert_eq!(solid_convex::unit_scale(1000.0), 1.0 / 512.0);
+/// ```
+pub fn unit_scale(size: f64) -> f64 {
+    if size == 0.0 {
+        return 1.0;
+    }
+    let exponent = ((size.to_bits() >> 52) & 0x7ff) as i64 - 1023;
+    let power = (-exponent).clamp(-1022, 1000);
+    f64::from_bits(((1023 + power) as u64) << 52)
+}

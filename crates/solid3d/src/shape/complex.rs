@@ -3,15 +3,19 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use solid_convex::{IndexedPoints, Points};
 
 use super::validate;
+use crate::bounds::Aabb;
 use crate::error::{Error, Result};
+use crate::tree::Tree;
 
 /// A soup of convex primitives. Clones share what a deformation leaves alone.
 #[derive(Clone, Debug)]
 pub(crate) struct Complex {
     primitives: Arc<Primitives>,
     vertices: Vec<DVec3>,
+    tree: Tree,
 }
 
 /// Which vertices make up each primitive: its hull is the primitive. Invariant: there is at least one, each names at
@@ -39,6 +43,10 @@ impl Primitives {
             Primitives::Mixed { first, indices } => &indices[first[i] as usize..first[i + 1] as usize],
         }
     }
+
+    fn bounds(&self, primitive: u32, vertices: &[DVec3]) -> Aabb {
+        Aabb::of_points(self.get(primitive).iter().map(|&index| vertices[index as usize]))
+    }
 }
 
 impl Complex {
@@ -54,7 +62,8 @@ impl Complex {
     /// The vertices are checked here; the primitives were by the caller.
     pub(super) fn new(vertices: Vec<DVec3>, primitives: Primitives) -> Result<Self> {
         validate::vertices(&vertices)?;
-        Ok(Complex { primitives: Arc::new(primitives), vertices })
+        let tree = build(&primitives, &vertices);
+        Ok(Complex { primitives: Arc::new(primitives), vertices, tree })
     }
 
     pub fn is_mesh(&self) -> bool {
@@ -81,6 +90,38 @@ impl Complex {
         self.primitives.get(primitive)
     }
 
+    /// The primitive as a convex object.
+    pub fn primitive_hull(&self, primitive: u32) -> IndexedPoints<'_> {
+        IndexedPoints::new(&self.vertices, self.primitive(primitive))
+            .expect("a primitive has a vertex, and its indices were checked")
+    }
+
+    /// The box around a primitive.
+    pub fn primitive_bounds(&self, primitive: u32) -> Aabb {
+        self.primitives.bounds(primitive, &self.vertices)
+    }
+
+    /// The convex hull of the whole.
+    pub fn hull(&self) -> Points<'_> {
+        Points::new(&self.vertices).expect("a complex shape has a vertex")
+    }
+
+    /// The tree over the primitives.
+    pub fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// The box around all primitives.
+    pub fn bounds(&self) -> Aabb {
+        self.tree.bounds()
+    }
+
+    /// The largest magnitude of each coordinate over all primitives.
+    pub fn reach(&self) -> DVec3 {
+        let Aabb { min, max } = self.bounds();
+        min.abs().max(max.abs())
+    }
+
     pub fn check_positions(&self, positions: &[DVec3]) -> Result<()> {
         if positions.len() != self.vertices.len() {
             return Err(Error::PositionCount { count: positions.len(), expected: self.vertices.len() });
@@ -91,5 +132,14 @@ impl Complex {
     /// Takes new positions, which were checked.
     pub fn deform(&mut self, positions: &[DVec3]) {
         self.vertices.copy_from_slice(positions);
+        self.tree.refit(|primitive| self.primitives.bounds(primitive, &self.vertices));
+        if self.tree.degraded() {
+            self.tree = build(&self.primitives, &self.vertices);
+        }
     }
+}
+
+fn build(primitives: &Primitives, vertices: &[DVec3]) -> Tree {
+    let boxes: Vec<Aabb> = (0..primitives.len() as u32).map(|i| primitives.bounds(i, vertices)).collect();
+    Tree::build(&boxes)
 }

@@ -1,6 +1,240 @@
-//! The world.
+//! The world: objects, the response table, and the test for collisions (thesis, chapter 6).
+//!
+//! It contains no geometry: what two shapes do is the algorithm table's business, which boxes overlap the broad phase's.
 
-slotmap::new_key_type! {
-    /// An object of a world. The id of a removed object never comes back.
-    pub struct ObjectId;
+mod candidates;
+mod collision;
+mod object;
+mod options;
+mod response;
+mod statistics;
+mod test;
+
+use glam::{DAffine3, DVec3};
+use slotmap::{Key, SlotMap};
+
+pub use collision::{Collision, Contact};
+pub use object::ObjectId;
+pub use options::WorldOptions;
+pub use response::Response;
+pub use statistics::Statistics;
+
+use crate::broad::{BroadPhase, PROXY_MAX, Proxy};
+use crate::error::{Error, Result};
+use crate::pair::{Scratch, world_bounds};
+use crate::placement;
+use crate::shape::Shape;
+use candidates::Candidate;
+use object::Object;
+use response::ResponseTable;
+
+/// Objects in one space, and what is wanted of their collisions.
+///
+/// A time step, or *frame*, is: place and deform objects, [`test`](World::test) as often as needed, then
+/// [`proceed`](World::proceed).
+///
+/// ```
+/// use solid3d::{Response, Shape, World, glam::{DAffine3, DVec3}};
+///
+/// let mut world = World::new();
+/// let ball = world.add(&Shape::sphere(1.0)?, DAffine3::from_translation(DVec3::new(0.0, 1.5, 0.0)))?;
+/// let floor = world.add(&Shape::cuboid([10.0, 1.0, 10.0])?, DAffine3::IDENTITY)?;
+/// world.set_default_response(Response::Smart);
+/// assert!(world.test().is_empty()); // touching would count, but half the floor's height is 0.5
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct World {
+    objects: SlotMap<ObjectId, Object>,
+    /// The object of each proxy of the broad phase, which is its slot.
+    by_proxy: Vec<ObjectId>,
+    /// How many objects were ever added: the creation order.
+    added: u64,
+    responses: ResponseTable,
+    broad: Box<dyn BroadPhase>,
+    caching: bool,
+    /// Objects whose box in the broad phase is out of date.
+    moved: Vec<ObjectId>,
+    /// Objects whose previous frame differs from the current one.
+    displaced: Vec<ObjectId>,
+    /// The pairs to examine, in creation order, with what is cached for each.
+    candidates: Vec<Candidate>,
+    /// Whether something changed since `candidates` were found.
+    stale: bool,
+    scratch: Scratch,
+    statistics: Statistics,
+}
+
+impl Default for World {
+    fn default() -> Self {
+        World::with_options(&WorldOptions::default())
+    }
+}
+
+impl World {
+    /// An empty world with the default [`WorldOptions`].
+    pub fn new() -> Self {
+        World::default()
+    }
+
+    /// An empty world.
+    pub fn with_options(options: &WorldOptions) -> Self {
+        World {
+            objects: SlotMap::with_key(),
+            by_proxy: Vec::new(),
+            added: 0,
+            responses: ResponseTable::new(options.default_response),
+            broad: options.broad_phase.build(),
+            caching: options.caching,
+            moved: Vec::new(),
+            displaced: Vec::new(),
+            candidates: Vec::new(),
+            stale: false,
+            scratch: Scratch::default(),
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// Adds an object: an instance of a shape at a place. For smart response, its previous frame is this one until the
+    /// next [`proceed`](World::proceed).
+    pub fn add(&mut self, shape: &Shape, placement: DAffine3) -> Result<ObjectId> {
+        placement::checked(&placement)?;
+        if self.objects.capacity() > PROXY_MAX as usize && self.objects.len() + 1 >= PROXY_MAX as usize {
+            return Err(Error::TooMany { argument: "objects", count: self.objects.len() + 1 });
+        }
+        let object = Object::new(self.added, shape.clone(), placement);
+        let bounds = world_bounds(object.placed());
+        let id = self.objects.insert(object);
+        self.added += 1;
+        self.stale = true;
+        let proxy = proxy(id);
+        if self.by_proxy.len() <= proxy as usize {
+            self.by_proxy.resize(proxy as usize + 1, ObjectId::default());
+        }
+        self.by_proxy[proxy as usize] = id;
+        self.broad.insert(proxy, bounds);
+        Ok(id)
+    }
+
+    /// Removes an object, with the responses set for it and for its pairs.
+    pub fn remove(&mut self, id: ObjectId) -> Result<()> {
+        let object = self.objects.remove(id).ok_or(Error::UnknownObject { argument: "object", id })?;
+        self.responses.forget(id, object.pair_partners);
+        self.broad.remove(proxy(id));
+        self.stale = true;
+        Ok(())
+    }
+
+    /// Whether an object is in the world.
+    pub fn contains(&self, id: ObjectId) -> bool {
+        self.objects.contains_key(id)
+    }
+
+    /// The objects, in creation order.
+    pub fn objects(&self) -> Vec<ObjectId> {
+        let mut objects: Vec<_> = self.objects.iter().map(|(id, object)| (object.serial, id)).collect();
+        objects.sort_unstable();
+        objects.into_iter().map(|(_, id)| id).collect()
+    }
+
+    /// How many objects there are.
+    pub fn len(&self) -> usize {
+        self.objects.len()
+    }
+
+    /// Whether there is no object.
+    pub fn is_empty(&self) -> bool {
+        self.objects.is_empty()
+    }
+
+    /// An object's placement.
+    pub fn placement(&self, id: ObjectId) -> Result<DAffine3> {
+        Ok(self.object(id)?.placement)
+    }
+
+    /// An object's shape.
+    pub fn shape(&self, id: ObjectId) -> Result<&Shape> {
+        Ok(&self.object(id)?.shape)
+    }
+
+    /// Places an object: any affine map that is finite and not singular.
+    pub fn set_placement(&mut self, id: ObjectId, placement: DAffine3) -> Result<()> {
+        placement::checked(&placement)?;
+        self.object_mut(id)?.placement = placement;
+        self.touch(id);
+        Ok(())
+    }
+
+    /// Gives an object another shape. Smart response still sees the old one in the previous frame.
+    ///
+    /// This is how one deformed shape reaches several objects: [`Shape::deform`] a clone, then set it for each.
+    pub fn set_shape(&mut self, id: ObjectId, shape: &Shape) -> Result<()> {
+        let object = self.object_mut(id)?;
+        object.shape = shape.clone();
+        object.spare = None;
+        self.touch(id);
+        Ok(())
+    }
+
+    /// Deforms an object whose shape is a mesh or a complex shape: gives its vertices new positions, in local space. Other
+    /// objects of the same shape stay as they are. Smart response still sees the old positions in the previous frame.
+    ///
+    /// Cost: linear in the shape; see [`Shape::deform`].
+    pub fn deform(&mut self, id: ObjectId, positions: &[DVec3]) -> Result<()> {
+        self.object_mut(id)?.deform(positions)?;
+        self.touch(id);
+        Ok(())
+    }
+
+    /// Ends the frame: what is now becomes the previous frame of smart response. Cost: follows what moved.
+    pub fn proceed(&mut self) {
+        for id in self.displaced.drain(..) {
+            if let Some(object) = self.objects.get_mut(id) {
+                object.proceed();
+            }
+        }
+    }
+
+    /// Lets tests use what earlier tests found out about a pair: its separating axis. On by default. Answers are the same
+    /// with and without, to the bit.
+    pub fn enable_caching(&mut self) {
+        self.caching = true;
+    }
+
+    /// Makes each test start from nothing; see [`enable_caching`](World::enable_caching).
+    pub fn disable_caching(&mut self) {
+        self.caching = false;
+        self.candidates.iter_mut().for_each(|candidate| candidate.axis = None);
+    }
+
+    /// The work done since the world was made.
+    pub fn statistics(&self) -> Statistics {
+        self.statistics
+    }
+
+    fn object(&self, id: ObjectId) -> Result<&Object> {
+        self.objects.get(id).ok_or(Error::UnknownObject { argument: "object", id })
+    }
+
+    fn object_mut(&mut self, id: ObjectId) -> Result<&mut Object> {
+        self.objects.get_mut(id).ok_or(Error::UnknownObject { argument: "object", id })
+    }
+
+    /// Notes that an object in the world is not where the broad phase and the previous frame have it.
+    fn touch(&mut self, id: ObjectId) {
+        let object = &mut self.objects[id];
+        if !std::mem::replace(&mut object.moved, true) {
+            self.moved.push(id);
+        }
+        if !std::mem::replace(&mut object.displaced, true) {
+            self.displaced.push(id);
+        }
+        self.stale = true;
+    }
+}
+
+/// An object's box in the broad phase is named by its slot.
+fn proxy(id: ObjectId) -> Proxy {
+    // The low half of the bits is the slot, the high half the generation.
+    id.data().as_ffi() as u32
 }

@@ -1,0 +1,71 @@
+//! A complex shape against a convex one: the tree is walked with the convex shape's box (thesis, section 6.3.4).
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+use solid_convex::{Closest, gjk};
+
+use super::{Relation, Scratch};
+use super::frame::Frame;
+use super::reach::convex_bounds;
+use super::table::{PlacedComplex, PlacedConvex};
+use crate::bounds::Aabb;
+
+pub(super) fn intersection(
+    (complex, at_complex): PlacedComplex,
+    (convex, at_convex): PlacedConvex,
+    scratch: &mut Scratch,
+) -> Relation {
+    let (query, _) = convex_in_complex((complex, at_complex), (convex, at_convex));
+    let Scratch { traversal, primitive_tests, .. } = scratch;
+    let found = complex.tree().overlapping(&query, traversal, |leaf| {
+        for &primitive in leaf {
+            if complex.primitive_bounds(primitive).overlaps(&query) {
+                *primitive_tests += 1;
+                let points = complex.primitive_hull(primitive);
+                if let Some(witness) = gjk::intersection(&points, at_complex, convex, at_convex).witness() {
+                    return ControlFlow::Break(*witness);
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    found.break_value().map_or(Relation::Separated { axis: None }, Relation::Common)
+}
+
+pub(super) fn closest(
+    (complex, at_complex): PlacedComplex,
+    (convex, at_convex): PlacedConvex,
+    scratch: &mut Scratch,
+) -> Closest {
+    let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
+    let bound = |node: &Aabb| {
+        let gap = (node.min - query.max).max(query.min - node.max).max(DVec3::ZERO);
+        frame.stretch[0].at_least(gap)
+    };
+    let Scratch { traversal, primitive_tests, .. } = scratch;
+    let (mut best, mut answer) = (f64::INFINITY, None);
+    complex.tree().nearest(bound, &mut best, traversal, |leaf, best| {
+        for &primitive in leaf {
+            if bound(&complex.primitive_bounds(primitive)) < *best {
+                *primitive_tests += 1;
+                let points = complex.primitive_hull(primitive);
+                let closest = gjk::closest_points(&points, at_complex, convex, at_convex);
+                if closest.distance < *best {
+                    *best = closest.distance;
+                    answer = Some(closest);
+                }
+            }
+        }
+    });
+    answer.expect("a complex shape has a primitive, and every distance is finite")
+}
+
+/// A box around the convex shape in the space of the complex one, grown by the error of the map.
+fn convex_in_complex(complex: PlacedComplex, convex: PlacedConvex) -> (Aabb, Frame) {
+    let frame = Frame::new(complex.1, complex.0.reach(), convex.1, convex.0.reach());
+    let map = frame.relative.b_to_a;
+    let bounds = convex_bounds(convex.0, &map.matrix3);
+    let query = Aabb::new(bounds.min + map.translation, bounds.max + map.translation);
+    (query.inflated(frame.relative.slack_in_a), frame)
+}

@@ -1,0 +1,27 @@
+//! Convex against convex: GJK (thesis, chapter 4).
+
+use glam::DVec3;
+use solid_convex::{Closest, Outcome, gjk};
+
+use super::{Relation, Scratch};
+use super::table::PlacedConvex;
+
+pub(super) fn intersection(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Relation {
+    scratch.primitive_tests += 1;
+    match gjk::intersection(a.0, a.1, b.0, b.1) {
+        Outcome::Separated { axis } => Relation::Separated { axis: Some(axis) },
+        Outcome::Touching(witness) | Outcome::Intersecting(witness) => Relation::Common(witness),
+    }
+}
+
+pub(super) fn closest(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Closest {
+    scratch.primitive_tests += 1;
+    gjk::closest_points(a.0, a.1, b.0, b.1)
+}
+
+pub(super) fn axis(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Option<DVec3> {
+    match intersection(a, b, scratch) {
+        Relation::Separated { axis } => axis,
+        Relation::Common(_) => None,
+    }
+}

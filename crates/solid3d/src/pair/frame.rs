@@ -1,0 +1,75 @@
+//! How two placed spaces lie to each other, with the error of it.
+
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::unit_scale;
+
+use super::reach::image_reach;
+use crate::placement::{inverse_linear, row_norm};
+use crate::tree::Relative;
+
+/// Roundings of 2^-53, relative to the size of the data, that lie between a local point and its image in another local
+/// space: two products with matrices, three translations, and the products that made the matrices.
+const ROUNDINGS: f64 = 64.0 / (1u64 << 53) as f64;
+
+/// Two placed spaces `A` and `B`, and how far the shapes in them reach from their origins.
+pub(super) struct Frame {
+    /// Takes points of either space to the other.
+    pub relative: Relative,
+    /// Takes points of either space to one where exact predicates neither overflow nor underflow: the world's axes, the
+    /// origin of `A`, and a unit of length that is a power of two near the size of the data.
+    pub common: [DAffine3; 2],
+    /// Bounds on how local distances show in the world, for `A` and `B`.
+    pub stretch: [Stretch; 2],
+}
+
+/// How a placement's linear part changes lengths.
+#[derive(Clone, Copy)]
+pub(super) struct Stretch {
+    /// A slab one local unit thick along each local axis is this thick in the world.
+    pub facets: DVec3,
+    /// A local distance of one is at least this in the world.
+    pub least: f64,
+}
+
+impl Frame {
+    pub fn new(at_a: &DAffine3, reach_a: DVec3, at_b: &DAffine3, reach_b: DVec3) -> Frame {
+        let (inverse_a, inverse_b) = (inverse_linear(&at_a.matrix3), inverse_linear(&at_b.matrix3));
+        let a_to_b = at_a.translation - at_b.translation;
+        let size = image_reach(&at_a.matrix3, reach_a).max_element()
+            + image_reach(&at_b.matrix3, reach_b).max_element()
+            + a_to_b.abs().max_element();
+        let relative = Relative {
+            b_to_a: DAffine3 { matrix3: inverse_a * at_b.matrix3, translation: inverse_a * -a_to_b },
+            a_to_b: DAffine3 { matrix3: inverse_b * at_a.matrix3, translation: inverse_b * a_to_b },
+            slack_in_a: slack(&at_a.matrix3, &inverse_a, size),
+            slack_in_b: slack(&at_b.matrix3, &inverse_b, size),
+        };
+        let scale = unit_scale(size);
+        let common = [
+            DAffine3 { matrix3: at_a.matrix3 * scale, translation: DVec3::ZERO },
+            DAffine3 { matrix3: at_b.matrix3 * scale, translation: -a_to_b * scale },
+        ];
+        Frame { relative, common, stretch: [Stretch::new(&inverse_a), Stretch::new(&inverse_b)] }
+    }
+}
+
+/// The error of a world point of magnitude `size`, taken to local space by an inverse that has an error of its own.
+fn slack(linear: &DMat3, inverse: &DMat3, size: f64) -> f64 {
+    let norm = row_norm(inverse);
+    ROUNDINGS * norm * (1.0 + norm * row_norm(linear)) * size
+}
+
+impl Stretch {
+    fn new(inverse: &DMat3) -> Stretch {
+        // Rows of the inverse are the facet normals; those of its Gram matrix bound its largest singular value.
+        let rows = inverse.transpose();
+        let facets = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length()).recip();
+        let gram = *inverse * rows;
+        Stretch { facets, least: row_norm(&gram).sqrt().recip() }
+    }
+
+    /// A lower bound of the world length of a displacement whose local coordinates are at least `gap` in magnitude.
+    pub fn at_least(&self, gap: DVec3) -> f64 {
+        (self.least * gap.length()).max((self.facets * gap).max_element())
+    }
+}

@@ -1,0 +1,99 @@
+//! The algorithm table: what is computed for two placed shapes, for every pair of kinds (thesis, section 6.3.4).
+//!
+//! As in the thesis the table has two classes: convex shapes, which are known by their support mapping, and complex
+//! shapes, which are soups of convex primitives under a tree. [`table`] picks the algorithm; each file named after a pair
+//! holds the algorithms for it. The entry (convex, complex) is made from (complex, convex) by swapping.
+//!
+//! Placements were checked by the caller.
+
+mod complex_complex;
+mod complex_convex;
+mod convex_convex;
+mod frame;
+mod reach;
+mod scratch;
+mod table;
+mod triangle_triangle;
+
+use glam::{DAffine3, DVec3};
+
+pub(crate) use reach::world_bounds;
+pub(crate) use scratch::Scratch;
+use solid_convex::{Closest, Witness, gjk};
+pub(crate) use table::{axis, closest, intersection};
+
+use crate::shape::{Class, Shape};
+
+/// A shape at a place.
+#[derive(Clone, Copy)]
+pub(crate) struct Placed<'a> {
+    pub shape: &'a Shape,
+    pub placement: &'a DAffine3,
+}
+
+/// Whether two shapes intersect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Relation {
+    /// They do not; convex shapes come with an axis that separates them, from `B` to `A`.
+    Separated { axis: Option<DVec3> },
+    /// They do: a common point, as a point of each shape.
+    Common(Witness),
+}
+
+/// Whether the axis of an earlier frame clearly separates two convex shapes; the answer of [`intersection`] is then
+/// the same. See [`gjk::separates`].
+pub(crate) fn still_separated(axis: DVec3, a: Placed, b: Placed) -> bool {
+    match (a.shape.class(), b.shape.class()) {
+        (Class::Convex(on_a), Class::Convex(on_b)) => {
+            gjk::separates(axis, on_a, a.placement, on_b, b.placement)
+        }
+        _ => false,
+    }
+}
+
+/// The world point between a point of each shape, which are the same up to rounding.
+pub(crate) fn midpoint(a: Placed, b: Placed, witness: &Witness) -> DVec3 {
+    let on_a = a.placement.transform_point3(witness.on_a);
+    let on_b = b.placement.transform_point3(witness.on_b);
+    0.5 * on_a + 0.5 * on_b
+}
+
+/// A result that can be read from the other side.
+pub(crate) trait Mirror {
+    /// The result for (B, A), from that for (A, B).
+    fn mirrored(self) -> Self;
+}
+
+impl Mirror for Witness {
+    fn mirrored(self) -> Self {
+        Witness { on_a: self.on_b, on_b: self.on_a }
+    }
+}
+
+impl Mirror for Relation {
+    fn mirrored(self) -> Self {
+        match self {
+            Relation::Separated { axis } => Relation::Separated { axis: axis.mirrored() },
+            Relation::Common(witness) => Relation::Common(witness.mirrored()),
+        }
+    }
+}
+
+impl Mirror for Closest {
+    fn mirrored(self) -> Self {
+        Closest { distance: self.distance, points: self.points.mirrored() }
+    }
+}
+
+/// An axis.
+impl Mirror for DVec3 {
+    fn mirrored(self) -> Self {
+        -self
+    }
+}
+
+impl<T: Mirror> Mirror for Option<T> {
+    fn mirrored(self) -> Self {
+        self.map(Mirror::mirrored)
+    }
+}

@@ -1,0 +1,39 @@
+//! How far a placed shape reaches.
+
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::Support;
+
+use super::Placed;
+use crate::bounds::{Aabb, abs};
+use crate::shape::Class;
+
+/// How much a world box is grown, relative to the object's extent and position: more than the narrow phase's
+/// [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR), so that objects whose boxes are apart are never touching.
+const BOUNDS_MARGIN: f64 = 1.0 / (1u64 << 42) as f64;
+
+/// A box of the world around a placed shape. For a complex shape, around its tree's root box (thesis, section 6.3.4).
+pub(crate) fn world_bounds(placed: Placed) -> Aabb {
+    let (linear, translation) = (&placed.placement.matrix3, placed.placement.translation);
+    let bounds = match placed.shape.class() {
+        Class::Convex(convex) => convex_bounds(convex, linear),
+        Class::Complex(complex) => complex.bounds().transformed(&DAffine3::from_mat3(*linear)),
+    };
+    let extent = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let margin = BOUNDS_MARGIN * (extent + 1e-3 * translation.abs().max_element());
+    Aabb::new(bounds.min + translation, bounds.max + translation).inflated(margin)
+}
+
+/// The smallest box around the image of a convex shape under a linear map, up to rounding: six support points.
+pub(super) fn convex_bounds(shape: &dyn Support, linear: &DMat3) -> Aabb {
+    let transposed = linear.transpose();
+    let furthest = |axis: DVec3| axis.dot(linear.mul_vec3(shape.support(transposed * axis)));
+    let along = |sign: f64| {
+        sign * DVec3::new(furthest(DVec3::X * sign), furthest(DVec3::Y * sign), furthest(DVec3::Z * sign))
+    };
+    Aabb::new(along(-1.0), along(1.0))
+}
+
+/// The largest magnitude of each coordinate over the image of a box under a linear map.
+pub(super) fn image_reach(linear: &DMat3, reach: DVec3) -> DVec3 {
+    abs(linear) * reach
+}

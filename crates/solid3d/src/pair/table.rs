@@ -1,0 +1,63 @@
+//! The table.
+
+use glam::{DAffine3, DVec3};
+use solid_convex::{Closest, Support};
+
+use super::{Mirror, Placed, Relation, Scratch, complex_complex, complex_convex, convex_convex};
+use crate::shape::{Class, Complex};
+
+/// A convex shape at a place.
+pub(super) type PlacedConvex<'a> = (&'a dyn Support, &'a DAffine3);
+/// A complex shape at a place.
+pub(super) type PlacedComplex<'a> = (&'a Complex, &'a DAffine3);
+
+/// A row of the table: an algorithm for each pair of classes. The fourth pair is the second one mirrored.
+struct Row<T> {
+    convex_convex: fn(PlacedConvex, PlacedConvex, &mut Scratch) -> T,
+    complex_convex: fn(PlacedComplex, PlacedConvex, &mut Scratch) -> T,
+    complex_complex: fn(PlacedComplex, PlacedComplex, &mut Scratch) -> T,
+}
+
+impl<T: Mirror> Row<T> {
+    fn apply(&self, a: Placed, b: Placed, scratch: &mut Scratch) -> T {
+        let (at_a, at_b) = (a.placement, b.placement);
+        match (a.shape.class(), b.shape.class()) {
+            (Class::Convex(a), Class::Convex(b)) => (self.convex_convex)((a, at_a), (b, at_b), scratch),
+            (Class::Complex(a), Class::Convex(b)) => (self.complex_convex)((a, at_a), (b, at_b), scratch),
+            (Class::Convex(a), Class::Complex(b)) => {
+                (self.complex_convex)((b, at_b), (a, at_a), scratch).mirrored()
+            }
+            (Class::Complex(a), Class::Complex(b)) => (self.complex_complex)((a, at_a), (b, at_b), scratch),
+        }
+    }
+}
+
+/// Whether they intersect. Of complex shapes, the common point is one of the first pair of primitives found.
+pub(crate) fn intersection(a: Placed, b: Placed, scratch: &mut Scratch) -> Relation {
+    const ROW: Row<Relation> = Row {
+        convex_convex: convex_convex::intersection,
+        complex_convex: complex_convex::intersection,
+        complex_complex: complex_complex::intersection,
+    };
+    ROW.apply(a, b, scratch)
+}
+
+/// The closest points.
+pub(crate) fn closest(a: Placed, b: Placed, scratch: &mut Scratch) -> Closest {
+    const ROW: Row<Closest> = Row {
+        convex_convex: convex_convex::closest,
+        complex_convex: complex_convex::closest,
+        complex_complex: complex_complex::closest,
+    };
+    ROW.apply(a, b, scratch)
+}
+
+/// A separating axis of the shapes' convex hulls.
+pub(crate) fn axis(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<DVec3> {
+    const ROW: Row<Option<DVec3>> = Row {
+        convex_convex: convex_convex::axis,
+        complex_convex: |a, b, scratch| convex_convex::axis((&a.0.hull(), a.1), b, scratch),
+        complex_complex: |a, b, scratch| convex_convex::axis((&a.0.hull(), a.1), (&b.0.hull(), b.1), scratch),
+    };
+    ROW.apply(a, b, scratch)
+}

@@ -1,0 +1,106 @@
+//! Whether two triangles share a point: exactly, for their corners as they are.
+//!
+//! Triangles are closed, and may be degenerate: a segment, a point. Two triangles meet if and only if an edge of one
+//! meets the other; every decision is the sign of a determinant, which `robust` computes exactly (Shewchuk, *Adaptive
+//! precision floating-point arithmetic*, 1997). Coplanar triangles, which the thesis ignores (section 6.5), are decided
+//! in the plane.
+
+use glam::{DVec2, DVec3};
+use robust::{Coord, Coord3D};
+
+/// Three corners.
+pub(crate) type Triangle = [DVec3; 3];
+
+/// Whether two triangles share a point.
+pub(crate) fn intersect(x: &Triangle, y: &Triangle) -> bool {
+    if apart_along_axes(x, y) {
+        return false;
+    }
+    let (x_flat, y_flat) = (collinear(x), collinear(y));
+    let y_sides = x.map(|p| orient3d(&y[0], &y[1], &y[2], &p));
+    if !y_flat && same_strict_side(y_sides) {
+        return false;
+    }
+    let x_sides = y.map(|p| orient3d(&x[0], &x[1], &x[2], &p));
+    if !x_flat && same_strict_side(x_sides) {
+        return false;
+    }
+    let edge_meets = |edges_of: &Triangle, sides: [f64; 3], other: &Triangle, other_flat: bool| {
+        EDGES.iter().any(|&[i, j]| {
+            let (p, q) = (&edges_of[i], &edges_of[j]);
+            if other_flat {
+                EDGES.iter().any(|&[k, l]| segments_meet(p, q, &other[k], &other[l]))
+            } else {
+                segment_meets_triangle(p, q, sides[i], sides[j], other)
+            }
+        })
+    };
+    edge_meets(x, y_sides, y, y_flat) || edge_meets(y, x_sides, x, x_flat)
+}
+
+const EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+
+fn apart_along_axes(x: &Triangle, y: &Triangle) -> bool {
+    let (x_min, x_max) = (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]));
+    let (y_min, y_max) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+    x_min.cmpgt(y_max).any() || y_min.cmpgt(x_max).any()
+}
+
+fn same_strict_side(sides: [f64; 3]) -> bool {
+    sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)
+}
+
+/// The triangle is not degenerate; `p_side` and `q_side` are the orientations of the ends to its plane.
+fn segment_meets_triangle(p: &DVec3, q: &DVec3, p_side: f64, q_side: f64, triangle: &Triangle) -> bool {
+    if p_side == 0.0 && q_side == 0.0 {
+        return PROJECTIONS.iter().all(|flatten| segment_meets_triangle_2d(flatten(p), flatten(q), triangle.map(|c| flatten(&c))));
+    }
+    if same_strict_side([p_side, q_side, p_side]) {
+        return false;
+    }
+    let turns = EDGES.map(|[i, j]| orient3d(p, q, &triangle[i], &triangle[j]));
+    turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0)
+}
+
+fn segments_meet(p: &DVec3, q: &DVec3, r: &DVec3, s: &DVec3) -> bool {
+    orient3d(p, q, r, s) == 0.0
+        && PROJECTIONS.iter().all(|flatten| segments_meet_2d(flatten(p), flatten(q), flatten(r), flatten(s)))
+}
+
+/// Coplanar sets meet if and only if they do in all three projections along the coordinate axes: at least one of these
+/// loses nothing of the plane, and none parts what meets.
+const PROJECTIONS: [fn(&DVec3) -> DVec2; 3] =
+    [|p| DVec2::new(p.y, p.z), |p| DVec2::new(p.z, p.x), |p| DVec2::new(p.x, p.y)];
+
+fn segment_meets_triangle_2d(p: DVec2, q: DVec2, triangle: [DVec2; 3]) -> bool {
+    EDGES.iter().any(|&[i, j]| segments_meet_2d(p, q, triangle[i], triangle[j])) || contains_2d(triangle, p)
+}
+
+/// Whether a point lies in a triangle's interior; `false` for a degenerate triangle, whose edges are all there is.
+fn contains_2d(triangle: [DVec2; 3], p: DVec2) -> bool {
+    let turns = EDGES.map(|[i, j]| orient2d(triangle[i], triangle[j], p));
+    same_strict_side(turns)
+}
+
+fn segments_meet_2d(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {
+    if p.max(q).cmplt(r.min(s)).any() || r.max(s).cmplt(p.min(q)).any() {
+        return false;
+    }
+    let parted = |a: f64, b: f64| (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0);
+    // With overlapping bounding boxes, segments that are not parted by each other's lines meet, also collinear ones.
+    !parted(orient2d(p, q, r), orient2d(p, q, s)) && !parted(orient2d(r, s, p), orient2d(r, s, q))
+}
+
+fn collinear(t: &Triangle) -> bool {
+    PROJECTIONS.iter().all(|flatten| orient2d(flatten(&t[0]), flatten(&t[1]), flatten(&t[2])) == 0.0)
+}
+
+fn orient2d(p: DVec2, q: DVec2, r: DVec2) -> f64 {
+    let coord = |p: DVec2| Coord { x: p.x, y: p.y };
+    robust::orient2d(coord(p), coord(q), coord(r))
+}
+
+fn orient3d(p: &DVec3, q: &DVec3, r: &DVec3, s: &DVec3) -> f64 {
+    let coord = |p: &DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    robust::orient3d(coord(p), coord(q), coord(r), coord(s))
+}

@@ -1,0 +1,72 @@
+//! Placements: affine maps from an object's space to the world.
+
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::MAGNITUDE_MAX;
+
+use crate::bounds::abs;
+use crate::error::{Error, Result};
+
+/// A placement whose axes, brought to unit length, span less than this volume is singular: the inverse would have no
+/// correct digits left. A uniform or non-uniform scale alone has volume 1, however small it is.
+const VOLUME_MIN: f64 = 1e-12;
+
+/// The placement itself when it can be used: finite, in range, and not singular.
+pub(crate) fn checked(placement: &DAffine3) -> Result<&DAffine3> {
+    let out_of_range = |x: &f64| !x.is_finite() || x.abs() > MAGNITUDE_MAX;
+    if let Some(value) = placement.to_cols_array().into_iter().find(out_of_range) {
+        return Err(Error::PlacementEntry { value });
+    }
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
+    let flat = match (direction(x), direction(y), direction(z)) {
+        (Some(x), Some(y), Some(z)) => x.cross(y).dot(z).abs() < VOLUME_MIN,
+        _ => true,
+    };
+    if flat { Err(Error::SingularPlacement { x, y, z }) } else { Ok(placement) }
+}
+
+/// The unit vector along an axis, without overflow or underflow on the way; `None` for the zero vector.
+fn direction(axis: DVec3) -> Option<DVec3> {
+    let largest = axis.abs().max_element();
+    (largest > 0.0).then(|| (axis / largest).normalize())
+}
+
+/// The inverse of a checked placement's linear part. Axes of very different length do it no harm.
+pub(crate) fn inverse_linear(linear: &DMat3) -> DMat3 {
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *linear;
+    // With L = U D, D the lengths of the axes: L^-1 = D^-1 U^-1.
+    let lengths = [x, y, z].map(|axis| axis.abs().max_element());
+    let unit = DMat3::from_cols(x / lengths[0], y / lengths[1], z / lengths[2]).inverse();
+    let rows = unit.transpose();
+    DMat3::from_cols(rows.x_axis / lengths[0], rows.y_axis / lengths[1], rows.z_axis / lengths[2]).transpose()
+}
+
+/// The largest sum of magnitudes over a row: a bound on how much the map stretches the largest coordinate.
+pub(crate) fn row_norm(linear: &DMat3) -> f64 {
+    (abs(linear) * DVec3::ONE).max_element()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_alone_are_never_singular() {
+        for scale in [1e-100, 1e-30, 1.0, 1e100] {
+            let placement = DAffine3::from_scale(DVec3::new(scale, 1.0, -1e-100));
+            assert!(checked(&placement).is_ok(), "{scale}");
+            let product = placement.matrix3 * inverse_linear(&placement.matrix3);
+            assert!(product.abs_diff_eq(DMat3::IDENTITY, 1e-15), "{product}");
+        }
+    }
+
+    #[test]
+    fn flat_and_wild_placements_are_refused() {
+        let flat = DAffine3::from_cols(DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0), DVec3::ZERO);
+        assert!(matches!(checked(&flat), Err(Error::SingularPlacement { .. })));
+        assert!(matches!(checked(&DAffine3::from_scale(DVec3::ZERO)), Err(Error::SingularPlacement { .. })));
+        for bad in [f64::NAN, f64::INFINITY, 1e101] {
+            let placement = DAffine3::from_translation(DVec3::new(0.0, bad, 0.0));
+            assert!(matches!(checked(&placement), Err(Error::PlacementEntry { .. })));
+        }
+    }
+}

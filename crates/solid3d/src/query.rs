@@ -1,0 +1,115 @@
+//! Questions about two placed shapes, without a world.
+//!
+//! Every pair of kinds, through the same algorithm table that a [`World`](crate::World) uses. Placements are affine maps from
+//! local space to the world: rotation, translation, scale, non-uniform scale, shear, mirroring. A placement that is not
+//! finite or is singular is an [`Error`](crate::Error).
+//!
+//! **How exact.** Relative to the size of the data (the sum of the two shapes' extents and of the distance between
+//! their local origins), answers are right beyond 1e-12, at any size: scaling everything by a power of two changes no
+//! answer. Within it, shapes count as touching, and touching shapes intersect. See
+//! [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR).
+
+use glam::{DAffine3, DVec3};
+
+use crate::error::Result;
+use crate::pair::{self, Placed, Relation, Scratch};
+use crate::placement;
+use crate::shape::Shape;
+
+/// The distance of two placed shapes, with their closest points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distance {
+    /// The distance, at least 0; 0 when they intersect or touch. World units.
+    pub distance: f64,
+    /// The closest point of the first shape. Space: world.
+    pub point_on_a: DVec3,
+    /// The closest point of the second shape. Space: world. The same point up to rounding when the distance is 0.
+    pub point_on_b: DVec3,
+}
+
+/// Whether two placed shapes have a point in common.
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// let (ball, block) = (Shape::sphere(1.0)?, Shape::cuboid([1.0, 1.0, 1.0])?);
+/// let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 0.0, 0.0));
+/// assert!(query::intersects(&ball, &at(0.0), &block, &at(1.5))?); // they touch
+/// assert!(!query::intersects(&ball, &at(0.0), &block, &at(1.500001))?);
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn intersects(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<bool> {
+    Ok(common_point(a, placement_a, b, placement_b)?.is_some())
+}
+
+/// A point that two placed shapes have in common, in the world; `None` when they do not intersect.
+///
+/// Which of the common points is unspecified, but the same for the same input.
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// let block = Shape::cuboid([2.0, 2.0, 2.0])?;
+/// let corner = DAffine3::from_translation(DVec3::splat(2.0));
+/// let point = query::common_point(&block, &DAffine3::IDENTITY, &block, &corner)?;
+/// assert_eq!(point, Some(DVec3::ONE)); // where the corners meet
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn common_point(
+    a: &Shape,
+    placement_a: &DAffine3,
+    b: &Shape,
+    placement_b: &DAffine3,
+) -> Result<Option<DVec3>> {
+    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    Ok(match pair::intersection(a, b, &mut Scratch::default()) {
+        Relation::Common(witness) => Some(pair::midpoint(a, b, &witness)),
+        Relation::Separated { .. } => None,
+    })
+}
+
+/// An axis that separates two placed shapes: a unit vector in the world, pointing from `b` to `a`, along which every point
+/// of `a` is further than every point of `b`. `None` when there is none: they intersect or touch; or, for meshes and
+/// complex shapes, their convex hulls do.
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// let ball = Shape::sphere(1.0)?;
+/// let right = DAffine3::from_translation(DVec3::new(3.0, 0.0, 0.0));
+/// let axis = query::separating_axis(&ball, &right, &ball, &DAffine3::IDENTITY)?;
+/// assert_eq!(axis, Some(DVec3::X));
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn separating_axis(
+    a: &Shape,
+    placement_a: &DAffine3,
+    b: &Shape,
+    placement_b: &DAffine3,
+) -> Result<Option<DVec3>> {
+    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    Ok(pair::axis(a, b, &mut Scratch::default()))
+}
+
+/// The distance of two placed shapes, with their closest points. Meshes and complex shapes by branch and bound over their
+/// trees.
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// let (ball, block) = (Shape::sphere(1.0)?, Shape::cuboid([2.0, 2.0, 2.0])?);
+/// let far = DAffine3::from_translation(DVec3::new(0.0, 5.0, 0.0));
+/// let closest = query::distance(&ball, &DAffine3::IDENTITY, &block, &far)?;
+/// assert!((closest.distance - 3.0).abs() < 1e-12);
+/// assert!((closest.point_on_a - DVec3::Y).length() < 1e-9);
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<Distance> {
+    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let closest = pair::closest(a, b, &mut Scratch::default());
+    Ok(Distance {
+        distance: closest.distance,
+        point_on_a: placement_a.transform_point3(closest.points.on_a),
+        point_on_b: placement_b.transform_point3(closest.points.on_b),
+    })
+}
+
+fn placed<'a>(shape: &'a Shape, placement: &'a DAffine3) -> Result<Placed<'a>> {
+    Ok(Placed { shape, placement: placement::checked(placement)? })
+}

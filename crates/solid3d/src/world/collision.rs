@@ -1,0 +1,75 @@
+//! What a test finds.
+
+use glam::DVec3;
+
+use super::{ObjectId, Response};
+
+/// Two objects that collide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Collision {
+    /// The object that was created first.
+    pub a: ObjectId,
+    /// The other.
+    pub b: ObjectId,
+    /// What the pair's response asked for.
+    pub contact: Contact,
+}
+
+/// What is known of a collision, by the response of the pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Contact {
+    /// Nothing more ([`Response::Simple`]).
+    Simple,
+    /// A common point ([`Response::Witness`]).
+    Witness {
+        /// The point. Space: world.
+        point: DVec3,
+        /// The same as a point of `a`. Space: local to `a`.
+        local_a: DVec3,
+        /// The same as a point of `b`. Space: local to `b`.
+        local_b: DVec3,
+    },
+    /// The closest points of the previous frame ([`Response::Smart`]).
+    Smart {
+        /// The point of `a` that was closest to `b`. Space: world, where it was in the previous frame.
+        point_on_a: DVec3,
+        /// The point of `b` that was closest to `a`. Space: world, where it was in the previous frame.
+        point_on_b: DVec3,
+        /// `point_on_a`. Space: local to `a`.
+        local_a: DVec3,
+        /// `point_on_b`. Space: local to `b`.
+        local_b: DVec3,
+        /// The unit vector from `point_on_b` to `point_on_a`: an approximation of the normal of the contact. Space: world.
+        /// `None` when the objects collided in the previous frame already, or were both added since: there is no direction
+        /// then, and the points are a common point.
+        normal: Option<DVec3>,
+    },
+}
+
+impl Collision {
+    /// Where: the common point of a witness, the middle of the closest points of smart response; in the world.
+    pub fn point(&self) -> Option<DVec3> {
+        match self.contact {
+            Contact::Simple => None,
+            Contact::Witness { point, .. } => Some(point),
+            Contact::Smart { point_on_a, point_on_b, .. } => Some(0.5 * point_on_a + 0.5 * point_on_b),
+        }
+    }
+
+    /// The approximate normal of the contact, a unit vector from `b` to `a`: of smart response, where there is one.
+    pub fn normal(&self) -> Option<DVec3> {
+        match self.contact {
+            Contact::Smart { normal, .. } => normal,
+            Contact::Simple | Contact::Witness { .. } => None,
+        }
+    }
+
+    /// The response that the collision was found for.
+    pub fn response(&self) -> Response {
+        match self.contact {
+            Contact::Simple => Response::Simple,
+            Contact::Witness { .. } => Response::Witness,
+            Contact::Smart { .. } => Response::Smart,
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! The response table: which pairs matter, and what is wanted of them (thesis, sections 6.2 and B.4).
+
+use std::collections::HashMap;
+
+use slotmap::SecondaryMap;
+
+use super::{ObjectId, World};
+use crate::error::{Error, Result};
+
+/// What is wanted of the collisions of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Response {
+    /// Nothing: the pair is not tested.
+    Ignore,
+    /// That it collides.
+    Simple,
+    /// A point that both objects have in common.
+    Witness,
+    /// The closest points of the previous frame, and their direction: an approximation of the contact (thesis,
+    /// section 2.3).
+    Smart,
+}
+
+/// Responses by default, per object and per pair.
+#[derive(Debug)]
+pub(super) struct ResponseTable {
+    default: Response,
+    objects: SecondaryMap<ObjectId, Response>,
+    /// The lesser id first.
+    pairs: HashMap<(ObjectId, ObjectId), Response>,
+}
+
+impl ResponseTable {
+    pub fn new(default: Response) -> Self {
+        ResponseTable { default, objects: SecondaryMap::new(), pairs: HashMap::new() }
+    }
+
+    /// The response for a pair, of which `first` was created first.
+    pub fn of(&self, first: ObjectId, second: ObjectId) -> Response {
+        let pair = if self.pairs.is_empty() { None } else { self.pairs.get(&ordered(first, second)) };
+        let object = || self.objects.get(first).or_else(|| self.objects.get(second));
+        pair.or_else(object).copied().unwrap_or(self.default)
+    }
+
+    /// Drops what was set for an object and for its pairs.
+    pub fn forget(&mut self, id: ObjectId, partners: Vec<ObjectId>) {
+        self.objects.remove(id);
+        for partner in partners {
+            self.pairs.remove(&ordered(id, partner));
+        }
+    }
+}
+
+fn ordered(a: ObjectId, b: ObjectId) -> (ObjectId, ObjectId) {
+    (a.min(b), a.max(b))
+}
+
+/// # Responses
+///
+/// The response for a pair is the one set for the pair, else the one set for the object of the two that was created first,
+/// else the one set for the other, else the default. *Clear* sets [`Response::Ignore`], which overrides what is below; *reset*
+/// falls back to it.
+///
+/// ```
+/// use solid3d::{Response, Shape, World, glam::DAffine3};
+/// let mut world = World::new();
+/// let shape = Shape::sphere(1.0)?;
+/// let (a, b) = (world.add(&shape, DAffine3::IDENTITY)?, world.add(&shape, DAffine3::IDENTITY)?);
+/// world.set_object_response(a, Response::Simple)?;
+/// world.clear_pair_response(a, b)?;
+/// assert_eq!(world.response(a, b)?, Response::Ignore);
+/// world.reset_pair_response(a, b)?;
+/// assert_eq!(world.response(a, b)?, Response::Simple);
+/// world.reset_object_response(a)?;
+/// assert_eq!(world.response(a, b)?, Response::Witness); // the default
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+impl World {
+    /// Sets the response for pairs that have none of their own.
+    pub fn set_default_response(&mut self, response: Response) {
+        self.responses.default = response;
+        self.stale = true;
+    }
+
+    /// Makes pairs without a response of their own be ignored.
+    pub fn clear_default_response(&mut self) {
+        self.set_default_response(Response::Ignore);
+    }
+
+    /// Sets the response for all pairs with an object, except those with a response of their own.
+    pub fn set_object_response(&mut self, id: ObjectId, response: Response) -> Result<()> {
+        self.object(id)?;
+        self.responses.objects.insert(id, response);
+        self.stale = true;
+        Ok(())
+    }
+
+    /// Makes all pairs with an object be ignored, except those with a response of their own.
+    pub fn clear_object_response(&mut self, id: ObjectId) -> Result<()> {
+        self.set_object_response(id, Response::Ignore)
+    }
+
+    /// Drops the response set for an object.
+    pub fn reset_object_response(&mut self, id: ObjectId) -> Result<()> {
+        self.object(id)?;
+        self.responses.objects.remove(id);
+        self.stale = true;
+        Ok(())
+    }
+
+    /// Sets the response for a pair, in whichever order.
+    pub fn set_pair_response(&mut self, a: ObjectId, b: ObjectId, response: Response) -> Result<()> {
+        self.check_pair(a, b)?;
+        if self.responses.pairs.insert(ordered(a, b), response).is_none() {
+            self.objects[a].pair_partners.push(b);
+            self.objects[b].pair_partners.push(a);
+        }
+        self.stale = true;
+        Ok(())
+    }
+
+    /// Makes a pair be ignored.
+    pub fn clear_pair_response(&mut self, a: ObjectId, b: ObjectId) -> Result<()> {
+        self.set_pair_response(a, b, Response::Ignore)
+    }
+
+    /// Drops the response set for a pair.
+    pub fn reset_pair_response(&mut self, a: ObjectId, b: ObjectId) -> Result<()> {
+        self.check_pair(a, b)?;
+        if self.responses.pairs.remove(&ordered(a, b)).is_some() {
+            self.objects[a].pair_partners.retain(|&partner| partner != b);
+            self.objects[b].pair_partners.retain(|&partner| partner != a);
+        }
+        self.stale = true;
+        Ok(())
+    }
+
+    /// The response that holds for a pair.
+    pub fn response(&self, a: ObjectId, b: ObjectId) -> Result<Response> {
+        self.check_pair(a, b)?;
+        let a_first = self.objects[a].serial < self.objects[b].serial;
+        Ok(if a_first { self.responses.of(a, b) } else { self.responses.of(b, a) })
+    }
+
+    fn check_pair(&self, a: ObjectId, b: ObjectId) -> Result<()> {
+        for (argument, id) in [("a", a), ("b", b)] {
+            if !self.contains(id) {
+                return Err(Error::UnknownObject { argument, id });
+            }
+        }
+        if a == b { Err(Error::SameObject { id: a }) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,29 @@
+//! What tests cost, in counts that repeat exactly.
+
+use std::ops::AddAssign;
+
+/// The work that the tests of a world did, since it was made. The same calls give the same counts, whatever the machine and the
+/// number of threads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Pairs whose boxes overlap and whose response is not to ignore them.
+    pub candidates: u64,
+    /// Candidates that the axis of an earlier test still separated.
+    pub cache_hits: u64,
+    /// Tests of one box against the eight of a tree's node.
+    pub box_tests: u64,
+    /// Tests of one primitive, or convex shape, against another.
+    pub primitive_tests: u64,
+    /// Collisions.
+    pub collisions: u64,
+}
+
+impl AddAssign for Statistics {
+    fn add_assign(&mut self, other: Statistics) {
+        self.candidates += other.candidates;
+        self.cache_hits += other.cache_hits;
+        self.box_tests += other.box_tests;
+        self.primitive_tests += other.primitive_tests;
+        self.collisions += other.collisions;
+    }
+}
