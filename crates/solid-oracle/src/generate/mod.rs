@@ -1,0 +1,38 @@
+//! Seeded random cases: the same seed gives the same cases on every machine.
+
+mod pair;
+mod placement;
+mod shape;
+
+pub use pair::{Pair, Regime, random_pair};
+pub use placement::{PlacementKind, random_placement};
+pub use shape::{random_flat, random_shape, random_sliver};
+
+use glam::DVec3;
+use rand::rngs::StdRng;
+use rand::{Rng, SeedableRng};
+
+/// The generator that every function of this module takes, from a seed to be printed by the test.
+pub fn seeded(seed: u64) -> StdRng {
+    StdRng::seed_from_u64(seed)
+}
+
+/// A direction, uniform on the sphere.
+fn random_direction(rng: &mut StdRng) -> DVec3 {
+    loop {
+        let v = random_in_cube(rng);
+        if (1e-3..=1.0).contains(&v.length_squared()) {
+            return v.normalize();
+        }
+    }
+}
+
+/// A point, uniform in the cube from -1 to 1.
+fn random_in_cube(rng: &mut StdRng) -> DVec3 {
+    DVec3::from_array(core::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
+}
+
+/// A number whose logarithm is uniform.
+fn log_uniform(rng: &mut StdRng, low: f64, high: f64) -> f64 {
+    rng.random_range(low.ln()..=high.ln()).exp()
+}
