@@ -16,4 +16,5 @@ pub use error::{Error, Result};
 pub use glam;
 pub use shape::{ComplexShapeBuilder, Shape, ShapeKind};
 pub use solid_convex as convex;
-pub use world::ObjectId;
+pub use broad::BroadPhaseKind;
+pub use world::{Collision, Contact, ObjectId, Response, Statistics, World, WorldOptions};

@@ -1,0 +1,81 @@
+//! The leaves whose box overlaps one box.
+
+use super::crossing::Crossing;
+use super::lanes::{bits, overlapping_box, overlapping_probe};
+use super::node::{Kind, Node};
+use super::normal::Normal;
+use super::relative::PlacedBox;
+use super::{Traversal, Tree};
+use crate::Aabb;
+use std::ops::ControlFlow;
+
+impl Tree {
+    /// Visits the leaves whose box overlaps a box of the same space: all primitives that do, and some that do not.
+    /// An empty query overlaps nothing.
+    ///
+    /// ```
+    /// # use solid3d::{Aabb, glam::DVec3, tree::{Traversal, Tree}};
+    /// # use std::ops::ControlFlow;
+    /// let tree = Tree::build(&[Aabb::new(DVec3::ZERO, DVec3::ONE)]);
+    /// let touches = Aabb::new(DVec3::ONE, DVec3::splat(2.0));
+    /// let hit = tree.overlapping(&touches, &mut Traversal::default(), |leaf| ControlFlow::Break(leaf.to_vec()));
+    /// assert_eq!(hit, ControlFlow::Break(vec![0]));
+    /// ```
+    pub fn overlapping<B>(
+        &self,
+        query: &Aabb,
+        traversal: &mut Traversal,
+        visit: impl FnMut(&[u32]) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        if !query.overlaps(&self.bounds) {
+            return ControlFlow::Continue(());
+        }
+        // Within the bounds there is neither infinity nor overflow.
+        let clipped = Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
+        let query = self.normal.pack(&clipped);
+        self.walk(|node| overlapping_box(node, &query), traversal, visit)
+    }
+
+    /// Visits the leaves whose box may overlap a box of another space (six facet axes): all primitives whose box does, and some
+    /// whose box does not.
+    ///
+    /// The box must be one that [`Tree::build`] would take. See [`PlacedBox`] for an example.
+    pub fn overlapping_box<B>(
+        &self,
+        query: &PlacedBox,
+        traversal: &mut Traversal,
+        visit: impl FnMut(&[u32]) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        let normal = Normal::of(&query.bounds);
+        let crossing = Crossing::new(&query.relative, &normal, &self.normal);
+        let probe = crossing.probe(&normal.pack(&query.bounds));
+        self.walk(|node| overlapping_probe(node, &crossing, &probe), traversal, visit)
+    }
+
+    /// Visits the leaves among the lanes that `test` names, depth first, lanes in order.
+    fn walk<B>(
+        &self,
+        test: impl Fn(&Node) -> u32,
+        traversal: &mut Traversal,
+        mut visit: impl FnMut(&[u32]) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        let Traversal { counters, nodes: stack, .. } = traversal;
+        stack.clear();
+        stack.push(0);
+        while let Some(index) = stack.pop() {
+            let node = &self.nodes[index as usize];
+            counters.box_tests += 1;
+            for lane in bits(test(node)) {
+                match node.child[lane].kind() {
+                    Kind::Empty => {}
+                    Kind::Inner(child) => stack.push(child as u32),
+                    Kind::Leaf(range) => {
+                        counters.leaf_visits += 1;
+                        visit(self.leaf(range))?;
+                    }
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,121 @@
+//! The pairs of leaves of two trees whose boxes may overlap.
+
+use super::crossing::Crossing;
+use super::lanes::{bits, overlapping_probe};
+use super::node::Kind;
+use super::packed::PackedBox;
+use super::relative::Relative;
+use super::{Place, Traversal, Tree};
+use std::ops::ControlFlow;
+
+/// Visits the pairs of leaves of `a` and `b` whose boxes may overlap (six facet axes): all pairs of primitives whose boxes do, and
+/// some whose boxes do not.
+///
+/// ```
+/// use solid3d::{Aabb, glam::{DAffine3, DVec3}, tree::{Relative, Traversal, Tree, pairs}};
+/// use std::ops::ControlFlow;
+///
+/// let tree = Tree::build(&[Aabb::new(DVec3::ZERO, DVec3::ONE)]);
+/// let count = |x: f64| {
+///     let b_to_a = DAffine3::from_translation(DVec3::new(x, 0.0, 0.0)) * DAffine3::from_rotation_z(0.3);
+///     let relative = Relative { b_to_a, a_to_b: b_to_a.inverse(), slack_in_a: 1e-12, slack_in_b: 1e-12 };
+///     let mut count = 0;
+///     let _ = pairs(&tree, &tree, &relative, &mut Traversal::default(), |_, _| {
+///         count += 1;
+///         ControlFlow::<()>::Continue(())
+///     });
+///     count
+/// };
+/// assert_eq!(count(0.5), 1);
+/// assert_eq!(count(1.5), 0);
+/// ```
+pub fn pairs<B>(
+    a: &Tree,
+    b: &Tree,
+    relative: &Relative,
+    traversal: &mut Traversal,
+    mut visit: impl FnMut(&[u32], &[u32]) -> ControlFlow<B>,
+) -> ControlFlow<B> {
+    let duel = Duel::new(a, b, relative);
+    let Traversal { counters, pairs: stack, .. } = traversal;
+    stack.clear();
+    stack.push((Place::ROOT, Place::ROOT));
+    while let Some((in_a, in_b)) = stack.pop() {
+        match duel.step(in_a, in_b) {
+            Step::Leaves(leaf_a, leaf_b) => {
+                counters.leaf_visits += 1;
+                visit(leaf_a, leaf_b)?;
+            }
+            Step::OpenA(node, box_b) => {
+                counters.box_tests += 1;
+                let probe = duel.b_to_a.probe(&box_b);
+                let hits = overlapping_probe(&a.nodes[node], &duel.b_to_a, &probe);
+                stack.extend(bits(hits).map(|lane| (Place::lane(node, lane), in_b)));
+            }
+            Step::OpenB(node, box_a) => {
+                counters.box_tests += 1;
+                let probe = duel.a_to_b.probe(&box_a);
+                let hits = overlapping_probe(&b.nodes[node], &duel.a_to_b, &probe);
+                stack.extend(bits(hits).map(|lane| (in_a, Place::lane(node, lane))));
+            }
+            Step::Nothing => {}
+        }
+    }
+    ControlFlow::Continue(())
+}
+
+/// Two trees, and the way between them.
+pub(super) struct Duel<'t> {
+    a: &'t Tree,
+    b: &'t Tree,
+    /// For boxes of `a` against lanes of `b`, and the reverse.
+    pub a_to_b: Crossing,
+    pub b_to_a: Crossing,
+    /// The size of things in `a` over their size in `b`.
+    magnification: f32,
+}
+
+/// What to do with a pair of subtrees.
+pub(super) enum Step<'t> {
+    /// Both are leaves.
+    Leaves(&'t [u32], &'t [u32]),
+    /// The node of `a` is to be opened against the box of `b`.
+    OpenA(usize, PackedBox),
+    /// The node of `b` is to be opened against the box of `a`.
+    OpenB(usize, PackedBox),
+    /// One is an empty lane.
+    Nothing,
+}
+
+impl<'t> Duel<'t> {
+    pub fn new(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
+        let b_to_a = Crossing::new(relative, &b.normal, &a.normal);
+        let a_to_b = Crossing::new(&relative.swapped(), &a.normal, &b.normal);
+        let magnification = b_to_a.magnification() as f32;
+        Duel { a, b, a_to_b, b_to_a, magnification }
+    }
+
+    /// The larger of two nodes is opened (thesis, 5.2.3).
+    #[inline]
+    pub fn step(&self, in_a: Place, in_b: Place) -> Step<'t> {
+        let (child_a, child_b) = (self.a.child_at(in_a), self.b.child_at(in_b));
+        match (child_a.kind(), child_b.kind()) {
+            (Kind::Empty, _) | (_, Kind::Empty) => Step::Nothing,
+            (Kind::Leaf(of_a), Kind::Leaf(of_b)) => Step::Leaves(self.a.leaf(of_a), self.b.leaf(of_b)),
+            (Kind::Inner(node), Kind::Leaf(_)) => Step::OpenA(node, self.b.box_at(in_b)),
+            (Kind::Leaf(_), Kind::Inner(node)) => Step::OpenB(node, self.a.box_at(in_a)),
+            (Kind::Inner(node_a), Kind::Inner(node_b)) => {
+                let (box_a, box_b) = (self.a.box_at(in_a), self.b.box_at(in_b));
+                if extent(&box_a) >= self.magnification * extent(&box_b) {
+                    Step::OpenA(node_a, box_b)
+                } else {
+                    Step::OpenB(node_b, box_a)
+                }
+            }
+        }
+    }
+}
+
+fn extent(bounds: &PackedBox) -> f32 {
+    bounds.size(0) + bounds.size(1) + bounds.size(2)
+}

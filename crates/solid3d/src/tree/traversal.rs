@@ -1,0 +1,43 @@
+//! What every query needs from its caller: a stack to work on, and counters to add to.
+
+use super::Place;
+use std::ops::AddAssign;
+
+/// The work of queries: deterministic, so tests can assert on it where times are noise.
+///
+/// ```
+/// use solid3d::tree::Counters;
+/// let mut sum = Counters { box_tests: 1, leaf_visits: 2 };
+/// sum += Counters { box_tests: 10, leaf_visits: 20 };
+/// assert_eq!(sum, Counters { box_tests: 11, leaf_visits: 22 });
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Tests of one box against the eight of a node.
+    pub box_tests: u64,
+    /// Leaves, or pairs of leaves, handed to the visitor.
+    pub leaf_visits: u64,
+}
+
+impl AddAssign for Counters {
+    fn add_assign(&mut self, other: Counters) {
+        self.box_tests += other.box_tests;
+        self.leaf_visits += other.leaf_visits;
+    }
+}
+
+/// The scratch memory of queries. Keep one per thread: from the second query on, nothing is allocated.
+///
+/// ```
+/// use solid3d::tree::{Counters, Traversal};
+/// assert_eq!(Traversal::default().counters, Counters::default());
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Traversal {
+    /// The work done so far; queries only add to it.
+    pub counters: Counters,
+    /// Nodes to visit.
+    pub(super) nodes: Vec<u32>,
+    /// Pairs of subtrees to visit.
+    pub(super) pairs: Vec<(Place, Place)>,
+}
