@@ -41,7 +41,7 @@ impl Swarm {
 
     fn frame(&mut self, moving: usize, frame: usize) -> usize {
         let n = self.places.len();
-        for i in (0..moving).map(|i| (i * 7919 + frame / 40 * moving) % n) {
+        for i in (0..moving).map(|i| i * (n / moving) + frame / 40 % (n / moving)) {
             let (place, velocity) = (&mut self.places[i], &mut self.velocities[i]);
             *place += *velocity;
             for k in 0..3 {
@@ -52,6 +52,10 @@ impl Swarm {
             self.broad.update(i as Proxy, unit_box(*place));
         }
         self.broad.flush();
+        self.pairs()
+    }
+
+    fn pairs(&self) -> usize {
         let mut pairs = 0;
         self.broad.for_each_pair(&mut |_, _| pairs += 1);
         pairs
@@ -92,7 +96,7 @@ fn report(kind: BroadPhaseKind, n: usize, speed: f64, percent: usize, frames: us
         (after.node_visits - before.node_visits) / frames as u64,
         after.rebuilds - before.rebuilds,
         after.sweeps - before.sweeps,
-        swarm.frame(0, 0),
+        swarm.pairs(),
     );
 }
 

@@ -5,14 +5,16 @@ use crate::broad::Proxy;
 use glam::DVec3;
 
 /// How much a fat box exceeds its tight box on each side, as a fraction of the tight box's largest extent.
-/// Measured at 10,000 and 100,000 boxes: 0.05 to 0.2 differ by less than 15 %.
-const MARGIN: f64 = 0.1;
+/// Measured at 100,000 boxes, `broad::measure`: 0.05 is up to 25 % faster than 0.1 where little moves, because there
+/// are fewer fat pairs to filter, and as fast where all do.
+const MARGIN: f64 = 0.05;
 
 /// Over how many frames like the last one a fat box should hold its tight box.
-const FRAMES_AHEAD: f64 = 4.0;
+/// Measured with `AHEAD_MAX`: 8 and 1 are up to 30 % faster than 2 and 0.2, and within 10 % of 4 and 0.5.
+const FRAMES_AHEAD: f64 = 8.0;
 
 /// The look-ahead is at most this multiple of the tight box's largest extent, so that a teleport leaves no giant.
-const AHEAD_MAX: f64 = 0.5;
+const AHEAD_MAX: f64 = 1.0;
 
 /// A box of `f32`, never empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +106,6 @@ mod tests {
     fn a_teleport_leaves_no_giant() {
         let far = Aabb::new(DVec3::splat(-1e6), DVec3::splat(-1e6 + 1.0));
         let fat = FatBox::with_room(3, &far, &Aabb::new(DVec3::ZERO, DVec3::ONE));
-        assert!(fat.max[0] < 2.0 && fat.min[0] > -1.0);
+        assert!(fat.max[0] < 2.2 && fat.min[0] > -0.2);
     }
 }

