@@ -12,9 +12,9 @@ pub mod tree;
 mod world;
 
 pub use bounds::Aabb;
+pub use broad::BroadPhaseKind;
 pub use error::{Error, Result};
 pub use glam;
 pub use shape::{ComplexShapeBuilder, Shape, ShapeKind};
 pub use solid_convex as convex;
-pub use broad::BroadPhaseKind;
 pub use world::{Collision, Contact, ObjectId, Response, Statistics, World, WorldOptions};

@@ -3,3 +3,4 @@
 mod aabb;
 
 pub use aabb::Aabb;
+pub(crate) use aabb::abs;

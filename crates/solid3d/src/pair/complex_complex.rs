@@ -5,12 +5,13 @@ use std::ops::ControlFlow;
 use glam::DAffine3;
 use solid_convex::{Closest, gjk};
 
-use super::{Relation, Scratch};
 use super::frame::Frame;
+use super::nearest_shim::{PairMetric, nearest_pairs};
 use super::table::PlacedComplex;
 use super::triangle_triangle::{self, Triangle};
+use super::{Relation, Scratch};
 use crate::shape::Complex;
-use crate::tree::{PairMetric, nearest_pairs, pairs};
+use crate::tree::pairs;
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
     let Scratch { traversal, corners: [corners_a, corners_b], primitive_tests } = scratch;
@@ -52,18 +53,26 @@ pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch)
     };
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let (mut best, mut answer) = (f64::INFINITY, None);
-    nearest_pairs(a.0.tree(), b.0.tree(), &relative, &metric, &mut best, traversal, |leaf_a, leaf_b, best| {
-        for &i in leaf_a {
-            for &j in leaf_b {
-                *primitive_tests += 1;
-                let closest = closest_of(a, i, b, j);
-                if closest.distance < *best {
-                    *best = closest.distance;
-                    answer = Some(closest);
+    nearest_pairs(
+        a.0.tree(),
+        b.0.tree(),
+        &relative,
+        &metric,
+        &mut best,
+        traversal,
+        |leaf_a, leaf_b, best| {
+            for &i in leaf_a {
+                for &j in leaf_b {
+                    *primitive_tests += 1;
+                    let closest = closest_of(a, i, b, j);
+                    if closest.distance < *best {
+                        *best = closest.distance;
+                        answer = Some(closest);
+                    }
                 }
             }
-        }
-    });
+        },
+    );
     answer.expect("a complex shape has a primitive, and every distance is finite")
 }
 

@@ -5,10 +5,11 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 use solid_convex::{Closest, gjk};
 
-use super::{Relation, Scratch};
 use super::frame::Frame;
+use super::nearest_shim::Nearest;
 use super::reach::convex_bounds;
 use super::table::{PlacedComplex, PlacedConvex};
+use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 
 pub(super) fn intersection(

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use solid_convex::{Closest, Outcome, gjk};
 
-use super::{Relation, Scratch};
 use super::table::PlacedConvex;
+use super::{Relation, Scratch};
 
 pub(super) fn intersection(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Relation {
     scratch.primitive_tests += 1;

@@ -10,6 +10,7 @@ mod complex_complex;
 mod complex_convex;
 mod convex_convex;
 mod frame;
+mod nearest_shim;
 mod reach;
 mod scratch;
 mod table;

@@ -14,3 +14,10 @@ pub(crate) struct Scratch {
     /// Tests of one primitive against another.
     pub primitive_tests: u64,
 }
+
+impl Scratch {
+    /// Box tests and primitive tests so far.
+    pub fn work(&self) -> (u64, u64) {
+        (self.traversal.counters.box_tests, self.primitive_tests)
+    }
+}

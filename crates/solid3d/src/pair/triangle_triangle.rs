@@ -53,7 +53,9 @@ fn same_strict_side(sides: [f64; 3]) -> bool {
 /// The triangle is not degenerate; `p_side` and `q_side` are the orientations of the ends to its plane.
 fn segment_meets_triangle(p: &DVec3, q: &DVec3, p_side: f64, q_side: f64, triangle: &Triangle) -> bool {
     if p_side == 0.0 && q_side == 0.0 {
-        return PROJECTIONS.iter().all(|flatten| segment_meets_triangle_2d(flatten(p), flatten(q), triangle.map(|c| flatten(&c))));
+        return PROJECTIONS
+            .iter()
+            .all(|flatten| segment_meets_triangle_2d(flatten(p), flatten(q), triangle.map(|c| flatten(&c))));
     }
     if same_strict_side([p_side, q_side, p_side]) {
         return false;

@@ -81,6 +81,11 @@ impl Complex {
         }
     }
 
+    /// Whether both are soups of the same primitives: one is a deformation of the other.
+    pub fn same_primitives(&self, other: &Complex) -> bool {
+        Arc::ptr_eq(&self.primitives, &other.primitives)
+    }
+
     pub fn primitive_count(&self) -> usize {
         self.primitives.len()
     }

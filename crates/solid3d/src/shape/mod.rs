@@ -175,6 +175,14 @@ impl Shape {
         }
     }
 
+    /// Whether the two are the same mesh or complex shape, deformed differently.
+    pub(crate) fn is_deformation_of(&self, other: &Shape) -> bool {
+        match (&self.geometry, &other.geometry) {
+            (Geometry::Complex(a), Geometry::Complex(b)) => !Arc::ptr_eq(a, b) && a.same_primitives(b),
+            _ => false,
+        }
+    }
+
     pub(crate) fn class(&self) -> Class<'_> {
         match &self.geometry {
             Geometry::Sphere(shape) => Class::Convex(shape),

@@ -2,7 +2,10 @@
 
 use glam::DVec3;
 
+use solid_convex::{Closest, Witness};
+
 use super::{ObjectId, Response};
+use crate::pair::{self, Placed, Scratch};
 
 /// Two objects that collide.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +47,23 @@ pub enum Contact {
         /// then, and the points are a common point.
         normal: Option<DVec3>,
     },
+}
+
+impl Contact {
+    /// A common point of two objects as they are.
+    pub(super) fn witness(a: Placed, b: Placed, witness: &Witness) -> Contact {
+        let point = pair::midpoint(a, b, witness);
+        Contact::Witness { point, local_a: witness.on_a, local_b: witness.on_b }
+    }
+
+    /// The closest points of two objects as they were.
+    pub(super) fn smart(a: Placed, b: Placed, scratch: &mut Scratch) -> Contact {
+        let Closest { distance, points } = pair::closest(a, b, scratch);
+        let point_on_a = a.placement.transform_point3(points.on_a);
+        let point_on_b = b.placement.transform_point3(points.on_b);
+        let normal = if distance > 0.0 { (point_on_a - point_on_b).try_normalize() } else { None };
+        Contact::Smart { point_on_a, point_on_b, local_a: points.on_a, local_b: points.on_b, normal }
+    }
 }
 
 impl Collision {

@@ -73,9 +73,9 @@ impl Object {
     pub fn proceed(&mut self) {
         self.displaced = false;
         self.previous_placement = self.placement;
-        if !self.previous_shape.same_geometry(&self.shape) {
-            let old = std::mem::replace(&mut self.previous_shape, self.shape.clone());
-            self.spare = old.same_topology(&self.shape).then_some(old);
+        let old = std::mem::replace(&mut self.previous_shape, self.shape.clone());
+        if old.is_deformation_of(&self.shape) {
+            self.spare = Some(old);
         }
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::candidates::{Candidate, PairKey};
 use super::{Collision, Contact, Response, Statistics, World};
-use crate::pair::{self, Placed, Relation, Scratch};
+use crate::pair::{self, Relation, Scratch};
 
 /// What examining a candidate gave.
 struct Examined {
@@ -104,7 +104,8 @@ impl World {
     #[cfg(not(feature = "rayon"))]
     fn examine_all(&mut self) -> Vec<Examined> {
         let mut scratch = std::mem::take(&mut self.scratch);
-        let examined = self.candidates.iter().map(|candidate| self.examine(candidate, &mut scratch)).collect();
+        let examined =
+            self.candidates.iter().map(|candidate| self.examine(candidate, &mut scratch)).collect();
         self.scratch = scratch;
         examined
     }
@@ -122,24 +123,26 @@ impl World {
     fn examine(&self, candidate: &Candidate, scratch: &mut Scratch) -> Examined {
         let mut work = Statistics { candidates: 1, ..Statistics::default() };
         let (a, b) = (&self.objects[candidate.a], &self.objects[candidate.b]);
-        if let Some(axis) = candidate.axis.filter(|_| self.caching) {
-            if pair::still_separated(axis, a.placed(), b.placed()) {
-                work.cache_hits = 1;
-                return Examined { contact: None, axis: Some(axis), work };
-            }
+        let cached = candidate.axis.filter(|_| self.caching);
+        if let Some(axis) = cached.filter(|&axis| pair::still_separated(axis, a.placed(), b.placed())) {
+            work.cache_hits = 1;
+            return Examined { contact: None, axis: Some(axis), work };
         }
         let before = scratch.work();
-        let relation = pair::intersection(a.placed(), b.placed(), scratch);
-        let (contact, axis) = match relation {
+        let (contact, axis) = match pair::intersection(a.placed(), b.placed(), scratch) {
             Relation::Separated { axis } => (None, axis.filter(|_| self.caching)),
-            Relation::Common(_) => {
+            Relation::Common(witness) => {
                 work.collisions = 1;
-                let response = self.responses.of(candidate.a, candidate.b);
-                let previous = || pair::closest(a.previously_placed(), b.previously_placed(), scratch);
-                (contact(response, relation, a.placed(), b.placed(), previous), None)
+                let contact = match self.responses.of(candidate.a, candidate.b) {
+                    Response::Ignore | Response::Simple => Contact::Simple,
+                    Response::Witness => Contact::witness(a.placed(), b.placed(), &witness),
+                    Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
+                };
+                (Some(contact), None)
             }
         };
-        scratch.add_work_since(before, &mut work);
+        let after = scratch.work();
+        (work.box_tests, work.primitive_tests) = (after.0 - before.0, after.1 - before.1);
         Examined { contact, axis, work }
     }
 }
