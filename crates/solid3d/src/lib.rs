@@ -2,6 +2,7 @@
 
 pub mod bounds;
 pub mod broad;
+pub mod hull;
 
 pub use bounds::Aabb;
 pub use glam;
