@@ -33,9 +33,7 @@ pub(crate) fn decide(pair: &PlacedPair, limits: Limits) -> Decision {
         }
         let gap = pair.gap_along(&axis.to_exact().normalised());
         gap_best = gap_best.max(gap);
-        if !encloses {
-            distance_max = distance_max.min(distance_up(pair, &simplex));
-        }
+        distance_max = distance_max.min(distance_up(pair, &simplex));
         if gap > 0.0 {
             return Decision::Apart { lower: gap, upper: distance_max };
         }
