@@ -76,6 +76,53 @@ fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
+/// What a gap counts in a distance, squared: on each axis, and for the norm of the gaps on all three.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Weights {
+    pub axes: [f32; 3],
+    pub norm: f32,
+}
+
+/// Gaps are counted up to here, so that their squares do not overflow.
+const GAP_MAX: f32 = 1e18;
+
+/// Lower bounds of the squared distances between a box of the other space and the lanes, up to the relative rounding of ten
+/// operations.
+#[inline]
+pub(super) fn distances_squared(
+    node: &Node,
+    crossing: &Crossing,
+    probe: &Probe,
+    on_lanes: &Weights,
+    on_box: &Weights,
+) -> [f32; WIDTH] {
+    let mut distances = [0.0; WIDTH];
+    let gaps: [[f32; WIDTH]; 3] = std::array::from_fn(|axis| {
+        let (lower, upper) = (&node.min[axis], &node.max[axis]);
+        std::array::from_fn(|lane| max(probe.lo[axis] - upper[lane], lower[lane] - probe.hi[axis]))
+    });
+    weigh(&gaps, on_lanes, &mut distances);
+    let (sum, size) = sums_and_sizes(node);
+    let gaps = [0, 1, 2].map(|axis| excess(&sum, &size, crossing, probe, axis));
+    weigh(&gaps, on_box, &mut distances);
+    distances
+}
+
+/// Raises squared distances to those that the gaps on three axes imply.
+#[inline]
+fn weigh(gaps: &[[f32; WIDTH]; 3], weights: &Weights, distances: &mut [f32; WIDTH]) {
+    for (lane, distance) in distances.iter_mut().enumerate() {
+        let mut norm = 0.0;
+        for (gaps, weight) in gaps.iter().zip(weights.axes) {
+            let positive = max(gaps[lane], 0.0);
+            let gap = if positive < GAP_MAX { positive } else { GAP_MAX };
+            *distance = max(weight * (gap * gap), *distance);
+            norm += gap * gap;
+        }
+        *distance = max(weights.norm * norm, *distance);
+    }
+}
+
 /// The lanes that are zero, as bits.
 #[inline]
 fn zeros(lanes: &[f32; WIDTH]) -> u32 {

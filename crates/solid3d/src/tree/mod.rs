@@ -21,6 +21,7 @@
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
+//! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
 //!
 //! # Laws
 //!
@@ -35,6 +36,9 @@ mod build;
 mod cost;
 mod crossing;
 mod lanes;
+mod metric;
+mod nearest;
+mod nearest_pairs;
 mod node;
 mod normal;
 mod overlap;
@@ -51,6 +55,8 @@ mod tests;
 
 pub use build::DEPTH_MAX;
 pub use cost::DEGRADED_RATIO;
+pub use metric::PairMetric;
+pub use nearest_pairs::nearest_pairs;
 pub use node::{LEAF_SIZE, PRIMITIVES_MAX};
 pub use normal::COORDINATE_MAX;
 pub use pairs::pairs;

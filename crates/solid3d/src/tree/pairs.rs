@@ -66,8 +66,8 @@ pub fn pairs<B>(
 
 /// Two trees, and the way between them.
 pub(super) struct Duel<'t> {
-    a: &'t Tree,
-    b: &'t Tree,
+    pub a: &'t Tree,
+    pub b: &'t Tree,
     /// For boxes of `a` against lanes of `b`, and the reverse.
     pub a_to_b: Crossing,
     pub b_to_a: Crossing,
