@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::SceneError;
+use crate::obj;
 use crate::part::Part;
 
 /// How to load files.
@@ -43,15 +44,17 @@ impl Format {
 }
 
 /// Reads a file.
-pub(crate) fn load(path: &Path, _options: &LoadOptions) -> Result<Part, SceneError> {
+pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Part, SceneError> {
     let Some(format) = Format::of(path) else {
         let message =
             "unknown format; expected a file ending in .wrl, .vrml, .gltf, .glb, .obj, .stl or .ply";
         return Err(SceneError::new(path, None, message));
     };
     match format {
-        Format::Vrml97 | Format::Gltf | Format::Obj | Format::Stl | Format::Ply => {
-            Err(SceneError::new(path, None, "no reader yet"))
-        }
+        Format::Vrml97 => Err(SceneError::new(path, None, "no reader yet")),
+        Format::Gltf => Err(SceneError::new(path, None, "no reader yet")),
+        Format::Obj => obj::load(path, options),
+        Format::Stl => Err(SceneError::new(path, None, "no reader yet")),
+        Format::Ply => Err(SceneError::new(path, None, "no reader yet")),
     }
 }
