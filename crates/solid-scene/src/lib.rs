@@ -9,11 +9,14 @@ mod file;
 mod load;
 mod obj;
 mod part;
+mod ply;
 mod polygon;
 mod pose;
 mod scene;
 mod soup;
+mod stl;
 mod text;
+mod weld;
 
 pub use error::SceneError;
 pub use load::{Format, LoadOptions};

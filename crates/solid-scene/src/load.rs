@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::error::SceneError;
-use crate::obj;
 use crate::part::Part;
+use crate::{obj, ply, stl};
 
 /// How to load files.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +54,7 @@ pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Part, SceneErro
         Format::Vrml97 => Err(SceneError::new(path, None, "no reader yet")),
         Format::Gltf => Err(SceneError::new(path, None, "no reader yet")),
         Format::Obj => obj::load(path, options),
-        Format::Stl => Err(SceneError::new(path, None, "no reader yet")),
-        Format::Ply => Err(SceneError::new(path, None, "no reader yet")),
+        Format::Stl => stl::load(path),
+        Format::Ply => ply::load(path),
     }
 }
