@@ -6,6 +6,7 @@
 mod error;
 mod fault;
 mod file;
+mod gltf;
 mod load;
 mod obj;
 mod part;
