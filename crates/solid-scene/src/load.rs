@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::error::SceneError;
 use crate::part::Part;
+use crate::{gltf, obj, ply, stl};
 
 /// How to load files.
 #[derive(Clone, Debug, Default)]
@@ -11,6 +12,9 @@ use crate::part::Part;
 pub struct LoadOptions {
     /// Makes each group of an OBJ file an object, instead of one for the whole file.
     pub split: bool,
+    /// The animation of a glTF file to play, by its name or else by its number, from 0. Without it the first is played,
+    /// with a warning that lists the others. Other formats have one animation at most, and take no notice of this.
+    pub animation: Option<String>,
 }
 
 /// A file format that scenes come in, told by the file's extension.
@@ -43,15 +47,17 @@ impl Format {
 }
 
 /// Reads a file.
-pub(crate) fn load(path: &Path, _options: &LoadOptions) -> Result<Part, SceneError> {
+pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Part, SceneError> {
     let Some(format) = Format::of(path) else {
         let message =
             "unknown format; expected a file ending in .wrl, .vrml, .gltf, .glb, .obj, .stl or .ply";
         return Err(SceneError::new(path, None, message));
     };
     match format {
-        Format::Vrml97 | Format::Gltf | Format::Obj | Format::Stl | Format::Ply => {
-            Err(SceneError::new(path, None, "no reader yet"))
-        }
+        Format::Vrml97 => Err(SceneError::new(path, None, "no reader yet")),
+        Format::Gltf => gltf::load(path, options),
+        Format::Obj => obj::load(path, options),
+        Format::Stl => stl::load(path),
+        Format::Ply => ply::load(path),
     }
 }
