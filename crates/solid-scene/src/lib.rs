@@ -8,6 +8,7 @@ mod load;
 mod part;
 mod pose;
 mod scene;
+mod vrml;
 
 pub use error::SceneError;
 pub use load::{Format, LoadOptions};

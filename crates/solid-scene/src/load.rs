@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::error::SceneError;
 use crate::part::Part;
+use crate::vrml;
 
 /// How to load files.
 #[derive(Clone, Debug, Default)]
@@ -50,7 +51,8 @@ pub(crate) fn load(path: &Path, _options: &LoadOptions) -> Result<Part, SceneErr
         return Err(SceneError::new(path, None, message));
     };
     match format {
-        Format::Vrml97 | Format::Gltf | Format::Obj | Format::Stl | Format::Ply => {
+        Format::Vrml97 => vrml::load(path),
+        Format::Gltf | Format::Obj | Format::Stl | Format::Ply => {
             Err(SceneError::new(path, None, "no reader yet"))
         }
     }
