@@ -17,6 +17,7 @@ mod scene;
 mod soup;
 mod stl;
 mod text;
+mod vrml;
 mod weld;
 
 pub use error::SceneError;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::error::SceneError;
 use crate::part::Part;
-use crate::{gltf, obj, ply, stl};
+use crate::{gltf, obj, ply, stl, vrml};
 
 /// How to load files.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +54,7 @@ pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Part, SceneErro
         return Err(SceneError::new(path, None, message));
     };
     match format {
-        Format::Vrml97 => Err(SceneError::new(path, None, "no reader yet")),
+        Format::Vrml97 => vrml::load(path),
         Format::Gltf => gltf::load(path, options),
         Format::Obj => obj::load(path, options),
         Format::Stl => stl::load(path),
