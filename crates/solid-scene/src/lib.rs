@@ -4,10 +4,19 @@
 //! VRML97, glTF 2.0 (`.gltf`, `.glb`), OBJ, STL and PLY. Several files make one scene.
 
 mod error;
+mod fault;
+mod file;
 mod load;
+mod obj;
 mod part;
+mod ply;
+mod polygon;
 mod pose;
 mod scene;
+mod soup;
+mod stl;
+mod text;
+mod weld;
 
 pub use error::SceneError;
 pub use load::{Format, LoadOptions};

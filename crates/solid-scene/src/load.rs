@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::error::SceneError;
 use crate::part::Part;
+use crate::{obj, ply, stl};
 
 /// How to load files.
 #[derive(Clone, Debug, Default)]
@@ -43,15 +44,17 @@ impl Format {
 }
 
 /// Reads a file.
-pub(crate) fn load(path: &Path, _options: &LoadOptions) -> Result<Part, SceneError> {
+pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Part, SceneError> {
     let Some(format) = Format::of(path) else {
         let message =
             "unknown format; expected a file ending in .wrl, .vrml, .gltf, .glb, .obj, .stl or .ply";
         return Err(SceneError::new(path, None, message));
     };
     match format {
-        Format::Vrml97 | Format::Gltf | Format::Obj | Format::Stl | Format::Ply => {
-            Err(SceneError::new(path, None, "no reader yet"))
-        }
+        Format::Vrml97 => Err(SceneError::new(path, None, "no reader yet")),
+        Format::Gltf => Err(SceneError::new(path, None, "no reader yet")),
+        Format::Obj => obj::load(path, options),
+        Format::Stl => stl::load(path),
+        Format::Ply => ply::load(path),
     }
 }

@@ -1,0 +1,134 @@
+//! Wavefront OBJ: positions, faces (`f`), lines (`l`) and points (`p`). Materials, normals and texture coordinates are
+//! passed over in silence, and so is a material file that is missing.
+//!
+//! A reader of our own rather than the crate `tobj`: errors name the line and what was expected there, positions keep
+//! double precision, and indices are checked against the vertices of the file.
+
+mod geometry;
+mod lines;
+mod reader;
+
+use std::path::Path;
+
+use crate::error::SceneError;
+use crate::fault::Result;
+use crate::file;
+use crate::load::LoadOptions;
+use crate::part::Part;
+use crate::soup::still_part;
+
+/// Reads an OBJ file: one object, named by the file, or with [`LoadOptions::split`] one for each group or object that
+/// has primitives, named by it.
+pub(crate) fn load(path: &Path, options: &LoadOptions) -> std::result::Result<Part, SceneError> {
+    let bytes = file::read(path)?;
+    parse(&bytes, &file::stem(path), options.split).map_err(|fault| fault.in_file(path))
+}
+
+fn parse(bytes: &[u8], stem: &str, split: bool) -> Result<Part> {
+    let statements = reader::read(&String::from_utf8_lossy(bytes), stem)?;
+    let warnings = statements.warnings();
+    let soups = if split { statements.split()? } else { statements.whole(stem)? };
+    let objects = soups.into_iter().zip(1..).map(|((name, soup), number)| soup.into_object(&name, number));
+    Ok(still_part(objects.collect::<Result<_>>()?, warnings))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use proptest::prelude::*;
+    use solid3d::ShapeKind;
+
+    use super::*;
+
+    const TWO: &str = "# two\nmtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no left\nusemtl\nf 1/1/1 2//2 3\n\
+                       g right\nv 5 5 5 0.1 nan 0.3\nv 6 5 5\nv 5 6 5\nf -3 -2 -1\nl 4 5 6\np 4\n";
+
+    fn refused(text: &str) -> (Option<usize>, String) {
+        let fault = parse(text.as_bytes(), "stem", false).unwrap_err();
+        (fault.line(), fault.message().to_owned())
+    }
+
+    #[test]
+    fn the_whole_file_is_one_object() {
+        let part = parse(TWO.as_bytes(), "stem", false).unwrap();
+        assert_eq!(part.objects.len(), 1);
+        assert_eq!(part.objects[0].name, "stem");
+        assert_eq!(part.objects[0].path, [0, 1]);
+        assert_eq!(part.objects[0].shape.primitive_count(), 5);
+        assert_eq!(part.objects[0].shape.vertices().unwrap()[3], DVec3::splat(5.0));
+        assert_eq!((part.unit, part.duration, part.warnings.len()), ("unspecified", 0.0, 0));
+    }
+
+    #[test]
+    fn split_makes_an_object_of_each_group() {
+        let part = parse(TWO.as_bytes(), "stem", true).unwrap();
+        let seen: Vec<_> =
+            part.objects.iter().map(|o| (o.name.as_str(), o.shape.kind(), &o.path[..])).collect();
+        let expected: [(_, _, &[u32]); 2] =
+            [("left", ShapeKind::Mesh, &[0, 1]), ("right", ShapeKind::Complex, &[0, 2])];
+        assert_eq!(seen, expected);
+        assert_eq!(part.objects[1].shape.vertices().unwrap().len(), 3);
+    }
+
+    #[test]
+    fn a_group_that_comes_again_goes_on() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng a\nf 1 2 3\ng b\nf 1 2 3\ng a\nf 3 2 1\n";
+        let part = parse(text.as_bytes(), "stem", true).unwrap();
+        let seen: Vec<_> = part.objects.iter().map(|o| (&o.name[..], o.shape.primitive_count())).collect();
+        assert_eq!(seen, [("stem", 1), ("a", 2), ("b", 1)]);
+    }
+
+    #[test]
+    fn lines_continue() {
+        let text = "v 0 0 0\nv 1 0 \\\n 0\nv 0 1 0\nf 1 2 \\\n3\nf 1 2 9\n";
+        let (line, message) = refused(text);
+        assert_eq!(line, Some(7));
+        assert_eq!(message, "the index 9 names no vertex; the file has 3");
+    }
+
+    #[test]
+    fn short_faces_are_passed_over() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1// 2//\nf 1// 2// 3//\n";
+        let part = parse(text.as_bytes(), "stem", false).unwrap();
+        assert_eq!(part.warnings, ["1 face with fewer than 3 corners is passed over"]);
+        assert_eq!(part.objects[0].shape.primitive_count(), 1);
+    }
+
+    #[test]
+    fn mistakes_name_their_line() {
+        let mistakes = [
+            ("v 0 0\n", 1, "expected a finite number for the vertex's z, but the line ends"),
+            ("v 0 0 0\nf 1 2 x\n", 2, "expected a vertex index, but there is `x`"),
+            ("v 0 0 0\nf 0 1 1\n", 2, "expected a vertex index, but there is `0`; indices count from 1"),
+            ("v 0 0 0\nf -2 1 1\n", 2, "the index -2 names no vertex; there are 1 before it"),
+            (
+                "v 0 0 0\np 99999999999999999999\n",
+                2,
+                "expected a vertex index, but there is `99999999999999999999`",
+            ),
+            ("\n\nv 0 0 inf\n", 3, "expected a finite number for the vertex's z, but there is `inf`"),
+        ];
+        for (text, line, message) in mistakes {
+            assert_eq!(refused(text), (Some(line), message.to_owned()));
+        }
+    }
+
+    #[test]
+    fn a_file_without_geometry_is_refused() {
+        for text in ["", "# nothing\n", "v 1 2 3\n", "g f l p\nv 0 0 0\n", "\\", "\0\u{1}binary"] {
+            assert_eq!(refused(text).1, "the file has no geometry: no face, line or point");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn truncation_never_panics(end in 0..TWO.len(), split: bool) {
+            let _ = parse(&TWO.as_bytes()[..end], "stem", split);
+        }
+
+        #[test]
+        fn noise_never_panics(lines in prop::collection::vec("[vflpgo#\\\\][ 0-9/.e-]{0,20}", 0..20), split: bool) {
+            let _ = parse(lines.join("\n").as_bytes(), "stem", split);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Vertices, faces and triangle strips out of a PLY file.
+
+use glam::DVec3;
+
+use super::header::{Element, Header, Property};
+use super::payload::Payload;
+use crate::fault::{Fault, Result};
+use crate::polygon::triangulate;
+use crate::soup::Soup;
+
+/// The names that the list of a face's corners goes by.
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+/// Reads the payload; faces of fewer than three corners are passed over with a warning.
+pub(super) fn read(header: &Header, mut payload: Payload) -> Result<(Soup, Vec<String>)> {
+    let mut faces = Lists::default();
+    let mut strips = Lists::default();
+    let mut soup = Soup::default();
+    for element in &header.elements {
+        match element.name.as_str() {
+            "vertex" => soup.vertices = vertices(element, &mut payload)?,
+            "face" => faces.read(element, &mut payload)?,
+            "tristrips" => strips.read(element, &mut payload)?,
+            _ => skip(element, &mut payload)?,
+        }
+    }
+    let mut short = 0;
+    for (number, face) in faces.iter() {
+        let corners = corners("face", number, face, soup.vertices.len())?;
+        short += usize::from(corners.len() < 3);
+        triangulate(&corners, &soup.vertices, &mut soup.triangles);
+    }
+    for (number, list) in strips.iter() {
+        for strip in list.split(|&index| index == -1.0) {
+            strip_triangles(&corners("tristrips", number, strip, soup.vertices.len())?, &mut soup.triangles);
+        }
+    }
+    Ok((soup, warnings(short)))
+}
+
+fn warnings(short: usize) -> Vec<String> {
+    match short {
+        0 => Vec::new(),
+        1 => vec!["1 face with fewer than 3 corners is passed over".to_owned()],
+        n => vec![format!("{n} faces with fewer than 3 corners are passed over")],
+    }
+}
+
+/// Every second triangle of a strip is turned round, so that all face the same way.
+fn strip_triangles(strip: &[u32], triangles: &mut Vec<[u32; 3]>) {
+    for (i, corners) in strip.windows(3).enumerate() {
+        let [a, b, c] = [corners[0], corners[1], corners[2]];
+        triangles.push(if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
+    }
+}
+
+fn vertices(element: &Element, payload: &mut Payload) -> Result<Vec<DVec3>> {
+    let mut axes = [0; 3];
+    for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
+        let place = element.properties.iter().position(|p| p.name == name && p.length.is_none());
+        *axis = place.ok_or_else(|| Fault::from(format!("`vertex` has no scalar property `{name}`")))?;
+    }
+    let mut vertices = Vec::new();
+    for number in 0..element.count {
+        let mut vertex = DVec3::ZERO;
+        for (place, property) in element.properties.iter().enumerate() {
+            let value = read_property(element, number, property, payload, |_| {})?;
+            axes.iter().enumerate().filter(|&(_, &axis)| axis == place).for_each(|(i, _)| vertex[i] = value);
+        }
+        if !vertex.is_finite() {
+            return Err(format!("`vertex` {number} is {vertex}; expected finite numbers").into());
+        }
+        vertices.push(vertex);
+    }
+    Ok(vertices)
+}
+
+fn skip(element: &Element, payload: &mut Payload) -> Result<()> {
+    for number in 0..element.count {
+        for property in &element.properties {
+            read_property(element, number, property, payload, |_| {})?;
+        }
+    }
+    Ok(())
+}
+
+/// Reads a property: gives its value, or its length if it is a list, whose values go to `each`.
+fn read_property(
+    element: &Element,
+    number: u64,
+    property: &Property,
+    payload: &mut Payload,
+    mut each: impl FnMut(f64),
+) -> Result<f64> {
+    let ends =
+        |expected: String| format!("the file ends in `{}` {number}: expected {expected}", element.name);
+    let name = &property.name;
+    let first = payload.next(property.length.unwrap_or(property.scalar))?;
+    let Some(first) = first else { return Err(ends(format!("`{name}`")).into()) };
+    if property.length.is_none() {
+        return Ok(first);
+    }
+    if !(first >= 0.0 && first.fract() == 0.0) {
+        let message = format!("`{}` {number} has a list `{name}` of length {first}", element.name);
+        return Err(message.into());
+    }
+    if first > payload.left(property.scalar) as f64 {
+        return Err(ends(format!("{first} numbers of `{name}`")).into());
+    }
+    for _ in 0..first as u64 {
+        match payload.next(property.scalar)? {
+            Some(value) => each(value),
+            None => return Err(ends(format!("{first} numbers of `{name}`")).into()),
+        }
+    }
+    Ok(first)
+}
+
+/// The lists of corners of all elements of a kind, one after the other.
+#[derive(Default)]
+struct Lists {
+    values: Vec<f64>,
+    ends: Vec<usize>,
+}
+
+impl Lists {
+    fn read(&mut self, element: &Element, payload: &mut Payload) -> Result<()> {
+        let is_corners = |p: &Property| p.length.is_some() && CORNERS.contains(&p.name.as_str());
+        for number in 0..element.count {
+            for property in &element.properties {
+                let keep = is_corners(property);
+                let each = |value| {
+                    if keep {
+                        self.values.push(value)
+                    }
+                };
+                read_property(element, number, property, payload, each)?;
+            }
+            self.ends.push(self.values.len());
+        }
+        Ok(())
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        let starts = std::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, &end)| &self.values[start..end]).enumerate()
+    }
+}
+
+/// The vertices that a list names.
+fn corners(element: &str, number: usize, list: &[f64], vertices: usize) -> Result<Vec<u32>> {
+    let corner = |&index: &f64| {
+        let named = index.fract() == 0.0 && (0.0..vertices as f64).contains(&index);
+        let unknown =
+            || format!("`{element}` {number} names vertex {index}, but there are {vertices}").into();
+        if named { Ok(index as u32) } else { Err(unknown()) }
+    };
+    list.iter().map(corner).collect()
+}

@@ -1,0 +1,67 @@
+//! What the readers of text formats share: lines with their numbers, and numbers.
+
+use glam::DVec3;
+
+use crate::fault::{Fault, Result};
+
+/// The lines of a text with their numbers, from 1; a line ends with LF, CR or both.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    // A CR before a LF ends the line, and the LF then ends an empty one, which must not count.
+    let mut number = 0;
+    let mut rest = Some(text);
+    std::iter::from_fn(move || {
+        let text = rest?;
+        number += 1;
+        let end = text.find(['\n', '\r']);
+        rest = end.map(|end| text[end..].strip_prefix("\r\n").unwrap_or(&text[end + 1..]));
+        Some((number, &text[..end.unwrap_or(text.len())]))
+    })
+}
+
+/// Three finite numbers: a vertex.
+pub(crate) fn vertex<'a>(tokens: &mut impl Iterator<Item = &'a str>, line: usize) -> Result<DVec3> {
+    let mut next = |name| number(tokens.next(), line, name);
+    Ok(DVec3::new(next("x")?, next("y")?, next("z")?))
+}
+
+fn number(token: Option<&str>, line: usize, name: &str) -> Result<f64> {
+    let expected = format!("expected a finite number for the vertex's {name}");
+    let Some(token) = token else {
+        return Err(Fault::at(line, format!("{expected}, but the line ends")));
+    };
+    match token.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(Fault::at(line, format!("{expected}, but there is `{}`", quoted(token)))),
+    }
+}
+
+/// A word of the file, cut where it is too long for a message.
+pub(crate) fn quoted(token: &str) -> String {
+    const CHARS_MAX: usize = 40;
+    match token.char_indices().nth(CHARS_MAX) {
+        Some((end, _)) => format!("{}...", &token[..end]),
+        None => token.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_end_three_ways() {
+        let found: Vec<_> = lines("a\nb\r\nc\rd\n\ne").collect();
+        assert_eq!(found, [(1, "a"), (2, "b"), (3, "c"), (4, "d"), (5, ""), (6, "e")]);
+    }
+
+    #[test]
+    fn a_vertex_is_finite() {
+        let read = |text: &str| vertex(&mut text.split_whitespace(), 7);
+        assert_eq!(read("1 -2e1 .5 9").unwrap(), DVec3::new(1.0, -20.0, 0.5));
+        for (text, end) in [("1 2", "the line ends"), ("1 nan 2", "`nan`"), ("1e999 0 0", "`1e999`")] {
+            let fault = read(text).unwrap_err();
+            assert_eq!(fault.line(), Some(7));
+            assert!(fault.message().ends_with(end), "{fault:?}");
+        }
+    }
+}
