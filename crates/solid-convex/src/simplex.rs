@@ -109,25 +109,29 @@ impl Simplex {
             return self.vertex(j);
         }
         let t = from_p / pq.length_squared();
-        // From the nearer end, whose rounding error is the smaller.
-        let v = if p.length_squared() <= q.length_squared() { p + pq * t } else { q - pq * (1.0 - t) };
+        let v = perpendicular(if p.length_squared() <= q.length_squared() { p } else { q }, pq);
         Feature { v, indices: [i, j, 0], weights: [1.0 - t, t, 0.0], len: 2 }
     }
 
     fn face(&self, [i, j, k]: [usize; 3]) -> Feature {
         let (p, q, r) = (self.w(i), self.w(j), self.w(k));
-        let n = (q - p).cross(r - p);
-        // Signed areas of the triangles that the projected origin makes with the edges.
-        let (at_p, at_q, at_r) = (n.dot(q.cross(r)), n.dot(r.cross(p)), n.dot(p.cross(q)));
-        let area = at_p + at_q + at_r;
+        let n = normal([q - p, r - q, p - r]);
+        let area = n.length_squared();
+        // Signed areas of the triangles that the projected origin makes with the edges, twice the face's and scaled by it.
+        // With an edge as one factor the error is relative to the edge, not to the distance from the origin.
+        let at_p = n.dot((r - q).cross(-q));
+        let at_q = n.dot((p - r).cross(-r));
+        let at_r = n.dot((q - p).cross(-p));
         if at_p > 0.0 && at_q > 0.0 && at_r > 0.0 && area > 0.0 {
-            let nearest =
-                [p, q, r].into_iter().min_by(|x, y| x.length_squared().total_cmp(&y.length_squared()));
-            let v = n * (n.dot(nearest.unwrap_or(p)) / n.length_squared());
+            let nearest = [q, r]
+                .into_iter()
+                .fold(p, |x, y| if y.length_squared() < x.length_squared() { y } else { x });
+            let v = n * (n.dot(nearest) / area);
+            let total = at_p + at_q + at_r;
             return Feature {
                 v,
                 indices: [i, j, k],
-                weights: [at_p / area, at_q / area, at_r / area],
+                weights: [at_p / total, at_q / total, at_r / total],
                 len: 3,
             };
         }
@@ -165,6 +169,31 @@ impl Simplex {
         // Of the four faces the nearest is right whichever side the origin is on.
         let faces = [[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 1, 2]];
         closest(faces.into_iter().map(|face| self.face(face))).unwrap_or_else(|| self.vertex(3))
+    }
+}
+
+/// The point closest to the origin on the line through `p` along `edge`. `p` should be the nearer end of the edge, whose
+/// rounding error is the smaller.
+///
+/// Projected twice: where the line passes the origin closely, once leaves a part along the edge that is small to the edge
+/// but large to the result, and the result would not be the separating axis that it should.
+pub(crate) fn perpendicular(p: DVec3, edge: DVec3) -> DVec3 {
+    let along = |p: DVec3| edge * (p.dot(edge) / edge.length_squared());
+    let v = p - along(p);
+    v - along(v)
+}
+
+/// The normal of a triangle, from the edges that lead around it.
+///
+/// From the two shortest: in a sliver the two long edges are nearly parallel, and their product is tilted along them.
+pub(crate) fn normal([pq, qr, rp]: [DVec3; 3]) -> DVec3 {
+    let [a, b, c] = [pq, qr, rp].map(|edge| edge.length_squared());
+    if a >= b && a >= c {
+        qr.cross(rp)
+    } else if b >= c {
+        rp.cross(pq)
+    } else {
+        pq.cross(qr)
     }
 }
 

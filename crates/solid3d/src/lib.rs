@@ -4,6 +4,7 @@
 pub mod bounds;
 pub mod broad;
 mod error;
+pub mod hull;
 mod pair;
 mod placement;
 pub mod query;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
-use crate::simplex::{Reduced, Simplex};
+use crate::simplex::{Reduced, Simplex, normal, perpendicular};
 
 /// When a descent may stop.
 #[derive(Clone, Copy, Debug)]
@@ -54,18 +54,20 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    // v: the point of conv(W) closest to the origin; w: a support point of A - B against v; W: `simplex`.
+    // v: the point of conv(W) closest to the origin; w: a support point of A - B against v; W: `simplex`;
+    // mu: the greatest lower bound of the distance so far.
     let mut simplex = Simplex::new();
     let mut v = difference.initial_direction();
+    let mut mu = 0.0;
     let mut refinements = 0;
     for _ in 0..ITERATIONS_MAX {
         let p = difference.support_against(v);
-        if goal.reached(v, &p, !simplex.points().is_empty()) {
+        if goal.reached(v, &p, &mut mu, !simplex.points().is_empty()) {
             return Descent { end: End::Separated, v, simplex: first_or(simplex, p) };
         }
+        let before = (!simplex.points().is_empty()).then(|| (simplex.clone(), v));
         let mut stalled = simplex.contains(&p);
         if !stalled {
-            let before = if simplex.points().is_empty() { f64::INFINITY } else { v.length_squared() };
             simplex.push(p);
             match simplex.reduce() {
                 Reduced::ContainsOrigin => return Descent { end: End::Inside, v: DVec3::ZERO, simplex },
@@ -74,7 +76,9 @@ where
             if v.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
                 return Descent { end: End::Undecided, v, simplex };
             }
-            stalled = v.length_squared() > before * (1.0 - PROGRESS_MIN);
+            stalled = before.as_ref().is_some_and(|(_, before)| {
+                v.length_squared() > before.length_squared() * (1.0 - PROGRESS_MIN)
+            });
         }
         if stalled {
             match refined(difference, &simplex) {
@@ -83,21 +87,27 @@ where
             }
             refinements += 1;
         }
+        if let Some(before) = before.filter(|_| v.length() < mu - SUPPORT_ERROR) {
+            // Nothing of A - B is that near: the simplex is too thin a sliver for its closest point to be computed.
+            (simplex, v) = before;
+            break;
+        }
     }
-    let p = difference.support_against(v);
-    let end = if certifies(v, p.w) { End::Separated } else { End::Undecided };
+    let end = if mu > 0.0 { End::Separated } else { End::Undecided };
     Descent { end, v, simplex }
 }
 
 impl Goal {
-    fn reached(self, v: DVec3, p: &SupportPoint, v_in_difference: bool) -> bool {
+    /// Whether the support point `p` against `v` ends the search; keeps the lower bound of the distance.
+    fn reached(self, v: DVec3, p: &SupportPoint, mu: &mut f64, v_in_difference: bool) -> bool {
         match self {
             Goal::Separation => certifies(v, p.w),
-            // |v| - v.w/|v| <= tolerance |v|, the lower bound of this iteration alone: it is what the answer rests on.
             Goal::Distance { tolerance } => {
-                v_in_difference
-                    && certifies(v, p.w)
-                    && v.length_squared() - v.dot(p.w) <= tolerance * v.length_squared()
+                let length = v.length();
+                if certifies(v, p.w) {
+                    *mu = mu.max(v.dot(p.w) / length);
+                }
+                v_in_difference && *mu > 0.0 && length - *mu <= tolerance * length
             }
         }
     }
@@ -127,12 +137,9 @@ where
     let points = simplex.points();
     let nearest = points.iter().min_by(|x, y| x.w.length_squared().total_cmp(&y.w.length_squared()))?;
     let v = match points {
-        [p, q] => {
-            let edge = difference.edge(p, q);
-            nearest.w - edge * (nearest.w.dot(edge) / edge.length_squared())
-        }
+        [p, q] => perpendicular(nearest.w, difference.edge(p, q)),
         [p, q, r] => {
-            let normal = difference.edge(p, q).cross(difference.edge(p, r));
+            let normal = normal([difference.edge(p, q), difference.edge(q, r), difference.edge(r, p)]);
             normal * (nearest.w.dot(normal) / normal.length_squared())
         }
         _ => return None,

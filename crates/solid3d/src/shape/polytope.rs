@@ -5,6 +5,7 @@ use solid_convex::{Points, Support};
 
 use super::validate;
 use crate::error::{Error, Result};
+use crate::hull::Hull;
 
 /// A polytope by its vertices. Invariant: at least one, all of them extreme points of the hull.
 #[derive(Debug)]
@@ -18,7 +19,8 @@ impl Polytope {
     pub fn new(points: &[DVec3]) -> Result<Self> {
         validate::vertex_count("points", points.len())?;
         validate::vertices(points)?;
-        let vertices = points.to_vec();
+        let hull = Hull::of(points).ok_or(Error::NoVertices { argument: "points" })?;
+        let vertices: Vec<DVec3> = hull.vertices().iter().map(|&index| points[index as usize]).collect();
         let hull = Points::new(&vertices).ok_or(Error::NoVertices { argument: "points" })?;
         let (reach, center) = (hull.reach(), hull.center());
         Ok(Polytope { vertices, reach, center })
