@@ -12,7 +12,7 @@ use glam::DVec3;
 /// A torus of a million triangles has depth 7, the worst set of boxes in the tests 11.
 const HEURISTIC_DEPTH_MAX: u32 = 16;
 
-/// No tree is deeper, in nodes: below [`HEURISTIC_DEPTH_MAX`] each level halves the number of
+/// No tree is deeper, in nodes: below depth 16, where the heuristic ends, each level halves the number of
 /// primitives thrice, up to a leaf, and 8^10 > 2^28.
 pub const DEPTH_MAX: u32 = HEURISTIC_DEPTH_MAX + 10;
 

@@ -3,7 +3,7 @@
 //! Thesis, sections 5.2.3 to 5.2.5, with these deviations, each measured (see the commit messages):
 //!
 //! - eight children a node instead of two, so that one box is tested against eight at once;
-//! - boxes of `f32`, rounded outward, in coordinates *of the tree* ([`normal`]): half the memory and twice the lanes,
+//! - boxes of `f32`, rounded outward, in coordinates *of the tree* (`normal`): half the memory and twice the lanes,
 //!   with the same resolution at any size and any distance from the local origin;
 //! - leaves of up to eight primitives, split by the surface-area heuristic instead of the midpoint.
 //!
