@@ -3,7 +3,7 @@
 //! Thesis, sections 5.2.3 to 5.2.5, with these deviations, each measured (see the commit messages):
 //!
 //! - eight children a node instead of two, so that one box is tested against eight at once;
-//! - boxes of `f32`, rounded outward, in coordinates *of the tree* ([`normal`]): half the memory and twice the lanes,
+//! - boxes of `f32`, rounded outward, in coordinates *of the tree* (`normal`): half the memory and twice the lanes,
 //!   with the same resolution at any size and any distance from the local origin;
 //! - leaves of up to eight primitives, split by the surface-area heuristic instead of the midpoint.
 //!
@@ -153,6 +153,7 @@ impl Tree {
     }
 
     /// The child word at a place: the root, or a lane of a node.
+    #[inline(always)]
     fn child_at(&self, place: Place) -> Child {
         match place.split() {
             None => Child::inner(0),
@@ -161,6 +162,7 @@ impl Tree {
     }
 
     /// The stored box at a place.
+    #[inline(always)]
     fn box_at(&self, place: Place) -> PackedBox {
         match place.split() {
             None => self.root,
@@ -181,6 +183,7 @@ impl Place {
         Place((node * 8 + lane) as u32)
     }
 
+    #[inline(always)]
     fn split(self) -> Option<(usize, usize)> {
         (self != Place::ROOT).then_some((self.0 as usize / 8, self.0 as usize % 8))
     }

@@ -56,18 +56,18 @@ pub fn nearest_pairs(
                 counters.leaf_visits += 1;
                 visit(leaf_a, leaf_b, best);
             }
-            Step::OpenA(node, box_b) => {
+            Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let probe = duel.b_to_a.probe(&box_b);
+                let probe = duel.b_to_a.probe(&b.box_at(in_b));
                 let lanes = &a.nodes[node];
                 let squared = distances_squared(lanes, &duel.b_to_a, &probe, &metric.a, &metric.b);
                 each_lane(&lanes.child, &squared, &metric, |least, lane| {
                     push_unless_far((least, (Place::lane(node, lane), in_b)), *best, stack, from);
                 });
             }
-            Step::OpenB(node, box_a) => {
+            Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let probe = duel.a_to_b.probe(&box_a);
+                let probe = duel.a_to_b.probe(&a.box_at(in_a));
                 let lanes = &b.nodes[node];
                 let squared = distances_squared(lanes, &duel.a_to_b, &probe, &metric.b, &metric.a);
                 each_lane(&lanes.child, &squared, &metric, |least, lane| {
