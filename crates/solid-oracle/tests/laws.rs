@@ -137,8 +137,8 @@ fn spheres_agree_with_the_closed_form() {
         let (p, q, r, s) = (
             DVec3::new(few(12), few(12), few(12)),
             DVec3::new(few(12), few(12), few(12)),
-            few(12).abs(),
-            few(12).abs(),
+            few(16).abs(),
+            few(16).abs(),
         );
         let (a, b) = (Convex::Sphere { radius: r }, Convex::Sphere { radius: s });
         let v = verdict(&a, &DAffine3::from_translation(p), &b, &DAffine3::from_translation(q));
@@ -280,4 +280,27 @@ fn singular_placements_are_judged() {
     let point = flattened(DVec3::ZERO, DVec3::new(0.0, 1.0, 0.0));
     assert_eq!(judge(&disc, &point), Verdict::Intersecting { depth: 0.0 });
     assert_eq!(judge(&point, &point), Verdict::Intersecting { depth: 0.0 });
+}
+
+/// Touches of round shapes at a known point, opened and closed by far less than an ulp of the coordinates.
+#[test]
+fn gaps_far_below_an_ulp_are_decided() {
+    let ball = |radius: f64| Convex::Sphere { radius };
+    let cases = [
+        (Convex::Capsule { radius: 2.5, half_height: 1.0 }, ball(2.5), DVec3::new(3.0, 5.0, 0.0)),
+        (Convex::Cylinder { radius: 3.0, half_height: 1.0 }, ball(5.0), DVec3::new(6.0, 5.0, 0.0)),
+        (Convex::Cone { radius: 3.0, half_height: 1.0 }, ball(5.0), DVec3::new(6.0, -5.0, 0.0)),
+        (Convex::Cone { radius: 1.0, half_height: 1.0 }, ball(5.0), DVec3::new(3.0, 5.0, 0.0)),
+    ];
+    for (shape, ball, centre) in &cases {
+        for exponent in [30, 50, 60, 66, 73, 80] {
+            for sign in [1.0, -1.0] {
+                let gap = sign * 2f64.powi(-exponent);
+                let away = DAffine3::from_translation(-gap * DVec3::new(3.0, 4.0 * centre.y.signum(), 0.0));
+                let placement = DAffine3::from_translation(*centre);
+                let v = verdict(shape, &away, ball, &placement);
+                assert_eq!(hits(v), Some(gap < 0.0), "{gap:e} {shape:?} {v:?}");
+            }
+        }
+    }
 }
