@@ -31,7 +31,7 @@ pub(crate) fn decide(pair: &PlacedPair, limits: Limits) -> Decision {
         if encloses && shows_common_point(pair, &simplex) {
             return Decision::Common(simplex.vertices);
         }
-        let gap = pair.gap_along(&axis.to_exact().normalised());
+        let gap = pair.gap_along(&axis.to_exact());
         gap_best = gap_best.max(gap);
         distance_max = distance_max.min(distance_up(pair, &simplex));
         if gap > 0.0 {

@@ -1,5 +1,7 @@
 //! Laws of the verdict over the generated regimes.
 
+#![allow(clippy::print_stdout, reason = "tests print their seeds and their counts, from helpers too")]
+
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
 use solid_oracle::{Verdict, verdict};
 
