@@ -11,7 +11,8 @@ use crate::shape::Convex;
 pub enum Verdict {
     /// Proven apart.
     Separated {
-        /// A rigorous lower bound of the distance, positive; usually within 1e-9 of it.
+        /// A rigorous lower bound of the distance, positive; within about 1e-9 of it unless the gap is below 1e-11 of
+        /// the size.
         gap: f64,
     },
     /// Proven to share a point, be it a single one.
