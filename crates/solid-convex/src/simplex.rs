@@ -114,6 +114,7 @@ impl Simplex {
         Feature { v, indices: [i, j, 0], weights: [1.0 - t, t, 0.0], len: 2 }
     }
 
+    /// The closest point of a face whose last point is the newest.
     fn face(&self, [i, j, k]: [usize; 3]) -> Feature {
         let (p, q, r) = (self.w(i), self.w(j), self.w(k));
         let weights = weights([p, q, r], 1.0, DVec3::ZERO);
@@ -127,11 +128,8 @@ impl Simplex {
                 len: 3,
             };
         }
-        // Not a number, of a degenerate triangle, is as good as outside.
-        let outside = weights.into_iter().zip([[j, k], [k, i], [i, j]]);
-        let edges =
-            outside.filter(|(weight, _)| weight.is_nan() || *weight <= 0.0).map(|(_, edge)| self.edge(edge));
-        closest(edges).unwrap_or_else(|| self.vertex(i))
+        // The newest point is part of the result (Theorem 4.8), whatever the weights of a sliver say.
+        closest([[j, k], [k, i]].into_iter().map(|edge| self.edge(edge))).unwrap_or_else(|| self.vertex(k))
     }
 
     /// Whether the tetrahedron contains the origin: exact signs.

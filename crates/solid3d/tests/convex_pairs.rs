@@ -1,5 +1,4 @@
 //! Pairs of convex shapes of all kinds, judged by the certificates of the oracle: no wrong answer where the oracle is
-#![allow(unsafe_code)]
 //! certain beyond the stated error.
 
 use std::collections::BTreeSet;
@@ -70,15 +69,6 @@ fn judge(pair: &Pair, a: &Shape, b: &Shape, context: &str) -> Option<bool> {
         None => {
             let point = query::common_point(a, pa, b, pb).unwrap().unwrap();
             let contained = |shape, at: &DAffine3| contains_within(shape, at, point, error + rounding(point));
-            let p1 = Convex::Hull { points: vec![point] };
-            if !(contained(reference_a, pa) && contained(reference_b, pb)) {
-                println!(
-                    "OFF {:?} {:?} error {error:e}, {:?}",
-                    distance_bounds(reference_a, pa, &p1, &DAffine3::IDENTITY),
-                    distance_bounds(reference_b, pb, &p1, &DAffine3::IDENTITY),
-                    verdict(reference_a, pa, reference_b, pb)
-                );
-            }
             assert!(
                 contained(reference_a, pa) && contained(reference_b, pb),
                 "{context}: {point} is not common"
@@ -104,9 +94,6 @@ fn rounding(point: DVec3) -> f64 {
 }
 
 fn judge_distance(pair: &Pair, a: &Shape, b: &Shape, context: &str) {
-    if std::env::var("DBGC").is_ok_and(|c| context.contains(&c)) {
-        unsafe { std::env::set_var("DBG", "1") }
-    }
     let closest = query::distance(a, &pair.pa, b, &pair.pb).unwrap();
     let (lower, upper) = distance_bounds(&pair.a, &pair.pa, &pair.b, &pair.pb);
     let error = TOUCHING_ERROR * (size_of(pair) + upper);
