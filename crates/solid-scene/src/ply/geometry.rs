@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::header::{Element, Header, Property};
 use super::payload::Payload;
 use crate::fault::{Fault, Result};
-use crate::polygon::triangulate;
+use crate::polygon::{Cut, folded_warning, short_warning, triangulate};
 use crate::soup::Soup;
 
 /// The names that the list of a face's corners goes by.
@@ -24,26 +24,20 @@ pub(super) fn read(header: &Header, mut payload: Payload) -> Result<(Soup, Vec<S
             _ => skip(element, &mut payload)?,
         }
     }
-    let mut short = 0;
+    let (mut short, mut folded) = (0, 0);
     for (number, face) in faces.iter() {
         let corners = corners("face", number, face, soup.vertices.len())?;
         short += usize::from(corners.len() < 3);
-        triangulate(&corners, &soup.vertices, &mut soup.triangles);
+        let cut = triangulate(&corners, &soup.vertices, &mut soup.triangles);
+        folded += usize::from(cut == Cut::Folded);
     }
     for (number, list) in strips.iter() {
         for strip in list.split(|&index| index == -1.0) {
             strip_triangles(&corners("tristrips", number, strip, soup.vertices.len())?, &mut soup.triangles);
         }
     }
-    Ok((soup, warnings(short)))
-}
-
-fn warnings(short: usize) -> Vec<String> {
-    match short {
-        0 => Vec::new(),
-        1 => vec!["1 face with fewer than 3 corners is passed over".to_owned()],
-        n => vec![format!("{n} faces with fewer than 3 corners are passed over")],
-    }
+    let warnings = short_warning(short).into_iter().chain(folded_warning(folded)).collect();
+    Ok((soup, warnings))
 }
 
 /// Every second triangle of a strip is turned round, so that all face the same way.
