@@ -4,7 +4,7 @@ use earcut::Earcut;
 use glam::DVec3;
 
 /// The most corners of a polygon that is cut by ears, which takes quadratic time at worst: 20 ms for corners at random.
-const EARCUT_CORNERS_MAX: usize = 2_000;
+pub(crate) const EARCUT_CORNERS_MAX: usize = 2_000;
 
 /// How far a triangle of a fan may face the wrong way and still count as rounding, relative to the polygon's area.
 const FOLD_TOLERANCE: f64 = 1e-9;
