@@ -7,7 +7,6 @@ use vrml97::fields::{FieldValue, access};
 use vrml97::scene::{FieldLoc, FieldRef, NodeKind, ProtoRef, ROOT, Scene};
 
 use super::scan::{Mark, scan};
-use super::warnings::Warnings;
 use crate::error::SceneError;
 
 /// A node as written in a file, by its place in the file.
@@ -67,18 +66,17 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// Parses a file's text.
-    pub fn parse(file: &Path, text: &str, warnings: &mut Warnings) -> Result<Document, SceneError> {
+    /// Parses a file's text; also what the parser passed over.
+    pub fn parse(file: &Path, text: &str) -> Result<(Document, Vec<String>), SceneError> {
         let scanned = scan(file, text)?;
         let parsed = vrml97::Parser::new(&scanned.text, "").parse();
         let mut scene =
             parsed.map_err(|error| SceneError::new(file, Some(error.line), in_our_words(&error.message)))?;
-        for warning in std::mem::take(&mut scene.warnings) {
-            warnings.add(warning_in_our_words(&warning));
-        }
+        let warnings = std::mem::take(&mut scene.warnings);
+        let warnings = warnings.iter().map(|warning| warning_in_our_words(warning)).collect();
         let marks = if scanned.nodes.len() == scene.nodes.len() { scanned.nodes } else { Vec::new() };
         let connected = connections(&scene);
-        Ok(Document { file: file.to_owned(), scene, marks, connected })
+        Ok((Document { file: file.to_owned(), scene, marks, connected }, warnings))
     }
 
     /// The file.
@@ -198,11 +196,21 @@ fn connections(scene: &Scene) -> HashMap<(Proto, String), Vec<(Syntax, String)>>
     connected
 }
 
-/// The parser's errors say what it could not do; this says what it expected.
+/// The parser's errors say what it could not do; this says what was expected.
 fn in_our_words(message: &str) -> String {
+    let message = message.trim_end_matches('.');
+    if let Some(field) = message.strip_prefix("Couldn't read value for field ") {
+        return format!("expected a value for the field {field}");
+    }
+    if let Some((field, class)) =
+        message.strip_prefix("Unknown field ").and_then(|rest| rest.split_once(" in class "))
+    {
+        return format!("{field} is no field of {class}; expected one of its fields or '}}'");
+    }
     match message {
-        "Unknown statement." => "expected a node, DEF, USE, PROTO or ROUTE".into(),
-        _ => message.trim_end_matches('.').to_owned(),
+        "Unknown statement" => "expected a node, DEF, USE, PROTO or ROUTE".into(),
+        "Expected ']'" => "expected one more value or ']'".into(),
+        _ => message.replacen("Expected", "expected", 1),
     }
 }
 
@@ -217,7 +225,8 @@ mod tests {
     use super::*;
 
     fn parse(body: &str) -> Result<Document, SceneError> {
-        Document::parse(Path::new("a.wrl"), &format!("#VRML V2.0 utf8\n{body}"), &mut Warnings::default())
+        let parsed = Document::parse(Path::new("a.wrl"), &format!("#VRML V2.0 utf8\n{body}"));
+        parsed.map(|(document, _)| document)
     }
 
     #[test]
@@ -225,8 +234,13 @@ mod tests {
         let message = |body| parse(body).unwrap_err().to_string();
         assert_eq!(
             message("Shape {\n geometry Box { size 1 1 }\n}"),
-            "a.wrl:3: Couldn't read value for field 'size'"
+            "a.wrl:3: expected a value for the field 'size'"
         );
+        assert_eq!(
+            message("Box {\n Sphere {} }"),
+            "a.wrl:3: 'Sphere' is no field of 'Box'; expected one of its fields or '}'"
+        );
+        assert_eq!(message("Coordinate { point [ 1 2 x ] }"), "a.wrl:2: expected one more value or ']'");
         assert_eq!(message("\n7"), "a.wrl:3: expected a node, DEF, USE, PROTO or ROUTE");
     }
 

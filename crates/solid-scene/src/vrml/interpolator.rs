@@ -1,5 +1,7 @@
 //! The interpolators (ISO/IEC 14772-1, 4.6.8).
 
+use std::sync::Arc;
+
 use glam::{DQuat, DVec3};
 
 use super::graph::{Graph, Node};
@@ -11,7 +13,8 @@ pub(super) enum Event {
     Number(f64),
     Vector(DVec3),
     Rotation(DQuat),
-    Points(Vec<DVec3>),
+    /// Shared, so that an event costs the same however many fields it reaches.
+    Points(Arc<[DVec3]>),
 }
 
 /// An interpolator: values at keys. Invariant: the keys never decrease, there is at least one, and a value for each.
@@ -195,6 +198,6 @@ mod tests {
         let values = Values::Points { count: 2, points };
         let interpolator = Interpolator { keys: vec![0.0, 1.0], values };
         let expected = vec![0.5 * DVec3::Y, DVec3::new(1.0, 0.5, 0.5)];
-        assert_eq!(interpolator.at(0.5), Event::Points(expected));
+        assert_eq!(interpolator.at(0.5), Event::Points(expected.into()));
     }
 }

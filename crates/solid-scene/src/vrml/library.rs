@@ -29,7 +29,15 @@ impl Library {
         if let Some(document) = self.documents.get(&key) {
             return Ok(document.clone());
         }
-        let document = Rc::new(Document::parse(file, &text::read(file)?, warnings)?);
+        let (document, passed_over) = Document::parse(file, &text::read(file)?)?;
+        for warning in passed_over {
+            // Whoever shows a warning shows the scene's file with it, which is the first.
+            match self.documents.is_empty() {
+                true => warnings.add(warning),
+                false => warnings.add(format!("{}: {warning}", file.display())),
+            }
+        }
+        let document = Rc::new(document);
         self.documents.insert(key, document.clone());
         Ok(document)
     }

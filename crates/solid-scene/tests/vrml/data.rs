@@ -9,11 +9,11 @@ use solid3d::Aabb;
 use crate::bounds;
 use crate::files::{load_file, pose};
 
-/// The files that are refused, and a part of the reason: numbers instead of a node, children without brackets, fragments
-/// of files, a DEF without a type.
+/// The files that are refused, and a part of the reason. They are not VRML97: numbers in place of a Color node, a node in
+/// place of a field, fragments of files without a header, a DEF without a type. No other program's bounds are known.
 const REFUSED: [(&str, &str); 13] = [
-    ("vrml/VrmlParser/PointSet.wrl", "Couldn't read value for field 'color'"),
-    ("vrml/VrmlParser/house.wrl", "Unknown field 'DEF' in class 'Transform'"),
+    ("vrml/VrmlParser/PointSet.wrl", "expected a value for the field 'color'"),
+    ("vrml/VrmlParser/house.wrl", "'DEF' is no field of 'Transform'"),
     ("vrml/choreonoid/PA10/BASE.wrl", "no VRML97 header"),
     ("vrml/choreonoid/PA10/HAND_L.wrl", "no VRML97 header"),
     ("vrml/choreonoid/PA10/HAND_R.wrl", "no VRML97 header"),
@@ -24,7 +24,7 @@ const REFUSED: [(&str, &str); 13] = [
     ("vrml/choreonoid/PA10/J5.wrl", "no VRML97 header"),
     ("vrml/choreonoid/PA10/J6.wrl", "no VRML97 header"),
     ("vrml/choreonoid/PA10/J7.wrl", "no VRML97 header"),
-    ("vrml/choreonoid/Tank/tank.wrl", "Expected ']'"),
+    ("vrml/choreonoid/Tank/tank.wrl", "expected one more value or ']'"),
 ];
 
 /// The folder; says so when there is none.

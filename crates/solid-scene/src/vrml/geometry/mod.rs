@@ -110,7 +110,7 @@ impl<'a> Builder<'a> {
         }
         let deformation = Deformation { signal, rest: Arc::from(points.as_slice()) };
         let points = match self.signals.start(signal) {
-            Some(Event::Points(points)) => points.clone(),
+            Some(Event::Points(points)) => points.to_vec(),
             _ => points,
         };
         Ok(Coordinates { points, deformation: Some(deformation) })
