@@ -5,4 +5,3 @@ mod file;
 mod row;
 
 pub use file::Placements;
-pub use row::Row;
