@@ -166,8 +166,8 @@ impl Simplex {
 
     /// The closest point of the tetrahedron's boundary, the origin being outside or the tetrahedron flat.
     fn tetrahedron_boundary(&self) -> Feature {
-        // Of the four faces the nearest is right whichever side the origin is on.
-        let faces = [[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 1, 2]];
+        // Only faces with the newest point, which lies beyond the face of the others (Theorem 4.8).
+        let faces = [[0, 1, 3], [1, 2, 3], [2, 0, 3]];
         closest(faces.into_iter().map(|face| self.face(face))).unwrap_or_else(|| self.vertex(3))
     }
 }

@@ -14,7 +14,7 @@ pub(crate) struct Effort {
 }
 
 impl Effort {
-    pub(crate) const QUICK: Self = Self { relative_width: 0.05, expansions_max: 24 };
+    pub(crate) const QUICK: Self = Self { relative_width: 0.05, expansions_max: 60 };
     const THOROUGH: Self = Self { relative_width: 1e-7, expansions_max: 400 };
 }
 
@@ -42,9 +42,12 @@ pub fn penetration_bounds(a: &Convex, pa: &DAffine3, b: &Convex, pb: &DAffine3) 
     };
     let ball = inscribed(&pair, &vertices, Effort::THOROUGH);
     // A must move along the outward normal of B-A, the negated one of A-B.
-    let upper = -pair.gap_along(&(-ball.normal).to_exact().normalised());
+    let upper = -pair.gap_along(&(-ball.normal).to_exact());
     Some((ball.radius.min(upper), upper))
 }
+
+/// What double-double coordinates and their products cannot tell from zero, relative to their size.
+const NOISE_RELATIVE: f64 = 1e-28;
 
 /// Grows a polytope inside A-B from `vertices`, whose hull holds the origin, towards the face nearest to it.
 pub(crate) fn inscribed(pair: &PlacedPair, vertices: &[Vertex], effort: Effort) -> Inscribed {
@@ -118,7 +121,7 @@ impl Polytope {
         let height = normal.dot(d - a);
         // Flat up to the digits kept: the volume is lost in the rounding of its terms.
         let edges = (b - a).length_squared().sqrt() * (c - a).length_squared().sqrt();
-        let noise = edges.to_f64() * (d - a).length_squared().sqrt().to_f64() * 1e-28;
+        let noise = edges.to_f64() * (d - a).length_squared().sqrt().to_f64() * NOISE_RELATIVE;
         if height.to_f64().abs() <= noise {
             return Err(if normal.is_zero() { perpendicular(b - a) } else { normal });
         }
@@ -149,23 +152,48 @@ impl Polytope {
             .expect("a polytope has faces")
     }
 
-    /// Replaces the faces that see `p` by a cone to it; false when none does.
+    /// Replaces the faces that see `p` by a cone to it.
+    ///
+    /// False, and nothing changes, when no face sees it, or when rounding makes the faces that do something else
+    /// than one patch: growing on such a patch would multiply faces without end.
     fn insert(&mut self, p: Vec3) -> bool {
-        let noise = 1e-28 * p.to_f64().length();
+        let noise = NOISE_RELATIVE * p.to_f64().length();
         let (seeing, rest): (Vec<Face>, Vec<Face>) =
             self.faces.iter().partition(|f| (f.normal.dot(p) - f.offset).to_f64() > noise);
-        if seeing.is_empty() {
+        let horizon = horizon(&seeing);
+        if !is_one_cycle(&horizon) {
             return false;
         }
-        let edges: Vec<(usize, usize)> =
-            seeing.iter().flat_map(|f| [0, 1, 2].map(|i| (f.corners[i], f.corners[(i + 1) % 3]))).collect();
         self.faces = rest;
         self.points.push(p);
-        for &(i, j) in edges.iter().filter(|&&(i, j)| !edges.contains(&(j, i))) {
+        for &(i, j) in &horizon {
             self.add_face([i, j, self.points.len() - 1]);
         }
         true
     }
+}
+
+/// The directed edges of the faces without those that two of them share.
+fn horizon(faces: &[Face]) -> Vec<(usize, usize)> {
+    let edges: Vec<(usize, usize)> =
+        faces.iter().flat_map(|f| [0, 1, 2].map(|i| (f.corners[i], f.corners[(i + 1) % 3]))).collect();
+    edges.iter().copied().filter(|&(i, j)| !edges.contains(&(j, i))).collect()
+}
+
+/// Whether directed edges form one closed walk that visits no vertex twice. No edges do not.
+fn is_one_cycle(edges: &[(usize, usize)]) -> bool {
+    let Some(&(start, mut at)) = edges.first() else { return false };
+    let mut length = 1;
+    while at != start {
+        let mut next = edges.iter().filter(|e| e.0 == at);
+        let (Some(&(_, end)), None) = (next.next(), next.next()) else { return false };
+        at = end;
+        length += 1;
+        if length > edges.len() {
+            return false;
+        }
+    }
+    length == edges.len()
 }
 
 /// A vector at a right angle to `v`, or x when `v` is zero.

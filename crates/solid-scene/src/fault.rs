@@ -17,6 +17,11 @@ impl Fault {
         Fault { line: Some(line), message: message.into() }
     }
 
+    /// The mistake, in a part of the file.
+    pub fn of(self, part: &str) -> Self {
+        Fault { message: format!("{part}: {}", self.message), ..self }
+    }
+
     /// The mistake, in a file.
     pub fn in_file(self, file: &Path) -> SceneError {
         SceneError::new(file, self.line, self.message)

@@ -6,6 +6,7 @@
 mod error;
 mod fault;
 mod file;
+mod gltf;
 mod load;
 mod obj;
 mod part;
@@ -16,6 +17,7 @@ mod scene;
 mod soup;
 mod stl;
 mod text;
+mod vrml;
 mod weld;
 
 pub use error::SceneError;

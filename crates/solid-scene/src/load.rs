@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::error::SceneError;
 use crate::part::Part;
-use crate::{obj, ply, stl};
+use crate::{gltf, obj, ply, stl, vrml};
 
 /// How to load files.
 #[derive(Clone, Debug, Default)]
@@ -12,6 +12,9 @@ use crate::{obj, ply, stl};
 pub struct LoadOptions {
     /// Makes each group of an OBJ file an object, instead of one for the whole file.
     pub split: bool,
+    /// The animation of a glTF file to play, by its name or else by its number, from 0. Without it the first is played,
+    /// with a warning that lists the others. Other formats have one animation at most, and take no notice of this.
+    pub animation: Option<String>,
 }
 
 /// A file format that scenes come in, told by the file's extension.
@@ -51,8 +54,8 @@ pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Part, SceneErro
         return Err(SceneError::new(path, None, message));
     };
     match format {
-        Format::Vrml97 => Err(SceneError::new(path, None, "no reader yet")),
-        Format::Gltf => Err(SceneError::new(path, None, "no reader yet")),
+        Format::Vrml97 => vrml::load(path),
+        Format::Gltf => gltf::load(path, options),
         Format::Obj => obj::load(path, options),
         Format::Stl => stl::load(path),
         Format::Ply => ply::load(path),

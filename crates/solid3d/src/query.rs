@@ -91,13 +91,16 @@ pub fn separating_axis(
 /// The distance of two placed shapes, with their closest points. Meshes and complex shapes by branch and bound over their
 /// trees.
 ///
+/// The error of the distance is 1e-12 of the distance and of the size of the data. On curved surfaces the points may be off
+/// by the square root of that along the surface, since the distance hardly depends on it.
+///
 /// ```
 /// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
 /// let (ball, block) = (Shape::sphere(1.0)?, Shape::cuboid([2.0, 2.0, 2.0])?);
 /// let far = DAffine3::from_translation(DVec3::new(0.0, 5.0, 0.0));
 /// let closest = query::distance(&ball, &DAffine3::IDENTITY, &block, &far)?;
 /// assert!((closest.distance - 3.0).abs() < 1e-12);
-/// assert!((closest.point_on_a - DVec3::Y).length() < 1e-9);
+/// assert!((closest.point_on_a - DVec3::Y).length() < 1e-5);
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<Distance> {

@@ -25,14 +25,22 @@ impl Simplex {
         self.vertices.iter().any(|vertex| vertex.w == w)
     }
 
-    /// Whether four vertices enclose the origin, up to rounding.
-    pub(crate) fn encloses_origin(&self) -> bool {
+    /// Whether four vertices enclose the origin, up to rounding; if so the weights become those of the origin.
+    pub(crate) fn encloses_origin(&mut self) -> bool {
         let [a, b, c, d] = self.vertices.as_slice() else { return false };
         let (a, b, c, d) = (a.w, b.w, c.w, d.w);
         let det = |x: Vec3, y: Vec3, z: Vec3| x.dot(y.cross(z));
         let volume = det(b - a, c - a, d - a);
-        let signs = [det(b, c, d), -det(a, c, d), det(a, b, d), -det(a, b, c)];
-        !volume.is_zero() && signs.iter().all(|s| s.is_zero() || s.is_negative() == volume.is_negative())
+        if volume.is_zero() {
+            return false;
+        }
+        // The weight of a vertex is the volume of the tetrahedron with that vertex replaced by the origin.
+        let weights = [det(b, c, d), -det(a, c, d), det(a, b, d), -det(a, b, c)].map(|part| part / volume);
+        let encloses = !weights.iter().any(|weight| weight.is_negative());
+        if encloses {
+            self.weights = weights.to_vec();
+        }
+        encloses
     }
 
     /// Keeps the least feature that holds the point closest to the origin, and returns that point.

@@ -41,6 +41,11 @@ impl Aabb {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
+    /// How far apart two boxes are along each axis; 0 where their intervals overlap.
+    pub fn gap(&self, other: &Aabb) -> DVec3 {
+        (self.min - other.max).max(other.min - self.max).max(DVec3::ZERO)
+    }
+
     /// Whether `other` lies in this box.
     pub fn contains(&self, other: &Aabb) -> bool {
         self.min.cmple(other.min).all() && other.max.cmple(self.max).all()

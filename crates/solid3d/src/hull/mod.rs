@@ -10,8 +10,8 @@
 //! 3. The result depends on the points and their order alone; there is no random choice.
 //!
 //! Method: quickhull (Barber, Dobkin and Huhdanpaa, *The quickhull algorithm for convex hulls*, 1996) in
-//! [`quickhull`], over distinct points, with exact predicates in place of its facet thickness; then exactly coplanar
-//! triangles are merged into facets, which drops the points that turned out not to be extreme, in [`facets`].
+//! `quickhull`, over distinct points, with exact predicates in place of its facet thickness; then exactly coplanar
+//! triangles are merged into facets, which drops the points that turned out not to be extreme, in `facets`.
 
 mod exact;
 mod facets;

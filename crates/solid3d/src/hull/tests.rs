@@ -384,4 +384,43 @@ fn times() {
             println!("{name} of {n}: {time:.2} ms, {} vertices", hull.vertices().len());
         }
     }
+    for (name, points) in adversaries(16_000) {
+        let start = std::time::Instant::now();
+        let hull = Hull::of(&points).expect("there are points");
+        println!("{name}: {:.2} ms, {} vertices", start.elapsed().as_secs_f64() * 1e3, hull.vertices().len());
+    }
+}
+
+/// Families of `n` points that are hard for some hull algorithms.
+fn adversaries(n: u32) -> Vec<(&'static str, Vec<DVec3>)> {
+    let turn = TAU / f64::from(n);
+    let curve = |point: &dyn Fn(f64) -> DVec3| (0..n).map(|i| point(f64::from(i))).collect::<Vec<_>>();
+    let exponential = |t: f64| DVec3::new(t.cos(), t.sin(), t * t);
+    let mut cone = curve(&|t| DVec3::new((t * turn).cos(), (t * turn).sin(), 0.0));
+    cone.extend([DVec3::Z, -DVec3::Z]);
+    vec![
+        // Every pair of points is joined by an edge of the four-dimensional relative of this curve.
+        ("moment curve", curve(&|t| DVec3::new(t, t * t, t * t * t) / f64::from(n))),
+        (
+            "trigonometric curve",
+            curve(&|t| DVec3::new((t * turn).cos(), (t * turn).sin(), (2.0 * t * turn).cos())),
+        ),
+        // Ever denser: each farthest point cuts off few others. Exact arithmetic has much to do.
+        ("exponential curve", curve(&|t| exponential((-0.01 * t).exp()))),
+        // Two vertices of degree n.
+        ("double cone", cone),
+        (
+            "integer paraboloid",
+            curve(&|t| {
+                DVec3::new(t % 100.0, (t / 100.0).floor(), (t % 100.0).powi(2) + (t / 100.0).floor().powi(2))
+            }),
+        ),
+    ]
+}
+
+#[test]
+fn adversaries_of_hull_algorithms() {
+    for (name, points) in adversaries(700) {
+        assert_eq!(hull_of(&points).vertices().len(), points.len(), "{name}");
+    }
 }

@@ -2,32 +2,32 @@
 
 use std::ops::ControlFlow;
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use solid_convex::{Closest, gjk};
 
-use super::frame::Frame;
-use super::nearest_shim::{PairMetric, nearest_pairs};
+use super::frame::{Frame, Stretch};
+use super::scratch::PlacedPrimitive;
 use super::table::PlacedComplex;
-use super::triangle_triangle::{self, Triangle};
-use super::{Relation, Scratch};
+use super::{Relation, Scratch, triangle_triangle};
+use crate::bounds::Aabb;
 use crate::shape::Complex;
-use crate::tree::pairs;
+use crate::tree::{PairMetric, nearest_pairs, pairs};
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
-    let Scratch { traversal, corners: [corners_a, corners_b], primitive_tests } = scratch;
+    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests } = scratch;
     let Frame { relative, common: [from_a, from_b], .. } = frame(a, b);
     let found = pairs(a.0.tree(), b.0.tree(), &relative, traversal, |leaf_a, leaf_b| {
-        place(a.0, leaf_a, &from_a, corners_a);
-        place(b.0, leaf_b, &from_b, corners_b);
-        for (&i, triangle_a) in leaf_a.iter().zip(&*corners_a) {
-            for (&j, triangle_b) in leaf_b.iter().zip(&*corners_b) {
+        place(a.0, leaf_a, &from_a, in_a);
+        place(b.0, leaf_b, &from_b, in_b);
+        for x in &*in_a {
+            for y in in_b.iter().filter(|y| x.bounds.overlaps(&y.bounds)) {
                 *primitive_tests += 1;
-                let meet = match (triangle_a, triangle_b) {
+                let meet = match (&x.triangle, &y.triangle) {
                     (Some(x), Some(y)) => triangle_triangle::intersect(x, y),
-                    _ => hulls_meet(a, i, b, j),
+                    _ => hulls_meet(a, x.primitive, b, y.primitive),
                 };
                 if meet {
-                    return ControlFlow::Break((i, j));
+                    return ControlFlow::Break((x.primitive, y.primitive));
                 }
             }
         }
@@ -44,15 +44,10 @@ pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch)
     if let Relation::Common(points) = intersection(a, b, scratch) {
         return Closest { distance: 0.0, points };
     }
-    let Frame { relative, stretch: [of_a, of_b], .. } = frame(a, b);
-    let metric = PairMetric {
-        facet_a: of_a.facets,
-        facet_b: of_b.facets,
-        sigma_min_a: of_a.least,
-        sigma_min_b: of_b.least,
-    };
-    let Scratch { traversal, primitive_tests, .. } = scratch;
+    let Frame { relative, common: [from_a, from_b], scale, stretch: [of_a, of_b] } = frame(a, b);
+    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests } = scratch;
     let (mut best, mut answer) = (f64::INFINITY, None);
+    let metric = metric(&of_a, &of_b);
     nearest_pairs(
         a.0.tree(),
         b.0.tree(),
@@ -61,13 +56,17 @@ pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch)
         &mut best,
         traversal,
         |leaf_a, leaf_b, best| {
-            for &i in leaf_a {
-                for &j in leaf_b {
-                    *primitive_tests += 1;
-                    let closest = closest_of(a, i, b, j);
-                    if closest.distance < *best {
-                        *best = closest.distance;
-                        answer = Some(closest);
+            place(a.0, leaf_a, &from_a, in_a);
+            place(b.0, leaf_b, &from_b, in_b);
+            for x in &*in_a {
+                for y in &*in_b {
+                    if x.bounds.gap(&y.bounds).length() < *best * scale {
+                        *primitive_tests += 1;
+                        let closest = closest_of(a, x.primitive, b, y.primitive);
+                        if closest.distance < *best {
+                            *best = closest.distance;
+                            answer = Some(closest);
+                        }
                     }
                 }
             }
@@ -80,15 +79,30 @@ fn frame(a: PlacedComplex, b: PlacedComplex) -> Frame {
     Frame::new(a.1, a.0.reach(), b.1, b.0.reach())
 }
 
-/// The primitives of a leaf in the common frame: those of up to three vertices as triangles, `None` for the others.
-fn place(complex: &Complex, leaf: &[u32], map: &DAffine3, corners: &mut Vec<Option<Triangle>>) {
+fn metric(a: &Stretch, b: &Stretch) -> PairMetric {
+    PairMetric { facet_a: a.facets, facet_b: b.facets, sigma_min_a: a.least, sigma_min_b: b.least }
+}
+
+/// The primitives of a leaf in the common frame.
+fn place(complex: &Complex, leaf: &[u32], map: &DAffine3, placed: &mut Vec<PlacedPrimitive>) {
     let vertex = |index: u32| map.transform_point3(complex.vertices()[index as usize]);
-    corners.clear();
-    corners.extend(leaf.iter().map(|&primitive| match *complex.primitive(primitive) {
-        [i] => Some([vertex(i); 3]),
-        [i, j] => Some([vertex(i), vertex(j), vertex(j)]),
-        [i, j, k] => Some([vertex(i), vertex(j), vertex(k)]),
-        _ => None,
+    let corners = |indices: &[u32]| -> Option<[DVec3; 3]> {
+        match *indices {
+            [i] => Some([vertex(i); 3]),
+            [i, j] => Some([vertex(i), vertex(j), vertex(j)]),
+            [i, j, k] => Some([vertex(i), vertex(j), vertex(k)]),
+            _ => None,
+        }
+    };
+    placed.clear();
+    placed.extend(leaf.iter().map(|&primitive| {
+        let indices = complex.primitive(primitive);
+        let triangle = corners(indices);
+        let bounds = match &triangle {
+            Some(corners) => Aabb::of_points(*corners),
+            None => Aabb::of_points(indices.iter().map(|&index| vertex(index))),
+        };
+        PlacedPrimitive { primitive, bounds, triangle }
     }));
 }
 

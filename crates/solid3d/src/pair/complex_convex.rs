@@ -2,11 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use glam::DVec3;
 use solid_convex::{Closest, gjk};
 
 use super::frame::Frame;
-use super::nearest_shim::Nearest;
 use super::reach::convex_bounds;
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Relation, Scratch};
@@ -40,10 +38,7 @@ pub(super) fn closest(
     scratch: &mut Scratch,
 ) -> Closest {
     let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
-    let bound = |node: &Aabb| {
-        let gap = (node.min - query.max).max(query.min - node.max).max(DVec3::ZERO);
-        frame.stretch[0].at_least(gap)
-    };
+    let bound = |node: &Aabb| frame.stretch[0].at_least(node.gap(&query));
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let (mut best, mut answer) = (f64::INFINITY, None);
     complex.tree().nearest(bound, &mut best, traversal, |leaf, best| {

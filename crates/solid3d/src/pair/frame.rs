@@ -18,6 +18,8 @@ pub(super) struct Frame {
     /// Takes points of either space to one where exact predicates neither overflow nor underflow: the world's axes, the
     /// origin of `A`, and a unit of length that is a power of two near the size of the data.
     pub common: [DAffine3; 2],
+    /// World lengths times this are lengths of the common frame.
+    pub scale: f64,
     /// Bounds on how local distances show in the world, for `A` and `B`.
     pub stretch: [Stretch; 2],
 }
@@ -49,7 +51,7 @@ impl Frame {
             DAffine3 { matrix3: at_a.matrix3 * scale, translation: DVec3::ZERO },
             DAffine3 { matrix3: at_b.matrix3 * scale, translation: -a_to_b * scale },
         ];
-        Frame { relative, common, stretch: [Stretch::new(&inverse_a), Stretch::new(&inverse_b)] }
+        Frame { relative, common, scale, stretch: [Stretch::new(&inverse_a), Stretch::new(&inverse_b)] }
     }
 }
 

@@ -10,7 +10,6 @@ mod complex_complex;
 mod complex_convex;
 mod convex_convex;
 mod frame;
-mod nearest_shim;
 mod reach;
 mod scratch;
 mod table;

@@ -1,7 +1,7 @@
 //! How far a placed shape reaches.
 
 use glam::{DAffine3, DMat3, DVec3};
-use solid_convex::Support;
+use solid_convex::{Support, gjk};
 
 use super::Placed;
 use crate::bounds::{Aabb, abs};
@@ -9,7 +9,7 @@ use crate::shape::Class;
 
 /// How much a world box is grown, relative to the object's extent and position: more than the narrow phase's
 /// [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR), so that objects whose boxes are apart are never touching.
-const BOUNDS_MARGIN: f64 = 1.0 / (1u64 << 42) as f64;
+const BOUNDS_MARGIN: f64 = 4.0 * gjk::TOUCHING_ERROR;
 
 /// A box of the world around a placed shape. For a complex shape, around its tree's root box (thesis, section 6.3.4).
 pub(crate) fn world_bounds(placed: Placed) -> Aabb {

@@ -2,15 +2,27 @@
 
 use super::triangle_triangle::Triangle;
 
+use crate::bounds::Aabb;
 use crate::tree::Traversal;
+
+/// A primitive of a complex shape, in a frame that it shares with others.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedPrimitive {
+    /// Its number.
+    pub primitive: u32,
+    /// Its box.
+    pub bounds: Aabb,
+    /// Its corners, when it has up to three vertices.
+    pub triangle: Option<Triangle>,
+}
 
 /// Working memory: kept from pair to pair, so that nothing is allocated once it has grown. One for each thread.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
     /// For walks over trees.
     pub traversal: Traversal,
-    /// The triangles of two leaves, in a common frame.
-    pub corners: [Vec<Option<Triangle>>; 2],
+    /// The primitives of two leaves, in a common frame.
+    pub leaves: [Vec<PlacedPrimitive>; 2],
     /// Tests of one primitive against another.
     pub primitive_tests: u64,
 }

@@ -11,11 +11,8 @@ use robust::{Coord, Coord3D};
 /// Three corners.
 pub(crate) type Triangle = [DVec3; 3];
 
-/// Whether two triangles share a point.
+/// Whether two triangles share a point. Worth asking when their boxes do.
 pub(crate) fn intersect(x: &Triangle, y: &Triangle) -> bool {
-    if apart_along_axes(x, y) {
-        return false;
-    }
     let (x_flat, y_flat) = (collinear(x), collinear(y));
     let y_sides = x.map(|p| orient3d(&y[0], &y[1], &y[2], &p));
     if !y_flat && same_strict_side(y_sides) {
@@ -39,12 +36,6 @@ pub(crate) fn intersect(x: &Triangle, y: &Triangle) -> bool {
 }
 
 const EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
-
-fn apart_along_axes(x: &Triangle, y: &Triangle) -> bool {
-    let (x_min, x_max) = (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]));
-    let (y_min, y_max) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
-    x_min.cmpgt(y_max).any() || y_min.cmpgt(x_max).any()
-}
 
 fn same_strict_side(sides: [f64; 3]) -> bool {
     sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0)

@@ -3,17 +3,17 @@
 use super::cost::measure;
 use super::node::{Child, LEAF_SIZE, Node, PRIMITIVES_MAX, WIDTH};
 use super::normal::{COORDINATE_MAX, Normal};
-use super::packed::PackedBox;
 use super::split::{Item, Set};
 use super::{Place, Tree};
 use crate::Aabb;
 use glam::DVec3;
 
 /// From this depth on, sets are split evenly: a heuristic that peels off one primitive at a time ends here.
-/// Meshes of a million triangles reach depth 9.
+/// A torus of a million triangles has depth 7, the worst set of boxes in the tests 11.
 const HEURISTIC_DEPTH_MAX: u32 = 16;
 
-/// No tree is deeper, in nodes: below [`HEURISTIC_DEPTH_MAX`] each level leaves at most a seventh, and 7^10 > 2^28.
+/// No tree is deeper, in nodes: below depth 16, where the heuristic ends, each level halves the number of
+/// primitives thrice, up to a leaf, and 8^10 > 2^28.
 pub const DEPTH_MAX: u32 = HEURISTIC_DEPTH_MAX + 10;
 
 /// A node to be made.
@@ -42,6 +42,11 @@ impl Tree {
     /// assert!(tree.node_count() < 600);
     /// ```
     pub fn build(boxes: &[Aabb]) -> Self {
+        Tree::build_with(boxes, HEURISTIC_DEPTH_MAX)
+    }
+
+    /// Builds by the heuristic down to a depth, and evenly below.
+    pub(super) fn build_with(boxes: &[Aabb], heuristic_depth: u32) -> Self {
         assert!(!boxes.is_empty(), "a tree needs at least one primitive");
         assert!(boxes.len() <= PRIMITIVES_MAX, "{} primitives, at most {PRIMITIVES_MAX}", boxes.len());
         let bounds = boxes.iter().fold(Aabb::EMPTY, |sum, b| sum.union(proper(b)));
@@ -49,11 +54,11 @@ impl Tree {
         let item = |(bounds, index): (&Aabb, u32)| Item { bounds: normal.pack(bounds), index };
         let mut items: Vec<Item> = boxes.iter().zip(0..).map(item).collect();
 
-        let nodes = build_nodes(&mut items);
+        let nodes = build_nodes(&mut items, heuristic_depth);
         let order = items.iter().map(|item| item.index).collect();
         let root = nodes[0].union();
         let mut tree = Tree { nodes, order, normal, root, bounds, cost: 0.0, cost_at_build: 0.0 };
-        tree.cost = tree.visits_expected();
+        tree.cost = tree.cost_relative();
         tree.cost_at_build = tree.cost;
         tree
     }
@@ -69,7 +74,7 @@ pub(super) fn proper(bounds: &Aabb) -> &Aabb {
 }
 
 /// Makes the nodes, depth first, each after its parent.
-fn build_nodes(items: &mut [Item]) -> Vec<Node> {
+fn build_nodes(items: &mut [Item], heuristic_depth: u32) -> Vec<Node> {
     let mut nodes: Vec<Node> = Vec::with_capacity(items.len().div_ceil(4 * LEAF_SIZE));
     let mut tasks = vec![Task { set: Set::new(0, items), place: Place::ROOT, depth: 0 }];
     while let Some(task) = tasks.pop() {
@@ -77,7 +82,7 @@ fn build_nodes(items: &mut [Item]) -> Vec<Node> {
         if let Some((parent, lane)) = task.place.split() {
             nodes[parent].child[lane] = Child::inner(index);
         }
-        let (sets, count) = eight(&task, items);
+        let (sets, count) = eight(&task.set, items, task.depth >= heuristic_depth);
         let mut node = Node::EMPTY;
         for (lane, set) in sets[..count].iter().enumerate() {
             node.set_lane(lane, &set.bounds);
@@ -94,11 +99,10 @@ fn build_nodes(items: &mut [Item]) -> Vec<Node> {
 }
 
 /// Splits a set into up to eight, and says how many.
-fn eight(task: &Task, items: &mut [Item]) -> ([Set; WIDTH], usize) {
-    let evenly = task.depth >= HEURISTIC_DEPTH_MAX;
+fn eight(set: &Set, items: &mut [Item], evenly: bool) -> ([Set; WIDTH], usize) {
     // Sets of one measure, as of identical boxes, are split by number.
     let key = |set: &Set| (if evenly { 0.0 } else { measure(&set.bounds) }, set.len);
-    let mut sets = [task.set; WIDTH];
+    let mut sets = [*set; WIDTH];
     let mut count = 1;
     while count < WIDTH {
         let large = (0..count).filter(|&i| sets[i].len > LEAF_SIZE);
@@ -111,4 +115,4 @@ fn eight(task: &Task, items: &mut [Item]) -> ([Set; WIDTH], usize) {
     (sets, count)
 }
 
-const _: () = assert!(size_of::<PackedBox>() == 32 && size_of::<Node>() == 224);
+const _: () = assert!(size_of::<Node>() == 224);

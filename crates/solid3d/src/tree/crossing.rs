@@ -28,7 +28,7 @@ const MARGIN: f64 = 4.0 * f32::EPSILON as f64;
 /// Covers what underflow may lose in `f32`.
 const UNDERFLOW: f64 = f32::MIN_POSITIVE as f64;
 
-/// Coordinates up to here cannot overflow in `f32`.
+/// A reach up to here means terms below 1e37, and their sums do not overflow in `f32`.
 const HUGE: f64 = 1e30;
 
 /// Bound on the relative rounding of an affine map and the few operations around it in `f64`: eight times 2^-53.
@@ -107,19 +107,20 @@ impl Crossing {
     }
 
     /// Prepares a box of S.
-    #[inline]
+    #[inline(always)] // else the box goes through memory, stored by coordinate and loaded by vector: a stall
     pub fn probe(&self, bounds: &PackedBox) -> Probe {
         let (center, half) = bounds.center_half();
         let into = &self.into_lanes;
         let (c, h) = (into.map.transform_point3(center), into.abs * half + into.slack);
         let base = self.offset - center;
         let sums = 2.0 * self.row_sums + base.abs() + half + self.slack;
+        // The margin makes the reach grow with every term, so a small reach means that none overflows.
         let reach = half + self.slack + MARGIN * sums + UNDERFLOW;
         Probe {
-            lo: (c - h).to_array().map(lower),
-            hi: (-c - h).to_array().map(|v| -lower(v)),
-            base: base.to_array().map(|v| v as f32),
-            reach: [0, 1, 2].map(|i| if sums[i] < HUGE { -round_down(-reach[i]) } else { f32::INFINITY }),
+            lo: each(c - h, lower),
+            hi: each(-c - h, |v| -lower(v)),
+            base: each(base, |v| v as f32),
+            reach: each(reach, |v| if v < HUGE { -round_down(-v) } else { f32::INFINITY }),
         }
     }
 
@@ -127,6 +128,12 @@ impl Crossing {
     pub fn magnification(&self) -> f64 {
         self.into_lanes.map.matrix3.determinant().abs().cbrt()
     }
+}
+
+/// A function of each coordinate. (As `array::map`, which was not inlined here.)
+#[inline(always)]
+fn each(v: DVec3, f: impl Fn(f64) -> f32) -> [f32; 3] {
+    [f(v.x), f(v.y), f(v.z)]
 }
 
 /// An `f32` at most `v` and within [`FAR`]; the least if `v` is not a number.

@@ -3,7 +3,7 @@
 //! Thesis, sections 5.2.3 to 5.2.5, with these deviations, each measured (see the commit messages):
 //!
 //! - eight children a node instead of two, so that one box is tested against eight at once;
-//! - boxes of `f32`, rounded outward, in coordinates *of the tree* ([`normal`]): half the memory and twice the lanes,
+//! - boxes of `f32`, rounded outward, in coordinates *of the tree* (`normal`): half the memory and twice the lanes,
 //!   with the same resolution at any size and any distance from the local origin;
 //! - leaves of up to eight primitives, split by the surface-area heuristic instead of the midpoint.
 //!
@@ -21,6 +21,7 @@
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
+//! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
 //!
 //! # Laws
 //!
@@ -35,6 +36,9 @@ mod build;
 mod cost;
 mod crossing;
 mod lanes;
+mod metric;
+mod nearest;
+mod nearest_pairs;
 mod node;
 mod normal;
 mod overlap;
@@ -51,6 +55,8 @@ mod tests;
 
 pub use build::DEPTH_MAX;
 pub use cost::DEGRADED_RATIO;
+pub use metric::PairMetric;
+pub use nearest_pairs::nearest_pairs;
 pub use node::{LEAF_SIZE, PRIMITIVES_MAX};
 pub use normal::COORDINATE_MAX;
 pub use pairs::pairs;
@@ -147,6 +153,7 @@ impl Tree {
     }
 
     /// The child word at a place: the root, or a lane of a node.
+    #[inline(always)]
     fn child_at(&self, place: Place) -> Child {
         match place.split() {
             None => Child::inner(0),
@@ -155,6 +162,7 @@ impl Tree {
     }
 
     /// The stored box at a place.
+    #[inline(always)]
     fn box_at(&self, place: Place) -> PackedBox {
         match place.split() {
             None => self.root,
@@ -175,6 +183,7 @@ impl Place {
         Place((node * 8 + lane) as u32)
     }
 
+    #[inline(always)]
     fn split(self) -> Option<(usize, usize)> {
         (self != Place::ROOT).then_some((self.0 as usize / 8, self.0 as usize % 8))
     }

@@ -66,7 +66,8 @@ impl Normal {
     pub fn pack(&self, bounds: &Aabb) -> PackedBox {
         let (min, max) =
             ((bounds.min - self.origin) * self.inverse, (self.origin - bounds.max) * self.inverse);
-        let [x, y, z, _, u, v, w, _] = [min.x, min.y, min.z, 0.0, max.x, max.y, max.z, 0.0].map(round_down);
+        let [x, y, z] = [round_down(min.x), round_down(min.y), round_down(min.z)];
+        let [u, v, w] = [round_down(max.x), round_down(max.y), round_down(max.z)];
         PackedBox([x, y, z, FAR, u, v, w, FAR])
     }
 

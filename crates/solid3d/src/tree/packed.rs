@@ -7,7 +7,6 @@ pub(super) const FAR: f32 = 1e30;
 
 /// A box as `[min x, y, z, FAR, -max x, y, z, FAR]`: with the maximum negated, a union is one minimum over eight lanes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(32))]
 pub(super) struct PackedBox(pub [f32; 8]);
 
 impl PackedBox {
@@ -49,8 +48,8 @@ impl PackedBox {
     /// Centre and half extents, in `f64`: off by at most a relative 2^-53.
     #[inline]
     pub fn center_half(&self) -> (DVec3, DVec3) {
-        let b = self.0.map(f64::from);
-        let (min, neg_max) = (DVec3::new(b[0], b[1], b[2]), DVec3::new(b[4], b[5], b[6]));
+        let corner = |i: usize| DVec3::new(self.0[i].into(), self.0[i + 1].into(), self.0[i + 2].into());
+        let (min, neg_max) = (corner(0), corner(4));
         (0.5 * (min - neg_max), -0.5 * (min + neg_max))
     }
 }

@@ -46,15 +46,15 @@ pub fn pairs<B>(
                 counters.leaf_visits += 1;
                 visit(leaf_a, leaf_b)?;
             }
-            Step::OpenA(node, box_b) => {
+            Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let probe = duel.b_to_a.probe(&box_b);
+                let probe = duel.b_to_a.probe(&b.box_at(in_b));
                 let hits = overlapping_probe(&a.nodes[node], &duel.b_to_a, &probe);
                 stack.extend(bits(hits).map(|lane| (Place::lane(node, lane), in_b)));
             }
-            Step::OpenB(node, box_a) => {
+            Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let probe = duel.a_to_b.probe(&box_a);
+                let probe = duel.a_to_b.probe(&a.box_at(in_a));
                 let hits = overlapping_probe(&b.nodes[node], &duel.a_to_b, &probe);
                 stack.extend(bits(hits).map(|lane| (in_a, Place::lane(node, lane))));
             }
@@ -66,8 +66,8 @@ pub fn pairs<B>(
 
 /// Two trees, and the way between them.
 pub(super) struct Duel<'t> {
-    a: &'t Tree,
-    b: &'t Tree,
+    pub a: &'t Tree,
+    pub b: &'t Tree,
     /// For boxes of `a` against lanes of `b`, and the reverse.
     pub a_to_b: Crossing,
     pub b_to_a: Crossing,
@@ -79,10 +79,10 @@ pub(super) struct Duel<'t> {
 pub(super) enum Step<'t> {
     /// Both are leaves.
     Leaves(&'t [u32], &'t [u32]),
-    /// The node of `a` is to be opened against the box of `b`.
-    OpenA(usize, PackedBox),
-    /// The node of `b` is to be opened against the box of `a`.
-    OpenB(usize, PackedBox),
+    /// The node of `a` is to be opened.
+    OpenA(usize),
+    /// The node of `b` is to be opened.
+    OpenB(usize),
     /// One is an empty lane.
     Nothing,
 }
@@ -96,26 +96,27 @@ impl<'t> Duel<'t> {
     }
 
     /// The larger of two nodes is opened (thesis, 5.2.3).
-    #[inline]
+    #[inline(always)]
     pub fn step(&self, in_a: Place, in_b: Place) -> Step<'t> {
         let (child_a, child_b) = (self.a.child_at(in_a), self.b.child_at(in_b));
         match (child_a.kind(), child_b.kind()) {
             (Kind::Empty, _) | (_, Kind::Empty) => Step::Nothing,
             (Kind::Leaf(of_a), Kind::Leaf(of_b)) => Step::Leaves(self.a.leaf(of_a), self.b.leaf(of_b)),
-            (Kind::Inner(node), Kind::Leaf(_)) => Step::OpenA(node, self.b.box_at(in_b)),
-            (Kind::Leaf(_), Kind::Inner(node)) => Step::OpenB(node, self.a.box_at(in_a)),
+            (Kind::Inner(node), Kind::Leaf(_)) => Step::OpenA(node),
+            (Kind::Leaf(_), Kind::Inner(node)) => Step::OpenB(node),
             (Kind::Inner(node_a), Kind::Inner(node_b)) => {
                 let (box_a, box_b) = (self.a.box_at(in_a), self.b.box_at(in_b));
                 if extent(&box_a) >= self.magnification * extent(&box_b) {
-                    Step::OpenA(node_a, box_b)
+                    Step::OpenA(node_a)
                 } else {
-                    Step::OpenB(node_b, box_a)
+                    Step::OpenB(node_b)
                 }
             }
         }
     }
 }
 
+/// The size by which nodes compare: the volume, as in the thesis, gives 1 to 4 % fewer box tests on tori, but flat boxes have none.
 fn extent(bounds: &PackedBox) -> f32 {
     bounds.size(0) + bounds.size(1) + bounds.size(2)
 }

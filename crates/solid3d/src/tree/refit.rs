@@ -33,7 +33,7 @@ impl Tree {
             }
         }
         self.root = self.nodes[0].union();
-        self.cost = self.visits_expected();
+        self.cost = self.cost_relative();
     }
 
     /// Refits all nodes in given tree coordinates and returns the tight union.

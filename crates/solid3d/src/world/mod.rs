@@ -37,10 +37,17 @@ use response::ResponseTable;
 /// use solid3d::{Response, Shape, World, glam::{DAffine3, DVec3}};
 ///
 /// let mut world = World::new();
-/// let ball = world.add(&Shape::sphere(1.0)?, DAffine3::from_translation(DVec3::new(0.0, 1.5, 0.0)))?;
-/// let floor = world.add(&Shape::cuboid([10.0, 1.0, 10.0])?, DAffine3::IDENTITY)?;
 /// world.set_default_response(Response::Smart);
-/// assert!(world.test().is_empty()); // touching would count, but half the floor's height is 0.5
+/// let floor = world.add(&Shape::cuboid([10.0, 1.0, 10.0])?, DAffine3::IDENTITY)?;
+/// let ball = world.add(&Shape::sphere(1.0)?, DAffine3::from_translation(DVec3::Y * 2.0))?;
+/// assert!(world.test().is_empty());
+/// world.proceed();
+///
+/// world.set_placement(ball, DAffine3::from_translation(DVec3::Y * 1.4))?;
+/// let collisions = world.test();
+/// assert_eq!((collisions[0].a, collisions[0].b), (floor, ball));
+/// // From the previous frame, in which they were apart: the normal points from the ball to the floor.
+/// assert!((collisions[0].normal().unwrap() + DVec3::Y).length() < 1e-5);
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! The pairs of overlapping fat boxes, with each proxy's own list of them.
+//! The pairs of overlapping fat boxes, with each proxy's own list of them, and whether the tight boxes overlap too.
 
 use crate::broad::Proxy;
 
@@ -12,6 +12,8 @@ struct Pair {
     /// The next and the previous link in the list of either proxy.
     next: [u32; 2],
     previous: [u32; 2],
+    /// Whether the tight boxes overlap.
+    overlaps: bool,
 }
 
 /// Pairs of proxies; all pairs of one proxy can be taken out in time proportional to their number.
@@ -38,10 +40,10 @@ impl PairPool {
     }
 
     /// Adds a pair that is not there yet.
-    pub fn insert(&mut self, a: Proxy, b: Proxy) {
+    pub fn insert(&mut self, a: Proxy, b: Proxy, overlaps: bool) {
         let proxies = [a.min(b), a.max(b)];
         let index = self.pairs.len() as u32;
-        let mut pair = Pair { proxies, next: [END; 2], previous: [END; 2] };
+        let mut pair = Pair { proxies, next: [END; 2], previous: [END; 2], overlaps };
         for (side, &proxy) in proxies.iter().enumerate() {
             let link = 2 * index + side as u32;
             let head = std::mem::replace(&mut self.heads[proxy as usize], link);
@@ -60,9 +62,27 @@ impl PairPool {
         }
     }
 
-    pub fn for_each(&self, mut visit: impl FnMut(Proxy, Proxy)) {
+    /// Visits all pairs, and whether their tight boxes overlap.
+    pub fn for_each(&self, mut visit: impl FnMut(Proxy, Proxy, bool)) {
         for pair in &self.pairs {
-            visit(pair.proxies[0], pair.proxies[1]);
+            visit(pair.proxies[0], pair.proxies[1], pair.overlaps);
+        }
+    }
+
+    /// Finds anew which tight boxes overlap, among all pairs.
+    pub fn refresh_all(&mut self, overlaps: impl Fn(Proxy, Proxy) -> bool) {
+        for pair in &mut self.pairs {
+            pair.overlaps = overlaps(pair.proxies[0], pair.proxies[1]);
+        }
+    }
+
+    /// Finds anew which tight boxes overlap, among the pairs of one proxy.
+    pub fn refresh_of(&mut self, proxy: Proxy, overlaps: impl Fn(Proxy, Proxy) -> bool) {
+        let mut link = self.heads[proxy as usize];
+        while link != END {
+            let pair = &mut self.pairs[link as usize / 2];
+            pair.overlaps = overlaps(pair.proxies[0], pair.proxies[1]);
+            link = pair.next[link as usize % 2];
         }
     }
 

@@ -58,11 +58,26 @@ fn every_hard_case_is_valid_at_every_size() {
 
 #[test]
 fn the_depth_is_bounded() {
-    // Each box is so much smaller than the one before that the heuristic peels off one at a time.
-    let depth = |n: u32| hard_cases(n).into_iter().map(|(_, boxes)| checked(&boxes).depth()).max();
-    assert!(depth(20_000) <= Some(DEPTH_MAX));
+    for (name, boxes) in hard_cases(20_000) {
+        let depth = checked(&boxes).depth();
+        eprintln!("{name}: depth {depth}");
+        assert!(depth <= DEPTH_MAX);
+    }
     // Identical boxes split evenly.
     assert_eq!(Tree::build(&[boxed(DVec3::ZERO, DVec3::ONE); 8 * 8 * 8 * 8]).depth(), 3);
+}
+
+#[test]
+fn where_the_heuristic_ends_the_split_is_even() {
+    // None of the hard cases gets as deep as the limit, so here it is lowered.
+    for (name, boxes) in hard_cases(5000) {
+        for heuristic_depth in [0, 1] {
+            let tree = Tree::build_with(&boxes, heuristic_depth);
+            tree.validate(&boxes);
+            // 5000 < 8^5
+            assert!(tree.depth() <= heuristic_depth + 5, "{name}: depth {}", tree.depth());
+        }
+    }
 }
 
 #[test]
@@ -102,6 +117,16 @@ fn torn_boxes_degrade_a_tree_and_whole_ones_do_not() {
     });
     assert!(!tree.degraded());
     tree.refit(|i| boxes[(i as usize * 2503) % boxes.len()]);
+    assert!(tree.degraded());
+}
+
+#[test]
+fn a_point_that_becomes_a_mesh_is_degraded() {
+    let boxes = torus_boxes();
+    let mut tree = Tree::build(&vec![boxed(DVec3::ONE, DVec3::ZERO); boxes.len()]);
+    assert!(!tree.degraded());
+    tree.refit(|i| boxes[i as usize]);
+    tree.validate(&boxes);
     assert!(tree.degraded());
 }
 

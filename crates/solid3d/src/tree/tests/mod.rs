@@ -1,6 +1,7 @@
 //! Laws of the tree, against brute force.
 
 mod build;
+mod nearest;
 mod overlap;
 mod pairs;
 mod scenes;

@@ -1,6 +1,8 @@
 //! Tree against tree, and against brute force.
 
-use super::scenes::{affine, point, random_boxes, relative, rng, torus_boxes, torus_placement};
+use super::scenes::{
+    affine, boxes_of, point, random_boxes, relative, rng, torus, torus_boxes, torus_placement,
+};
 use crate::Aabb;
 use crate::tree::{Relative, Traversal, Tree, pairs};
 use glam::{DAffine3, DVec3};
@@ -209,4 +211,29 @@ fn the_work_on_a_pair_of_tori_is_modest() {
     assert!((500..800).contains(&met), "{met} of {rounds} are not representative");
     assert!(per(first.counters.box_tests) < 60.0);
     assert!(per(all.counters.box_tests) < 600.0);
+}
+
+#[test]
+fn a_tree_degraded_by_twisting_costs_more_than_one_rebuilt() {
+    let first_box_tests = |tree: &Tree| {
+        let (mut rng, mut traversal) = (rng(43), Traversal::default());
+        for _ in 0..500 {
+            let relative = relative(torus_placement(&mut rng), 15.0, 15.0);
+            let _ = pairs(tree, tree, &relative, &mut traversal, |_, _| ControlFlow::<()>::Continue(()));
+        }
+        traversal.counters.box_tests as f64 / 500.0
+    };
+    let mut tree = Tree::build(&torus_boxes());
+    for (angle, expected) in [(0.1, false), (0.5, false), (1.5, true), (3.0, true)] {
+        let twist = |p: DVec3| glam::DQuat::from_rotation_x(angle * p.x / 12.0) * p;
+        let boxes = boxes_of(&torus(100, 25, twist));
+        tree.refit(|i| boxes[i as usize]);
+        let rebuilt = first_box_tests(&Tree::build(&boxes));
+        let growth = tree.cost / tree.cost_at_build;
+        let ratio = first_box_tests(&tree) / rebuilt;
+        eprintln!(
+            "twisted by {angle}: cost grown {growth:.2}; {ratio:.2} times the box tests of a rebuilt tree"
+        );
+        assert_eq!(tree.degraded(), expected);
+    }
 }

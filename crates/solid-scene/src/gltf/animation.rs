@@ -1,0 +1,123 @@
+//! Animations: which one is played, and what it changes.
+
+use glam::{DQuat, DVec3};
+use gltf::json::animation::Property;
+use gltf::json::validation::Checked;
+
+use super::document::{Document, find};
+use super::local::Local;
+use super::sampler::Sampler;
+use crate::fault::Result;
+
+/// The animation that is played; without any, nothing changes.
+#[derive(Debug, Default)]
+pub(super) struct Animation {
+    channels: Vec<Channel>,
+    /// The time of the last key.
+    pub duration: f64,
+}
+
+/// What is changed over time.
+#[derive(Debug)]
+struct Channel {
+    node: usize,
+    property: Property,
+    sampler: Sampler,
+}
+
+impl Animation {
+    /// Reads the animation that `choice` names by name or else by number, from 0; without a choice the file's first.
+    pub fn read(document: &Document, choice: Option<&str>, warnings: &mut Vec<String>) -> Result<Animation> {
+        let names = names(document);
+        let index = match choice {
+            Some(choice) => chosen(&names, choice)?,
+            None if names.is_empty() => return Ok(Animation::default()),
+            None => {
+                if let [first, others @ ..] = names.as_slice() {
+                    if !others.is_empty() {
+                        warnings.push(format!("plays the animation {first}, not {}", others.join(", ")));
+                    }
+                }
+                0
+            }
+        };
+        let mut animation = Animation::default();
+        let source = find("animation", &document.root.animations, index)?;
+        for (number, channel) in source.channels.iter().enumerate() {
+            let what = format!("animation {}, channel {number}", names[index]);
+            let node = channel.target.node.value();
+            document.node(node).map_err(|fault| fault.of(&what))?;
+            let Checked::Valid(property) = channel.target.path else {
+                warnings.push(format!("{what} is passed over: it changes something unknown"));
+                continue;
+            };
+            let sampler = find("sampler", &source.samplers, channel.sampler.value())
+                .map_err(|fault| fault.of(&what))?;
+            let sampler = Sampler::read(document, sampler, property, &what)?;
+            animation.duration = animation.duration.max(sampler.end());
+            animation.channels.push(Channel { node, property, sampler });
+        }
+        Ok(animation)
+    }
+
+    /// Whether it moves nodes, rather than only changing weights.
+    pub fn moves(&self) -> bool {
+        self.channels.iter().any(|channel| channel.property != Property::MorphTargetWeights)
+    }
+
+    /// Whether it changes the weights of a node.
+    pub fn morphs(&self, node: usize) -> bool {
+        self.channels.iter().any(|channel| channel.is_weights_of(node))
+    }
+
+    /// Moves the nodes to where they are at a time.
+    pub fn pose(&self, time: f64, locals: &mut [Local]) {
+        let mut value = Vec::new();
+        for Channel { node, property, sampler } in &self.channels {
+            let local = &mut locals[*node];
+            match property {
+                Property::MorphTargetWeights => continue,
+                _ => sampler.sample(time, &mut value),
+            }
+            match property {
+                Property::Translation => local.translation = DVec3::from_slice(&value),
+                Property::Rotation => local.rotation = DQuat::from_slice(&value),
+                Property::Scale => local.scale = DVec3::from_slice(&value),
+                Property::MorphTargetWeights => {}
+            }
+        }
+    }
+
+    /// The weights of a node at a time; left as they are where nothing changes them.
+    pub fn weights(&self, time: f64, node: usize, weights: &mut Vec<f64>) {
+        for channel in self.channels.iter().filter(|channel| channel.is_weights_of(node)) {
+            channel.sampler.sample(time, weights);
+        }
+    }
+}
+
+impl Channel {
+    fn is_weights_of(&self, node: usize) -> bool {
+        self.node == node && self.property == Property::MorphTargetWeights
+    }
+}
+
+/// What to call the animations: by name in quotes, or by number where they have none.
+fn names(document: &Document) -> Vec<String> {
+    let animations = document.root.animations.iter().enumerate();
+    let name = |(number, animation): (usize, &gltf::json::Animation)| match &animation.name {
+        Some(name) => format!("`{name}`"),
+        None => number.to_string(),
+    };
+    animations.map(name).collect()
+}
+
+fn chosen(names: &[String], choice: &str) -> Result<usize> {
+    let quoted = format!("`{choice}`");
+    let by_name = names.iter().position(|name| *name == quoted);
+    let by_number = || choice.parse().ok().filter(|&number: &usize| number < names.len());
+    by_name.or_else(by_number).ok_or_else(|| {
+        let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        format!("there is no animation `{choice}`; the file has {known}").into()
+    })
+}

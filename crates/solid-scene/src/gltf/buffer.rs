@@ -1,0 +1,53 @@
+//! Loading buffers.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use gltf::json::Buffer;
+
+use super::uri::{Source, resolve};
+use crate::fault::Result;
+
+/// The bytes of a buffer, `byteLength` of them. `binary` is the binary part of a `.glb`, which buffer 0 is when it has
+/// no URI.
+pub(super) fn load(
+    index: usize,
+    buffer: &Buffer,
+    binary: &mut Option<Vec<u8>>,
+    folder: &Path,
+) -> Result<Vec<u8>> {
+    let name = name(index, buffer);
+    let needed = buffer.byte_length.0;
+    let mut bytes = match &buffer.uri {
+        None if index == 0 => binary.take().ok_or_else(|| format!("{name} has no URI and no binary part"))?,
+        None => return Err(format!("{name} has no URI").into()),
+        Some(uri) => match resolve(uri).map_err(|wrong| format!("{name} {wrong}"))? {
+            Source::Bytes(bytes) => bytes,
+            Source::File(path) => {
+                let wrong = |error| format!("{name}: `{}` can't be read: {error}", path.display());
+                read(&folder.join(&path), needed).map_err(wrong)?
+            }
+        },
+    };
+    if (bytes.len() as u64) < needed {
+        return Err(format!("{name} has {} bytes; it should have {needed}", bytes.len()).into());
+    }
+    // The rest is padding.
+    bytes.truncate(needed as usize);
+    Ok(bytes)
+}
+
+/// At most `limit` bytes of a file.
+fn read(path: &Path, limit: u64) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(limit).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn name(index: usize, buffer: &Buffer) -> String {
+    match &buffer.name {
+        Some(name) => format!("buffer {index} (`{name}`)"),
+        None => format!("buffer {index}"),
+    }
+}

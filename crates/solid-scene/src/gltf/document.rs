@@ -1,0 +1,149 @@
+//! A file and its buffers.
+
+use std::cell::Cell;
+use std::path::Path;
+
+use gltf::Gltf;
+use gltf::json::{Accessor, Mesh, Node, Root, Skin, buffer};
+
+use super::buffer::load;
+use crate::fault::Result;
+
+/// How many numbers may be read out of a file per byte of it and its buffers. A text can name one buffer any number of
+/// times, so that a small one could ask for any amount of memory; files that mean well stay below 10.
+const NUMBERS_PER_BYTE: usize = 64;
+
+/// How many numbers may be read out of any file.
+const NUMBERS_ALWAYS: usize = 1 << 20;
+
+/// The extensions that a file may require: they have no part in geometry, except for `KHR_mesh_quantization`, which only
+/// widens the types of accessors.
+const UNDERSTOOD: [&str; 9] = [
+    "KHR_mesh_quantization",
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "KHR_xmp",
+    "EXT_texture_",
+    "EXT_lights_",
+    "EXT_materials_",
+    "MSFT_",
+];
+
+/// The extensions that compress geometry.
+const COMPRESSIONS: [&str; 3] =
+    ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// A parsed file and the bytes of its buffers. What the text names is looked up here.
+pub(super) struct Document {
+    pub root: Root,
+    buffers: Vec<Vec<u8>>,
+    /// How many more numbers may be read.
+    budget: Cell<usize>,
+}
+
+impl Document {
+    /// Parses a `.gltf` or `.glb` and loads its buffers; those in files of their own are looked for in `folder`.
+    pub fn parse(bytes: &[u8], folder: &Path) -> Result<Document> {
+        check_container(bytes)?;
+        let Gltf { document, blob: mut binary } =
+            Gltf::from_slice_without_validation(bytes).map_err(|error| format!("not glTF 2.0: {error}"))?;
+        let root = document.into_json();
+        check_version(&root)?;
+        check_extensions(&root)?;
+        let mut buffers = Vec::new();
+        for (index, buffer) in root.buffers.iter().enumerate() {
+            buffers.push(load(index, buffer, &mut binary, folder)?);
+        }
+        let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
+        let budget = Cell::new(size.saturating_mul(NUMBERS_PER_BYTE).max(NUMBERS_ALWAYS));
+        Ok(Document { root, buffers, budget })
+    }
+
+    pub fn accessor(&self, index: usize) -> Result<&Accessor> {
+        find("accessor", &self.root.accessors, index)
+    }
+
+    pub fn view(&self, index: usize) -> Result<&buffer::View> {
+        find("bufferView", &self.root.buffer_views, index)
+    }
+
+    pub fn buffer(&self, index: usize) -> Result<&[u8]> {
+        find("buffer", &self.buffers, index).map(Vec::as_slice)
+    }
+
+    pub fn mesh(&self, index: usize) -> Result<&Mesh> {
+        find("mesh", &self.root.meshes, index)
+    }
+
+    pub fn node(&self, index: usize) -> Result<&Node> {
+        find("node", &self.root.nodes, index)
+    }
+
+    pub fn skin(&self, index: usize) -> Result<&Skin> {
+        find("skin", &self.root.skins, index)
+    }
+
+    /// The compression that the file uses, if any.
+    pub fn compression(&self) -> Option<&str> {
+        let used = self.root.extensions_used.iter().map(String::as_str);
+        used.into_iter().find(|name| COMPRESSIONS.contains(name))
+    }
+
+    /// Counts numbers that are about to be read; `what` names them.
+    pub fn spend(&self, numbers: usize, what: &str) -> Result<()> {
+        match self.budget.get().checked_sub(numbers) {
+            Some(left) => {
+                self.budget.set(left);
+                Ok(())
+            }
+            None => {
+                Err(format!("{what}: {numbers} numbers are more than a file of this size may hold").into())
+            }
+        }
+    }
+}
+
+/// The element that an index names.
+pub(super) fn find<'a, T>(kind: &str, all: &'a [T], index: usize) -> Result<&'a T> {
+    all.get(index).ok_or_else(|| format!("{kind} {index} is named, but there are {}", all.len()).into())
+}
+
+/// What the crate takes for granted of a `.glb`: that its length is not less than its header's.
+fn check_container(bytes: &[u8]) -> Result<()> {
+    let length = bytes.get(8..12).and_then(<[u8]>::first_chunk).map(|length| u32::from_le_bytes(*length));
+    match length {
+        Some(length) if bytes.starts_with(b"glTF") && length < 12 => {
+            Err(format!("the header tells a length of {length} bytes; it has 12 itself").into())
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_version(root: &Root) -> Result<()> {
+    let version = &root.asset.version;
+    let least = root.asset.min_version.as_ref().unwrap_or(version);
+    if version.starts_with("2.") && least.starts_with("2.") {
+        return Ok(());
+    }
+    Err(format!("the file is of glTF {least}; expected 2.0").into())
+}
+
+fn check_extensions(root: &Root) -> Result<()> {
+    for name in &root.extensions_required {
+        if COMPRESSIONS.contains(&name.as_str()) {
+            return Err(compressed(name).into());
+        }
+        if !UNDERSTOOD.iter().any(|known| name.starts_with(known)) {
+            return Err(format!("the file requires the extension `{name}`, which is not supported").into());
+        }
+    }
+    Ok(())
+}
+
+/// What to say of a file whose geometry is compressed.
+pub(super) fn compressed(extension: &str) -> String {
+    format!(
+        "the file is compressed ({extension}); decompress it first, for example with `gltf-transform copy`"
+    )
+}

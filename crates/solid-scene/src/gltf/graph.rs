@@ -1,0 +1,113 @@
+//! The hierarchy of the nodes.
+
+use super::document::Document;
+use crate::fault::Result;
+
+/// The deepest node: objects keep the path from their root, so that depth costs memory.
+pub(super) const DEPTH_MAX: usize = 256;
+
+/// The nodes as a forest.
+#[derive(Debug)]
+pub(super) struct Graph {
+    /// Each node's parent.
+    pub parents: Vec<Option<usize>>,
+    /// All nodes, parents before their children.
+    pub order: Vec<usize>,
+    /// The nodes of the scene, in the order in which a walk from its roots meets them.
+    pub scene: Vec<usize>,
+}
+
+impl Graph {
+    /// Checks that the nodes are a forest that is not too deep, and finds the scene's.
+    pub fn new(document: &Document) -> Result<Graph> {
+        let parents = parents(document)?;
+        let roots = (0..parents.len()).filter(|&node| parents[node].is_none()).collect::<Vec<_>>();
+        let order = walk(document, &roots)?;
+        if order.len() < parents.len() {
+            let node = on_cycle(&parents, &order);
+            return Err(format!("node {node} is its own ancestor").into());
+        }
+        let scene = match scene_roots(document)? {
+            None => order.clone(),
+            Some(roots) => {
+                if let Some((node, parent)) = roots.iter().find_map(|&node| Some((node, parents[node]?))) {
+                    return Err(
+                        format!("the scene names node {node}, which is a child of node {parent}").into()
+                    );
+                }
+                walk(document, &roots)?
+            }
+        };
+        Ok(Graph { parents, order, scene })
+    }
+
+    /// The nodes from the root to a node, itself included.
+    pub fn path(&self, node: usize) -> Vec<u32> {
+        let mut path: Vec<u32> =
+            std::iter::successors(Some(node), |&node| self.parents[node]).map(|node| node as u32).collect();
+        path.reverse();
+        path
+    }
+}
+
+fn children(document: &Document, node: usize) -> impl DoubleEndedIterator<Item = usize> {
+    let children = document.root.nodes[node].children.iter().flatten();
+    children.map(|child| child.value())
+}
+
+/// Each node's parent, of which it has one at most.
+fn parents(document: &Document) -> Result<Vec<Option<usize>>> {
+    let mut parents = vec![None; document.root.nodes.len()];
+    for node in 0..parents.len() {
+        for child in children(document, node) {
+            document.node(child).map_err(|fault| fault.of(&format!("child of node {node}")))?;
+            if let Some(other) = parents[child].replace(node) {
+                return Err(format!("node {child} is a child of both node {other} and node {node}").into());
+            }
+        }
+    }
+    Ok(parents)
+}
+
+/// The roots, each followed by what is below it. Needs that every node has one parent at most.
+fn walk(document: &Document, roots: &[usize]) -> Result<Vec<usize>> {
+    let mut order = Vec::new();
+    let mut waiting: Vec<(usize, usize)> = roots.iter().rev().map(|&root| (root, 1)).collect();
+    while let Some((node, depth)) = waiting.pop() {
+        if depth > DEPTH_MAX {
+            return Err(format!("node {node} is deeper than {DEPTH_MAX} nodes").into());
+        }
+        order.push(node);
+        waiting.extend(children(document, node).rev().map(|child| (child, depth + 1)));
+    }
+    Ok(order)
+}
+
+/// The roots of the scene; `None` where the file has no scene. A root that is named twice counts once.
+fn scene_roots(document: &Document) -> Result<Option<Vec<usize>>> {
+    let scenes = &document.root.scenes;
+    let scene = match document.root.scene {
+        Some(scene) => super::document::find("scene", scenes, scene.value())?,
+        None => match scenes.first() {
+            Some(scene) => scene,
+            None => return Ok(None),
+        },
+    };
+    let mut seen = vec![false; document.root.nodes.len()];
+    let mut roots = Vec::new();
+    for node in scene.nodes.iter().map(|node| node.value()) {
+        document.node(node).map_err(|fault| fault.of("the scene"))?;
+        if !std::mem::replace(&mut seen[node], true) {
+            roots.push(node);
+        }
+    }
+    Ok(Some(roots))
+}
+
+/// A node on a cycle: where many steps up from a node that no root reaches lead.
+fn on_cycle(parents: &[Option<usize>], reached: &[usize]) -> usize {
+    let mut is_reached = vec![false; parents.len()];
+    reached.iter().for_each(|&node| is_reached[node] = true);
+    let start = is_reached.iter().position(|&reached| !reached).unwrap_or(0);
+    (0..parents.len()).fold(start, |node, _| parents[node].unwrap_or(node))
+}

@@ -1,0 +1,155 @@
+//! The objects of a file: its nodes with meshes.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::DAffine3;
+use gltf::json::Node;
+use solid3d::Shape;
+
+use super::animation::Animation;
+use super::document::Document;
+use super::graph::Graph;
+use super::local::Local;
+use super::mesh::{self, Geometry};
+use super::motion::{Deformation, GltfMotion, Moved};
+use super::skin::Skin;
+use crate::fault::Result;
+use crate::part::{Part, PartObject};
+use crate::soup::Soup;
+
+/// The file's share of a scene.
+pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part> {
+    let mut warnings = Vec::new();
+    let graph = Graph::new(document)?;
+    let nodes = document.root.nodes.iter().enumerate();
+    let locals = nodes.map(|(index, node)| Local::of(index, node)).collect::<Result<Vec<_>>>()?;
+    let animation = Animation::read(document, animation, &mut warnings)?;
+    let motion = GltfMotion { graph, locals, animation, objects: Vec::new() };
+    let mut reader = Reader::new(document, motion, warnings);
+    for node in reader.motion.graph.scene.clone() {
+        reader.node(node).map_err(|fault| fault.of(&format!("node {node}")))?;
+    }
+    if reader.objects.is_empty() {
+        return Err("the scene has no geometry: no node with a mesh".into());
+    }
+    let Reader { objects, motion, warnings, .. } = reader;
+    let duration = motion.animation.duration;
+    Ok(Part { objects, motion: Box::new(motion), duration, unit: "metre", warnings })
+}
+
+struct Reader<'a> {
+    document: &'a Document,
+    /// The nodes' maps to the world at time 0.
+    worlds: Vec<DAffine3>,
+    geometries: HashMap<usize, Arc<Geometry>>,
+    skins: HashMap<usize, Arc<Skin>>,
+    /// The shapes of meshes that nothing deforms, and how many of their primitives are degenerate.
+    shapes: HashMap<usize, (Shape, usize)>,
+    objects: Vec<PartObject>,
+    motion: GltfMotion,
+    warnings: Vec<String>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(document: &'a Document, motion: GltfMotion, warnings: Vec<String>) -> Self {
+        let worlds = motion.worlds(0.0);
+        let (geometries, skins, shapes) = Default::default();
+        Reader { document, worlds, geometries, skins, shapes, objects: Vec::new(), motion, warnings }
+    }
+
+    /// Makes an object of a node that has a mesh.
+    fn node(&mut self, index: usize) -> Result<()> {
+        let node = self.document.node(index)?;
+        let Some(mesh) = node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
+        let geometry = self.geometry(mesh)?;
+        if geometry.soup.is_empty() {
+            self.warnings.push(format!("{} has no geometry", mesh::name(self.document, mesh)?));
+            return Ok(());
+        }
+        let deformation = self.deformation(node, mesh, &geometry)?;
+        let (shape, degenerate) = self.shape(index, mesh, &deformation)?;
+        let skinned = deformation.skin.is_some();
+        let animation = &self.motion.animation;
+        let changes = animation.morphs(index) && !geometry.targets.is_empty() || skinned && animation.moves();
+        let name = self.object_name(index, node, mesh)?;
+        if !skinned && self.worlds[index].matrix3.determinant() == 0.0 {
+            self.warnings.push(format!("`{name}` is flat at time 0: its placement is singular"));
+        }
+        let path = self.motion.graph.path(index);
+        self.objects.push(PartObject { name, shape, path, degenerate });
+        let deformation = changes.then_some(deformation);
+        self.motion.objects.push(Moved { node: index, in_world: skinned, deformation });
+        Ok(())
+    }
+
+    fn object_name(&self, index: usize, node: &Node, mesh: usize) -> Result<String> {
+        let names = [&node.name, &self.document.mesh(mesh)?.name];
+        let name = names.into_iter().flatten().find(|name| !name.is_empty());
+        Ok(name.cloned().unwrap_or_else(|| format!("node{index}")))
+    }
+
+    fn geometry(&mut self, mesh: usize) -> Result<Arc<Geometry>> {
+        if let Some(geometry) = self.geometries.get(&mesh) {
+            return Ok(geometry.clone());
+        }
+        let geometry = Arc::new(Geometry::read(self.document, mesh)?);
+        self.geometries.insert(mesh, geometry.clone());
+        Ok(geometry)
+    }
+
+    /// What gives the mesh its form on a node: its skin, and the node's weights or else the mesh's.
+    fn deformation(&mut self, node: &Node, mesh: usize, geometry: &Arc<Geometry>) -> Result<Deformation> {
+        let skin = match node.skin.map(|skin| skin.value()) {
+            None => None,
+            Some(skin) if geometry.influences.is_empty() => {
+                let name = mesh::name(self.document, mesh)?;
+                self.warnings.push(format!("{name} has no JOINTS_0, so skin {skin} has no effect on it"));
+                None
+            }
+            Some(skin) => Some(self.skin(skin)?),
+        };
+        if let Some(skin) = &skin {
+            geometry.influences.check(skin)?;
+        }
+        let mut weights = vec![0.0; geometry.targets.len()];
+        let given = node.weights.as_ref().or(self.document.mesh(mesh)?.weights.as_ref());
+        for (weight, &given) in weights.iter_mut().zip(given.into_iter().flatten()) {
+            *weight = f64::from(given);
+        }
+        Ok(Deformation { geometry: geometry.clone(), skin, weights })
+    }
+
+    fn skin(&mut self, index: usize) -> Result<Arc<Skin>> {
+        if let Some(skin) = self.skins.get(&index) {
+            return Ok(skin.clone());
+        }
+        let skin = Arc::new(Skin::read(self.document, index)?);
+        self.skins.insert(index, skin.clone());
+        Ok(skin)
+    }
+
+    /// The shape at time 0, and how many of its primitives are degenerate. Nodes that only place a mesh share it.
+    fn shape(&mut self, node: usize, mesh: usize, deformation: &Deformation) -> Result<(Shape, usize)> {
+        let soup = &deformation.geometry.soup;
+        let deformed = deformation.skin.is_some() || !deformation.geometry.targets.is_empty();
+        if !deformed {
+            if let Some(shape) = self.shapes.get(&mesh) {
+                return Ok(shape.clone());
+            }
+        }
+        let primitives = 3 * soup.triangles.len() + 2 * soup.segments.len() + soup.points.len();
+        self.document.spend(3 * soup.vertices.len() + primitives, "vertices and primitives")?;
+        let mut soup: Soup = soup.clone();
+        if deformed {
+            self.motion.deform(deformation, node, 0.0, &self.worlds, &mut soup.vertices);
+        }
+        let degenerate = soup.degenerate();
+        let name = mesh::name(self.document, mesh)?;
+        let shape = soup.into_shape().map_err(|fault| fault.of(&name))?;
+        if !deformed {
+            self.shapes.insert(mesh, (shape.clone(), degenerate));
+        }
+        Ok((shape, degenerate))
+    }
+}

@@ -1,0 +1,257 @@
+//! A parsed file. The only place that knows the parser, the crate vrml97.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use vrml97::fields::{FieldValue, access};
+use vrml97::scene::{FieldLoc, FieldRef, NodeKind, ProtoRef, ROOT, Scene};
+
+use super::scan::{Mark, scan};
+use super::warnings::Warnings;
+use crate::error::SceneError;
+
+/// A node as written in a file, by its place in the file.
+pub(super) type Syntax = u32;
+
+/// A part of a file with names of its own: the file itself, or the body of a PROTO.
+pub(super) type Context = usize;
+
+/// The context of the file itself.
+pub(super) const FILE: Context = ROOT;
+
+/// A PROTO of a file.
+pub(super) type Proto = usize;
+
+/// What kind of node it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind<'a> {
+    /// A node of the standard, by the name of its type.
+    Builtin(&'a str),
+    /// An instance of a PROTO of the same file.
+    Instance(Proto),
+    /// An instance of an EXTERNPROTO, by where it is declared.
+    Extern(&'a [String]),
+    /// Nothing known.
+    Unknown,
+}
+
+/// The value of a field, as written or by default.
+pub(super) type Value = FieldValue;
+
+/// A field of a node.
+#[derive(Debug)]
+pub(super) struct Field<'a> {
+    pub value: &'a Value,
+    /// Whether the file gives it a value.
+    pub written: bool,
+    /// The name in the interface of the PROTO around that it is connected to by IS.
+    pub is: Option<&'a str>,
+}
+
+/// A ROUTE between two nodes of one context, by the plain names of the fields ("translation", not "set_translation").
+#[derive(Clone, Debug)]
+pub(super) struct Route {
+    pub from: (Syntax, String),
+    pub to: (Syntax, String),
+}
+
+/// A parsed file.
+#[derive(Debug)]
+pub(super) struct Document {
+    file: PathBuf,
+    scene: Scene,
+    /// The line and name of each node; empty when they can't be told.
+    marks: Vec<Mark>,
+    /// The fields that are connected to a name of a PROTO's interface.
+    connected: HashMap<(Proto, String), Vec<(Syntax, String)>>,
+}
+
+impl Document {
+    /// Parses a file's text.
+    pub fn parse(file: &Path, text: &str, warnings: &mut Warnings) -> Result<Document, SceneError> {
+        let scanned = scan(file, text)?;
+        let parsed = vrml97::Parser::new(&scanned.text, "").parse();
+        let mut scene =
+            parsed.map_err(|error| SceneError::new(file, Some(error.line), in_our_words(&error.message)))?;
+        for warning in std::mem::take(&mut scene.warnings) {
+            warnings.add(warning_in_our_words(&warning));
+        }
+        let marks = if scanned.nodes.len() == scene.nodes.len() { scanned.nodes } else { Vec::new() };
+        let connected = connections(&scene);
+        Ok(Document { file: file.to_owned(), scene, marks, connected })
+    }
+
+    /// The file.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// The nodes at the top of a context; `None` for a NULL or an unknown one.
+    pub fn roots(&self, context: Context) -> &[Option<Syntax>] {
+        &self.scene.ctx(context).root_nodes
+    }
+
+    /// The ROUTEs of a context.
+    pub fn routes(&self, context: Context) -> impl Iterator<Item = Route> {
+        let name = |node, loc: FieldLoc| self.scene.field(node, loc).name.clone();
+        self.scene.ctx(context).routes.iter().map(move |route| Route {
+            from: (route.source_node, name(route.source_node, route.source_loc)),
+            to: (route.destination_node, name(route.destination_node, route.destination_loc)),
+        })
+    }
+
+    /// What kind of node it is.
+    pub fn kind(&self, node: Syntax) -> Kind<'_> {
+        match self.scene.node(node).kind {
+            NodeKind::Builtin(index) => Kind::Builtin(&self.scene.table.types[index].name),
+            NodeKind::Instance(ProtoRef::Proto(proto)) => Kind::Instance(proto),
+            NodeKind::Instance(ProtoRef::Extern(proto)) => Kind::Extern(&self.scene.externprotos[proto].url),
+            NodeKind::Placeholder | NodeKind::Internal(_) => Kind::Unknown,
+        }
+    }
+
+    /// The name of the node's type or PROTO.
+    pub fn type_name(&self, node: Syntax) -> String {
+        self.scene.type_name(node)
+    }
+
+    /// The name that DEF gives.
+    pub fn name(&self, node: Syntax) -> Option<&str> {
+        match self.marks.get(node as usize) {
+            Some(mark) => mark.name.as_deref(),
+            None => Some(self.scene.node(node).name.as_str()).filter(|name| !name.is_empty()),
+        }
+    }
+
+    /// The line on which the node begins.
+    pub fn line(&self, node: Syntax) -> Option<usize> {
+        self.marks.get(node as usize).map(|mark| mark.line)
+    }
+
+    /// A field of a node, by its name in the standard.
+    pub fn field(&self, node: Syntax, name: &str) -> Option<Field<'_>> {
+        let index = self.scene.get_predefined_field(node, name)?;
+        let field = &self.scene.node(node).fields[index];
+        let is = field.references.first().map(|reference| self.interface_name(*reference));
+        Some(Field { value: &field.value, written: field.modified, is })
+    }
+
+    /// Whether the events that a field receives leave it again: an exposedField.
+    pub fn passes_events(&self, node: Syntax, name: &str) -> bool {
+        let field = self.scene.get_predefined_field(node, name);
+        field.is_some_and(|index| self.scene.node(node).fields[index].access == access::INPUT_OUTPUT)
+    }
+
+    /// The body of a PROTO.
+    pub fn body(&self, proto: Proto) -> Context {
+        self.scene.protos[proto].body
+    }
+
+    /// The default of a field in the interface of a PROTO.
+    pub fn default(&self, proto: Proto, name: &str) -> Option<&Value> {
+        self.scene.protos[proto].fields.iter().find(|field| field.name == name).map(|field| &field.value)
+    }
+
+    /// The fields inside of a PROTO that are connected to a name of its interface.
+    pub fn connected(&self, proto: Proto, name: &str) -> &[(Syntax, String)] {
+        self.connected.get(&(proto, name.to_owned())).map_or(&[], Vec::as_slice)
+    }
+
+    /// The PROTO of a name, or the first one for no name.
+    pub fn find_proto(&self, name: Option<&str>) -> Option<Proto> {
+        let protos = &self.scene.ctx(FILE).protos;
+        match name {
+            Some(name) => protos.get(name),
+            None => protos.values().first().copied(),
+        }
+    }
+
+    /// The node as messages name it: its type and its name.
+    pub fn describe(&self, node: Syntax) -> String {
+        match self.name(node) {
+            Some(name) => format!("{} {name}", self.type_name(node)),
+            None => self.type_name(node),
+        }
+    }
+
+    /// An error about a node.
+    pub fn error(&self, node: Syntax, message: impl std::fmt::Display) -> SceneError {
+        SceneError::new(&self.file, self.line(node), format!("{}: {message}", self.describe(node)))
+    }
+
+    fn interface_name(&self, reference: FieldRef) -> &str {
+        &self.scene.protos[reference.proto].fields[reference.index].name
+    }
+}
+
+/// Which fields are connected to which names of interfaces.
+fn connections(scene: &Scene) -> HashMap<(Proto, String), Vec<(Syntax, String)>> {
+    let mut connected: HashMap<_, Vec<_>> = HashMap::new();
+    for (node, syntax) in scene.nodes.iter().zip(0..) {
+        for field in &node.fields {
+            for reference in &field.references {
+                let name = scene.protos[reference.proto].fields[reference.index].name.clone();
+                connected.entry((reference.proto, name)).or_default().push((syntax, field.name.clone()));
+            }
+        }
+    }
+    connected
+}
+
+/// The parser's errors say what it could not do; this says what it expected.
+fn in_our_words(message: &str) -> String {
+    match message {
+        "Unknown statement." => "expected a node, DEF, USE, PROTO or ROUTE".into(),
+        _ => message.trim_end_matches('.').to_owned(),
+    }
+}
+
+fn warning_in_our_words(warning: &str) -> String {
+    let rest = warning.strip_prefix("Parser error at ").unwrap_or(warning);
+    let rest = rest.split(". You probably have insufficient").next().unwrap_or(rest);
+    rest.replacen(". Error: ", ": ", 1).trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(body: &str) -> Result<Document, SceneError> {
+        Document::parse(Path::new("a.wrl"), &format!("#VRML V2.0 utf8\n{body}"), &mut Warnings::default())
+    }
+
+    #[test]
+    fn errors_tell_the_line_and_what_was_expected() {
+        let message = |body| parse(body).unwrap_err().to_string();
+        assert_eq!(
+            message("Shape {\n geometry Box { size 1 1 }\n}"),
+            "a.wrl:3: Couldn't read value for field 'size'"
+        );
+        assert_eq!(message("\n7"), "a.wrl:3: expected a node, DEF, USE, PROTO or ROUTE");
+    }
+
+    #[test]
+    fn nodes_know_their_lines() {
+        let document = parse("Group {\nchildren [\nNonsense { a 1 }\nDEF S Shape {\n} ] }").unwrap();
+        let lines: Vec<_> = (0..3).map(|node| document.line(node)).collect();
+        assert_eq!(lines, [Some(2), Some(4), Some(5)]);
+        assert_eq!(document.describe(2), "Shape S");
+    }
+
+    #[test]
+    fn a_proto_connects_its_interface() {
+        let document =
+            parse("PROTO P [ field SFVec3f s 1 1 1 ] { DEF B Box { size IS s } } P { s 2 2 2 }").unwrap();
+        let proto = document.find_proto(Some("P")).unwrap();
+        assert_eq!(document.connected(proto, "s"), [(0, "size".to_owned())]);
+        assert_eq!(document.field(0, "size").unwrap().is, Some("s"));
+        assert!(document.field(1, "s").unwrap().written);
+        assert_eq!(document.kind(1), Kind::Instance(proto));
+    }
+
+    /// Far too large an image made the parser panic.
+    #[test]
+    fn an_image_of_absurd_size_is_an_error() {
+        assert!(parse("PixelTexture { image -2147483649 2147483647 1 }").is_err());
+    }
+}

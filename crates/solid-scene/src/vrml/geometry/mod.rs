@@ -1,0 +1,147 @@
+//! Geometry nodes, as shapes.
+
+mod elevation_grid;
+mod extrusion;
+mod face_set;
+mod line_set;
+mod measure;
+mod point_set;
+mod polygon;
+mod primitive;
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use solid3d::Shape;
+
+use super::animation::Deformation;
+use super::graph::{Graph, Node};
+use super::interpolator::Event;
+use super::limits::ELEMENTS_MAX;
+use super::signal::SignalBuilder;
+use super::warnings::Warnings;
+use crate::error::SceneError;
+
+/// The shape of a geometry node.
+#[derive(Clone, Debug)]
+pub(super) struct Geometry {
+    pub shape: Shape,
+    /// How many primitives are without length or area.
+    pub degenerate: usize,
+    pub deformation: Option<Deformation>,
+}
+
+/// What geometry is made from.
+pub(super) struct Builder<'a> {
+    pub graph: &'a Graph,
+    pub signals: SignalBuilder<'a>,
+    pub warnings: &'a mut Warnings,
+    /// Vertices and primitives so far.
+    elements: usize,
+}
+
+/// The coordinates of a geometry node.
+struct Coordinates {
+    /// At time 0.
+    points: Vec<DVec3>,
+    deformation: Option<Deformation>,
+}
+
+impl<'a> Builder<'a> {
+    /// Starts without geometry.
+    pub fn new(graph: &'a Graph, signals: SignalBuilder<'a>, warnings: &'a mut Warnings) -> Self {
+        Builder { graph, signals, warnings, elements: 0 }
+    }
+
+    /// The shape of a geometry node; `None`, with a warning, when it is empty or of no use for collisions.
+    pub fn geometry(&mut self, node: Node) -> Result<Option<Geometry>, SceneError> {
+        match self.graph.type_name(node) {
+            "Box" => self.cuboid(node).map(Some),
+            "Sphere" => self.sphere(node).map(Some),
+            "Cone" => self.cone(node).map(Some),
+            "Cylinder" => self.cylinder(node).map(Some),
+            "IndexedFaceSet" => self.face_set(node),
+            "IndexedLineSet" => self.line_set(node),
+            "PointSet" => self.point_set(node),
+            "ElevationGrid" => self.elevation_grid(node),
+            "Extrusion" => self.extrusion(node),
+            other => {
+                self.warnings.add(format!("{other} has no shape to collide with; passed over"));
+                Ok(None)
+            }
+        }
+    }
+
+    /// A warning about a node.
+    pub fn warn(&mut self, node: Node, message: impl std::fmt::Display) {
+        self.warnings.add(format!("{}: {message}", self.graph.describe(node)));
+    }
+
+    /// The result for a node with nothing in it.
+    fn empty(&mut self, node: Node) -> Result<Option<Geometry>, SceneError> {
+        self.warn(node, "is empty; passed over");
+        Ok(None)
+    }
+
+    /// Counts vertices and primitives, or coordinates copied, against the limit.
+    pub fn count(&mut self, node: Node, elements: usize) -> Result<(), SceneError> {
+        self.elements = self.elements.saturating_add(elements);
+        if self.elements > ELEMENTS_MAX {
+            let message = format!("the scene has more than {ELEMENTS_MAX} vertices and primitives");
+            return Err(self.graph.error(node, message));
+        }
+        Ok(())
+    }
+
+    /// The points in the field `coord`, which a CoordinateInterpolator may drive.
+    fn coordinates(&mut self, node: Node) -> Result<Coordinates, SceneError> {
+        let Some(coord) = self.graph.node(node, "coord") else {
+            return Ok(Coordinates { points: Vec::new(), deformation: None });
+        };
+        self.count(coord, self.graph.count(coord, "point"))?;
+        let points = self.graph.vectors(coord, "point")?;
+        let signal = self.signals.driving(coord, "point", self.warnings)?;
+        let Some(signal) = signal else { return Ok(Coordinates { points, deformation: None }) };
+        let expected = self.signals.point_count(signal);
+        if expected != Some(points.len()) {
+            let sent = expected.map_or("changing numbers of".to_owned(), |count| count.to_string());
+            let message = format!("has {} points, but {sent} points are sent to it", points.len());
+            return Err(self.graph.error(coord, message));
+        }
+        let deformation = Deformation { signal, rest: Arc::from(points.as_slice()) };
+        let points = match self.signals.events(0.0).swap_remove(signal) {
+            Some(Event::Points(points)) => points,
+            _ => points,
+        };
+        Ok(Coordinates { points, deformation: Some(deformation) })
+    }
+
+    /// A mesh.
+    fn mesh(
+        &mut self,
+        node: Node,
+        points: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+        deformation: Option<Deformation>,
+    ) -> Result<Option<Geometry>, SceneError> {
+        if triangles.is_empty() {
+            return self.empty(node);
+        }
+        self.count(node, triangles.len())?;
+        let degenerate = triangles.iter().filter(|t| measure::is_flat(t.map(|i| points[i as usize]))).count();
+        let shape = Shape::mesh(points, triangles).map_err(|error| self.graph.error(node, error))?;
+        Ok(Some(Geometry { shape, degenerate, deformation }))
+    }
+
+    /// Index `index` as a vertex, checked.
+    fn vertex(&self, node: Node, index: i32, count: usize) -> Result<u32, SceneError> {
+        match u32::try_from(index) {
+            Ok(vertex) if (vertex as usize) < count => Ok(vertex),
+            _ => {
+                let message =
+                    format!("coordIndex holds {index}; expected -1 or less than the {count} points");
+                Err(self.graph.error(node, message))
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! The files of a scene: the one that is loaded, and those that it inlines.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use super::document::Document;
+use super::text;
+use super::warnings::Warnings;
+use crate::error::SceneError;
+
+/// Parsed files, each once.
+#[derive(Debug, Default)]
+pub(super) struct Library {
+    documents: HashMap<PathBuf, Rc<Document>>,
+}
+
+/// A local file that a URL names, and what follows the `#`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Target {
+    pub file: PathBuf,
+    pub fragment: Option<String>,
+}
+
+impl Library {
+    /// A file, parsed.
+    pub fn open(&mut self, file: &Path, warnings: &mut Warnings) -> Result<Rc<Document>, SceneError> {
+        let key = file.canonicalize().unwrap_or_else(|_| file.to_owned());
+        if let Some(document) = self.documents.get(&key) {
+            return Ok(document.clone());
+        }
+        let document = Rc::new(Document::parse(file, &text::read(file)?, warnings)?);
+        self.documents.insert(key, document.clone());
+        Ok(document)
+    }
+}
+
+/// The first of some URLs that names a local file that is there; relative to the file that names it. Otherwise why not.
+pub(super) fn locate(from: &Path, urls: &[String]) -> Result<Target, String> {
+    let folder = from.parent().unwrap_or(Path::new(""));
+    let mut reason = "it has no url".to_owned();
+    for url in urls {
+        match relative(url) {
+            Some(target) => {
+                let file = folder.join(&target.file);
+                if file.is_file() {
+                    return Ok(Target { file, ..target });
+                }
+                reason = format!("there is no file \"{url}\"");
+            }
+            None => reason = format!("\"{url}\" is not a relative path; only local files are read"),
+        }
+    }
+    Err(reason)
+}
+
+/// The relative path that a URL is, with its percent escapes decoded; `None` for other URLs and absolute paths.
+fn relative(url: &str) -> Option<Target> {
+    let (path, fragment) = match url.split_once('#') {
+        Some((path, fragment)) => (path, Some(fragment.to_owned())),
+        None => (url, None),
+    };
+    let has_scheme = path.split('/').next().is_some_and(|first| first.contains(':'));
+    let file = PathBuf::from(unescape(path)?);
+    let is_relative = file.is_relative() && !path.is_empty() && !has_scheme && !path.starts_with('\\');
+    is_relative.then_some(Target { file, fragment })
+}
+
+/// Decodes percent escapes; `None` when they do not make UTF-8 or hide a NUL.
+fn unescape(path: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(path.len());
+    let mut rest = path.as_bytes();
+    while let Some((&first, after)) = rest.split_first() {
+        let escape = (first == b'%').then(|| after.get(..2)).flatten();
+        let code = escape.and_then(|hex| std::str::from_utf8(hex).ok());
+        match code.and_then(|hex| u8::from_str_radix(hex, 16).ok()) {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &after[2..];
+            }
+            None => {
+                bytes.push(first);
+                rest = after;
+            }
+        }
+    }
+    String::from_utf8(bytes).ok().filter(|path| !path.contains('\0'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_relative_paths_are_local() {
+        let target = |file: &str, fragment: Option<&str>| {
+            Some(Target { file: file.into(), fragment: fragment.map(str::to_owned) })
+        };
+        assert_eq!(relative("a/b.wrl"), target("a/b.wrl", None));
+        assert_eq!(relative("../b%20c.wrl#Name"), target("../b c.wrl", Some("Name")));
+        assert_eq!(relative("http://a/b.wrl"), None);
+        assert_eq!(relative("urn:a"), None);
+        assert_eq!(relative("/etc/passwd"), None);
+        assert_eq!(relative("%2Fetc/passwd"), None);
+        assert_eq!(relative("a%00"), None);
+        assert_eq!(relative("#Viewpoint"), None);
+        assert_eq!(relative("100%"), target("100%", None));
+    }
+}

@@ -1,0 +1,44 @@
+//! How much a file may ask for. Every limit turns a hostile file into an error instead of a hang or an exhausted memory.
+
+/// How deep brackets may nest in the text. The parser recurses once or twice for each; real exporters stay under 100.
+pub(super) const NESTING_MAX: usize = 256;
+
+/// Bytes in a file.
+pub(super) const FILE_BYTES_MAX: u64 = 1 << 29;
+
+/// Nodes written in one file. The parser spends up to 10 kB on a node of many fields, so that this is up to 2 GB.
+pub(super) const FILE_NODES_MAX: usize = 200_000;
+
+/// ROUTEs written in one file: the parser compares each with all before it.
+pub(super) const FILE_ROUTES_MAX: usize = 20_000;
+
+/// Bytes of PROTO interface that the parser copies: once for each instance, and once for each IS.
+pub(super) const COPIED_BYTES_MAX: usize = 1 << 28;
+
+/// Names beginning with USE, which the parser may take for a USE of something unknown; it looks through all nodes for
+/// each.
+pub(super) const USE_LOOKALIKES_MAX: usize = 1_000;
+
+/// Nodes after the instances of PROTO, Inline and USE are written out.
+pub(super) const NODES_MAX: usize = 1_000_000;
+
+/// How deep nodes may nest when the instances are written out.
+pub(super) const DEPTH_MAX: usize = 512;
+
+/// How deep files may inline files.
+pub(super) const INLINE_DEPTH_MAX: usize = 32;
+
+/// Vertices, primitives, interpolated values and entries of paths in all of a scene: each is some 10 to 100 bytes.
+pub(super) const ELEMENTS_MAX: usize = 16_000_000;
+
+/// Corners of a face that is not convex: triangulating it takes up to the square of this.
+pub(super) const CONCAVE_CORNERS_MAX: usize = 16_384;
+
+/// How many ROUTEs an event may follow from its sensor.
+pub(super) const CHAIN_MAX: usize = 512;
+
+/// Warnings kept.
+pub(super) const WARNINGS_MAX: usize = 200;
+
+/// The stack on which a file is read: enough for [`NESTING_MAX`] and [`DEPTH_MAX`], whatever the caller's stack is.
+pub(super) const STACK_BYTES: usize = 64 << 20;

@@ -1,0 +1,428 @@
+//! A look through the text before it is parsed.
+//!
+//! The parser (the crate vrml97) is recursive, takes memory and time for granted, and does not say where a node stands.
+//! This pass bounds the nesting, refuses what would cost it quadratic time or memory, and finds the line of every node.
+//! It also hands on a text of the same lines that means the same in VRML97 and in the parser's dialect:
+//!
+//! * comments are blank, because `#/*` opens a comment over several lines in the dialect;
+//! * a decimal integer below -2^31 gets a decimal point: it is a legal float, but as the size of an image it makes the
+//!   parser panic.
+
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+
+use super::limits::*;
+use crate::error::SceneError;
+
+/// A text that is safe to parse.
+#[derive(Debug)]
+pub(super) struct Scanned {
+    /// What to parse.
+    pub text: String,
+    /// Each node, in the order of the text.
+    pub nodes: Vec<Mark>,
+}
+
+/// Where a node stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Mark {
+    /// The line of its `{`.
+    pub line: usize,
+    /// The name that DEF gives it. The parser changes names that are given twice.
+    pub name: Option<Box<str>>,
+}
+
+/// Checks a text. Cost: O(n).
+pub(super) fn scan(file: &Path, text: &str) -> Result<Scanned, SceneError> {
+    let mut scanner = Scanner::new(file, text);
+    scanner.run()?;
+    Ok(Scanned { text: scanner.out, nodes: scanner.nodes })
+}
+
+/// What an opening bracket opens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Opened {
+    Node,
+    List,
+    /// The interface of a PROTO, from a byte on.
+    Interface(usize),
+    /// The body of a PROTO whose interface takes so many bytes. It has names of its own.
+    Body(usize),
+}
+
+/// What the next name is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Expect {
+    Anything,
+    DefName,
+    UseName,
+    ProtoName,
+    /// A name after ROUTE, TO and the like.
+    OtherName,
+}
+
+/// A PROTO whose body has not begun, at a depth of brackets.
+struct Declared<'a> {
+    name: &'a str,
+    depth: usize,
+    interface: usize,
+}
+
+struct Scanner<'a> {
+    file: &'a Path,
+    text: &'a str,
+    at: usize,
+    line: usize,
+    out: String,
+    nodes: Vec<Mark>,
+    /// The name of a DEF whose node has not begun.
+    def: Option<&'a str>,
+    brackets: Vec<(Opened, usize)>,
+    /// The names that DEF has given, one set for the file and one for each PROTO body around.
+    names: Vec<HashSet<&'a str>>,
+    declared: Vec<Declared<'a>>,
+    /// Bytes of interface by the name of the PROTO.
+    interfaces: HashMap<&'a str, usize>,
+    copied: usize,
+    routes: usize,
+    lookalikes: usize,
+    expect: Expect,
+}
+
+impl<'a> Scanner<'a> {
+    fn new(file: &'a Path, text: &'a str) -> Self {
+        Scanner {
+            file,
+            text,
+            at: 0,
+            line: 1,
+            out: String::with_capacity(text.len()),
+            nodes: Vec::new(),
+            def: None,
+            brackets: Vec::new(),
+            names: vec![HashSet::new()],
+            declared: Vec::new(),
+            interfaces: HashMap::new(),
+            copied: 0,
+            routes: 0,
+            lookalikes: 0,
+            expect: Expect::Anything,
+        }
+    }
+
+    fn run(&mut self) -> Result<(), SceneError> {
+        self.header();
+        while let Some(&byte) = self.text.as_bytes().get(self.at) {
+            match byte {
+                b'#' => self.comment(),
+                b'"' => self.string()?,
+                b'{' | b'[' => self.open(byte)?,
+                b'}' | b']' => self.close(byte)?,
+                _ if is_word(byte) => self.word()?,
+                _ => self.other(byte),
+            }
+        }
+        match self.brackets.last() {
+            Some(&(_, line)) => {
+                let close = self.closing();
+                self.fail(format!(
+                    "the file ends where '{close}' was expected, for the bracket of line {line}"
+                ))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The first line is a comment to VRML, but not to the parser.
+    fn header(&mut self) {
+        let end = self.text.find(['\r', '\n']).unwrap_or(self.text.len());
+        self.copy(end);
+    }
+
+    fn comment(&mut self) {
+        let rest = &self.text[self.at..];
+        let end = rest.find(['\r', '\n']).unwrap_or(rest.len());
+        self.out.extend(std::iter::repeat_n(' ', end));
+        self.at += end;
+    }
+
+    fn string(&mut self) -> Result<(), SceneError> {
+        let bytes = self.text.as_bytes();
+        let mut end = self.at + 1;
+        while let Some(&byte) = bytes.get(end) {
+            match byte {
+                b'"' => {
+                    self.line += bytes[self.at..end].iter().filter(|&&byte| byte == b'\n').count();
+                    self.copy(end + 1);
+                    self.expect = Expect::Anything;
+                    return Ok(());
+                }
+                b'\\' => end += 2,
+                _ => end += 1,
+            }
+        }
+        self.fail("the string that begins here has no end; expected '\"'")
+    }
+
+    fn open(&mut self, byte: u8) -> Result<(), SceneError> {
+        if self.brackets.len() == NESTING_MAX {
+            return self.fail(format!("brackets nest deeper than {NESTING_MAX}"));
+        }
+        let opened = self.opened(byte);
+        match opened {
+            Opened::Body(_) => self.names.push(HashSet::new()),
+            Opened::Node => {
+                let name = self.def.take().map(Box::from);
+                self.nodes.push(Mark { line: self.line, name });
+            }
+            Opened::List | Opened::Interface(_) => {}
+        }
+        if self.nodes.len() > FILE_NODES_MAX {
+            return self.fail(format!("the file has more than {FILE_NODES_MAX} nodes"));
+        }
+        self.brackets.push((opened, self.line));
+        self.expect = Expect::Anything;
+        self.copy(self.at + 1);
+        Ok(())
+    }
+
+    fn opened(&mut self, byte: u8) -> Opened {
+        let depth = self.brackets.len();
+        let declares = self.declared.last().is_some_and(|declared| declared.depth == depth);
+        match (byte, declares) {
+            (b'{', true) => {
+                let interface = self.declared.pop().map_or(0, |declared| {
+                    self.interfaces.insert(declared.name, declared.interface);
+                    declared.interface
+                });
+                Opened::Body(interface)
+            }
+            (b'{', false) => Opened::Node,
+            (_, true) => Opened::Interface(self.at),
+            (_, false) => Opened::List,
+        }
+    }
+
+    fn close(&mut self, byte: u8) -> Result<(), SceneError> {
+        let found = byte as char;
+        let expected = self.closing();
+        let Some((opened, line)) = self.brackets.pop() else {
+            return self.fail(format!("'{found}' closes nothing; expected a node, PROTO or ROUTE"));
+        };
+        if found != expected {
+            return self
+                .fail(format!("expected '{expected}', for the bracket of line {line}, found '{found}'"));
+        }
+        match opened {
+            Opened::Body(_) => drop(self.names.pop()),
+            Opened::Interface(start) => {
+                if let Some(declared) = self.declared.last_mut() {
+                    declared.interface = self.at - start;
+                }
+            }
+            Opened::Node | Opened::List => {}
+        }
+        self.expect = Expect::Anything;
+        self.copy(self.at + 1);
+        Ok(())
+    }
+
+    /// The bracket that closes the innermost open one.
+    fn closing(&self) -> char {
+        match self.brackets.last() {
+            Some((Opened::List | Opened::Interface(_), _)) => ']',
+            _ => '}',
+        }
+    }
+
+    fn word(&mut self) -> Result<(), SceneError> {
+        let rest = &self.text[self.at..];
+        let end = rest.bytes().position(|byte| !is_word(byte)).unwrap_or(rest.len());
+        let word = &rest[..end];
+        if word.starts_with(|c: char| c.is_ascii_digit() || c == '+' || c == '-') {
+            self.number(word);
+            return Ok(());
+        }
+        self.name(word)?;
+        self.copy(self.at + end);
+        Ok(())
+    }
+
+    /// Copies a number, or several without space between.
+    fn number(&mut self, word: &str) {
+        let mut rest = word;
+        while let Some(minus) = rest.find('-') {
+            let digits = rest[minus + 1..].bytes().take_while(u8::is_ascii_digit).count();
+            let end = minus + 1 + digits;
+            self.out.push_str(&rest[..end]);
+            if rest[minus..end].parse::<f64>().is_ok_and(|value| value < f64::from(i32::MIN)) {
+                let next =
+                    rest[end..].bytes().next().or(self.text.as_bytes().get(self.at + word.len()).copied());
+                if next != Some(b'.') {
+                    self.out.push('.');
+                }
+            }
+            rest = &rest[end..];
+        }
+        self.out.push_str(rest);
+        self.at += word.len();
+        self.expect = Expect::Anything;
+    }
+
+    fn name(&mut self, word: &'a str) -> Result<(), SceneError> {
+        let expect = std::mem::replace(&mut self.expect, Expect::Anything);
+        match expect {
+            Expect::DefName => {
+                self.def = Some(word);
+                if let Some(names) = self.names.last_mut() {
+                    names.insert(word);
+                }
+            }
+            Expect::UseName => return self.check_use(word),
+            Expect::ProtoName => {
+                let depth = self.brackets.len();
+                self.declared.push(Declared { name: word, depth, interface: 0 });
+            }
+            Expect::OtherName => {}
+            Expect::Anything => return self.keyword_or_name(word),
+        }
+        Ok(())
+    }
+
+    fn keyword_or_name(&mut self, word: &'a str) -> Result<(), SceneError> {
+        match word {
+            "DEF" => self.expect = Expect::DefName,
+            "USE" => self.expect = Expect::UseName,
+            "PROTO" => self.expect = Expect::ProtoName,
+            "EXTERNPROTO" | "TO" => self.expect = Expect::OtherName,
+            "ROUTE" => {
+                self.expect = Expect::OtherName;
+                self.routes += 1;
+            }
+            "IS" => {
+                self.expect = Expect::OtherName;
+                self.copied += self.body_interface();
+            }
+            _ => {
+                self.copied += self.interfaces.get(word).copied().unwrap_or(0);
+                self.lookalikes += usize::from(word.starts_with("USE"));
+            }
+        }
+        self.check_counts()
+    }
+
+    /// A node can be used after its DEF, in the same file or PROTO (ISO/IEC 14772-1, 4.4.4 and 4.6.2).
+    fn check_use(&mut self, word: &str) -> Result<(), SceneError> {
+        match self.names.last().is_some_and(|names| names.contains(word)) {
+            true => Ok(()),
+            false => self.fail(format!("USE {word}: expected the name of a DEF that stands before")),
+        }
+    }
+
+    fn check_counts(&self) -> Result<(), SceneError> {
+        if self.routes > FILE_ROUTES_MAX {
+            return self.fail(format!("the file has more than {FILE_ROUTES_MAX} ROUTEs"));
+        }
+        if self.copied > COPIED_BYTES_MAX {
+            return self.fail(format!("PROTO interfaces add up to more than {COPIED_BYTES_MAX} bytes"));
+        }
+        if self.lookalikes > USE_LOOKALIKES_MAX {
+            return self.fail(format!("more than {USE_LOOKALIKES_MAX} names begin with USE"));
+        }
+        Ok(())
+    }
+
+    /// The bytes of the interface of the PROTO whose body this is.
+    fn body_interface(&self) -> usize {
+        let body = |&(opened, _): &(Opened, usize)| match opened {
+            Opened::Body(interface) => Some(interface),
+            _ => None,
+        };
+        self.brackets.iter().rev().find_map(body).unwrap_or(0)
+    }
+
+    fn other(&mut self, byte: u8) {
+        if byte == b'\n' {
+            self.line += 1;
+        }
+        self.copy(self.at + 1);
+    }
+
+    fn copy(&mut self, end: usize) {
+        self.out.push_str(&self.text[self.at..end]);
+        self.at = end;
+    }
+
+    fn fail<T>(&self, message: impl Into<String>) -> Result<T, SceneError> {
+        Err(SceneError::new(self.file, Some(self.line), message))
+    }
+}
+
+/// Whether a byte can be inside a name or a number without its point; all of any character outside of ASCII can.
+fn is_word(byte: u8) -> bool {
+    !(byte <= 0x20
+        || matches!(byte, b'"' | b'#' | b'\'' | b',' | b'.' | b'[' | b'\\' | b']' | b'{' | b'}' | 0x7f))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(text: &str) -> Result<Scanned, SceneError> {
+        scan(Path::new("a.wrl"), text)
+    }
+
+    fn message(text: &str) -> String {
+        run(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn comments_become_blank_and_strings_stay() {
+        let scanned = run("#VRML V2.0 utf8\n#/* {\nWorldInfo { title \"# { \\\" [\" }").unwrap();
+        assert_eq!(scanned.text, "#VRML V2.0 utf8\n     \nWorldInfo { title \"# { \\\" [\" }");
+        assert_eq!(scanned.nodes, [Mark { line: 3, name: None }]);
+    }
+
+    #[test]
+    fn the_body_of_a_proto_is_no_node_and_has_its_own_names() {
+        let text = "#\nPROTO A [ field SFNode n NULL\n] {\nDEF X Group {} }\nA {}\n";
+        let nodes = run(text).unwrap().nodes;
+        assert_eq!(nodes, [Mark { line: 4, name: Some("X".into()) }, Mark { line: 5, name: None }]);
+        let text = format!("{text}Group {{ children USE X }}");
+        assert_eq!(message(&text), "a.wrl:6: USE X: expected the name of a DEF that stands before");
+    }
+
+    #[test]
+    fn brackets_must_match() {
+        assert_eq!(message("#\nA {\n[ }"), "a.wrl:3: expected ']', for the bracket of line 3, found '}'");
+        assert_eq!(
+            message("#\nA {\nb [ ]\n"),
+            "a.wrl:4: the file ends where '}' was expected, for the bracket of line 2"
+        );
+        assert!(message("#\n}").contains("closes nothing"));
+        assert!(message("#\nA { a \"x").contains("has no end"));
+    }
+
+    #[test]
+    fn nesting_is_bounded() {
+        let nested = |n: usize| format!("#\n{}{}", "A {".repeat(n), "}".repeat(n));
+        assert!(run(&nested(NESTING_MAX)).is_ok());
+        assert!(message(&nested(NESTING_MAX + 1)).contains("deeper than 256"));
+    }
+
+    #[test]
+    fn integers_out_of_range_become_floats() {
+        let text = "#\na -2147483649 -2147483648 5-99999999999 -99999999999.5 A-99999999999 -9999999999e2";
+        let expected =
+            "#\na -2147483649. -2147483648 5-99999999999. -99999999999.5 A-99999999999 -9999999999.e2";
+        assert_eq!(run(text).unwrap().text, expected);
+    }
+
+    #[test]
+    fn copies_of_an_interface_are_bounded() {
+        let interface = format!("field MFFloat a [{}]", " 1".repeat(1 << 16));
+        let instances = "P {} ".repeat(1 << 12);
+        let text = format!("#\nPROTO P [{interface}] {{}} {instances}");
+        assert!(message(&text).contains("PROTO interfaces add up"));
+    }
+}

@@ -1,0 +1,98 @@
+//! The TimeSensor (ISO/IEC 14772-1, 6.50), with time 0 at the start of the scene.
+
+use super::graph::{Graph, Node};
+use crate::error::SceneError;
+
+/// A clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sensor {
+    pub enabled: bool,
+    pub looping: bool,
+    pub start: f64,
+    pub stop: f64,
+    /// Positive.
+    pub cycle: f64,
+}
+
+impl Sensor {
+    /// The fields as the file gives them.
+    pub fn read(graph: &Graph, node: Node) -> Result<Sensor, SceneError> {
+        let cycle = graph.number(node, "cycleInterval")?;
+        if cycle <= 0.0 {
+            return Err(graph.error(node, format!("cycleInterval is {cycle}; expected more than 0")));
+        }
+        Ok(Sensor {
+            enabled: graph.flag(node, "enabled"),
+            looping: graph.flag(node, "loop"),
+            start: graph.number(node, "startTime")?,
+            stop: graph.number(node, "stopTime")?,
+            cycle,
+        })
+    }
+
+    /// The fraction of the cycle that was sent last at a time; `None` before the first.
+    pub fn fraction(&self, time: f64) -> Option<f64> {
+        if !self.enabled || !time.is_finite() || time < self.start {
+            return None;
+        }
+        let elapsed = time.min(self.end()) - self.start;
+        let cycles = elapsed / self.cycle;
+        if !self.looping && cycles >= 1.0 {
+            return Some(1.0);
+        }
+        match cycles.fract() {
+            0.0 if cycles > 0.0 => Some(1.0),
+            fraction => Some(fraction),
+        }
+    }
+
+    /// When its first cycle is over.
+    pub fn first_cycle_end(&self) -> f64 {
+        self.start + self.cycle
+    }
+
+    /// When it stops. A stopTime that is not after the startTime is ignored.
+    fn end(&self) -> f64 {
+        let end = if self.looping { f64::INFINITY } else { self.first_cycle_end() };
+        if self.stop > self.start { end.min(self.stop) } else { end }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ONCE: Sensor = Sensor { enabled: true, looping: false, start: 1.0, stop: 0.0, cycle: 2.0 };
+
+    #[test]
+    fn it_runs_once_and_holds_its_last_fraction() {
+        let at = |time| ONCE.fraction(time);
+        assert_eq!(at(0.5), None);
+        assert_eq!(at(1.0), Some(0.0));
+        assert_eq!(at(2.0), Some(0.5));
+        assert_eq!(at(3.0), Some(1.0));
+        assert_eq!(at(9.0), Some(1.0));
+    }
+
+    #[test]
+    fn a_loop_ends_each_cycle_with_1() {
+        let sensor = Sensor { looping: true, ..ONCE };
+        assert_eq!(sensor.fraction(3.0), Some(1.0));
+        assert_eq!(sensor.fraction(3.5), Some(0.25));
+        assert_eq!(sensor.fraction(5.0), Some(1.0));
+    }
+
+    #[test]
+    fn stop_time_freezes_it() {
+        let sensor = Sensor { looping: true, stop: 3.5, ..ONCE };
+        assert_eq!(sensor.fraction(100.0), Some(0.25));
+        assert_eq!(Sensor { stop: 2.0, ..ONCE }.fraction(100.0), Some(0.5));
+    }
+
+    #[test]
+    fn a_disabled_one_and_a_time_that_is_none_send_nothing() {
+        assert_eq!(Sensor { enabled: false, ..ONCE }.fraction(2.0), None);
+        assert_eq!(ONCE.fraction(f64::NAN), None);
+        assert_eq!(ONCE.fraction(f64::INFINITY), None);
+    }
+}

@@ -1,0 +1,72 @@
+//! A file's text, with a check that it is VRML97.
+
+use std::path::Path;
+
+use super::limits::FILE_BYTES_MAX;
+use crate::error::SceneError;
+
+/// The first line of every VRML97 file begins with this.
+const HEADER: &str = "#VRML V2.0 utf8";
+
+/// Reads a file of VRML97. Bytes that are not UTF-8 (old exporters wrote Latin-1 into comments and names) become U+FFFD.
+pub(super) fn read(path: &Path) -> Result<String, SceneError> {
+    let fail = |message: String| SceneError::new(path, None, message);
+    let meta = std::fs::metadata(path).map_err(|error| fail(format!("can't be read: {error}")))?;
+    if !meta.is_file() {
+        return Err(fail("is not a regular file".into()));
+    }
+    if meta.len() > FILE_BYTES_MAX {
+        return Err(fail(format!("has {} bytes; the limit is {FILE_BYTES_MAX}", meta.len())));
+    }
+    let bytes = std::fs::read(path).map_err(|error| fail(format!("can't be read: {error}")))?;
+    decode(path, &bytes)
+}
+
+/// The text of a file's bytes.
+pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<String, SceneError> {
+    let fail = |message: &str| Err(SceneError::new(path, Some(1), message));
+    if bytes.starts_with(&[0x1f, 0x8b]) {
+        return fail("is compressed with gzip; expected plain text, so decompress it first (gzip -dc)");
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut text = String::from_utf8_lossy(bytes).into_owned();
+    if text.starts_with("#VRML V1.0") {
+        return fail("is VRML 1.0; expected VRML97, whose first line is \"#VRML V2.0 utf8\"");
+    }
+    if text.starts_with("#X3D") {
+        return fail("is X3D; expected VRML97, whose first line is \"#VRML V2.0 utf8\"");
+    }
+    let ends = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_');
+    if !text.strip_prefix(HEADER).is_some_and(ends) {
+        return fail("has no VRML97 header; expected the first line \"#VRML V2.0 utf8\"");
+    }
+    text.push('\n');
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(bytes: &[u8]) -> String {
+        decode(Path::new("a.wrl"), bytes).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn every_other_format_is_named() {
+        assert!(message(b"\x1f\x8b\x08").contains("gzip"));
+        assert!(message(b"#VRML V1.0 ascii\n").contains("VRML 1.0"));
+        assert!(message(b"#X3D V3.0 utf8\n").contains("X3D"));
+        assert_eq!(
+            message(b"Shape {}"),
+            "a.wrl:1: has no VRML97 header; expected the first line \"#VRML V2.0 utf8\""
+        );
+        assert!(message(b"").contains("no VRML97 header"));
+        assert!(message(b"#VRML V2.0 utf88").contains("no VRML97 header"));
+    }
+
+    #[test]
+    fn the_header_may_be_the_whole_file_and_follow_a_byte_order_mark() {
+        assert_eq!(decode(Path::new("a.wrl"), b"\xef\xbb\xbf#VRML V2.0 utf8").unwrap(), "#VRML V2.0 utf8\n");
+    }
+}

@@ -1,0 +1,37 @@
+//! What was passed over or guessed.
+
+use std::collections::HashSet;
+
+use super::limits::WARNINGS_MAX;
+
+/// Warnings in the order of their first appearance, each once.
+#[derive(Debug, Default)]
+pub(super) struct Warnings {
+    seen: HashSet<String>,
+    list: Vec<String>,
+    dropped: usize,
+}
+
+impl Warnings {
+    /// Adds a warning, unless it is known or there are [`WARNINGS_MAX`].
+    pub fn add(&mut self, warning: impl Into<String>) {
+        let warning = warning.into();
+        if self.seen.contains(&warning) {
+            return;
+        }
+        if self.list.len() == WARNINGS_MAX {
+            self.dropped += 1;
+            return;
+        }
+        self.seen.insert(warning.clone());
+        self.list.push(warning);
+    }
+
+    /// All of them; the last one tells how many were dropped.
+    pub fn into_vec(mut self) -> Vec<String> {
+        if self.dropped > 0 {
+            self.list.push(format!("{} more warnings", self.dropped));
+        }
+        self.list
+    }
+}

@@ -1,0 +1,79 @@
+//! What distances in two local spaces are worth in the world.
+
+use super::lanes::Weights;
+use super::normal::Normal;
+use glam::DVec3;
+
+/// How the placements of two trees stretch distances; all are lower bounds, and zero is always valid.
+///
+/// Two boxes that are a gap apart along axis `i` of a local space are at least that gap times `facet[i]` apart in the world: the
+/// distance of two planes. And boxes whose gaps have a norm are at least that norm times `sigma_min` apart.
+///
+/// ```
+/// use solid3d::{glam::DVec3, tree::PairMetric};
+/// // a rotated, b stretched by 2, 3 and 4 along its axes
+/// let metric = PairMetric {
+///     facet_a: DVec3::ONE,
+///     facet_b: DVec3::new(2.0, 3.0, 4.0),
+///     sigma_min_a: 1.0,
+///     sigma_min_b: 2.0,
+/// };
+/// assert_eq!(metric.swapped().facet_a, metric.facet_b);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairMetric {
+    /// For each axis of `a`, the distance in the world of two planes across it that are 1 apart in `a`: `1 / |n|`, `n` a row of the
+    /// inverse of the linear part of the placement.
+    pub facet_a: DVec3,
+    /// The same for `b`.
+    pub facet_b: DVec3,
+    /// A lower bound of the least singular value of the linear part of the placement of `a`.
+    pub sigma_min_a: f64,
+    /// The same for `b`.
+    pub sigma_min_b: f64,
+}
+
+impl PairMetric {
+    /// The same with `a` and `b` exchanged.
+    pub fn swapped(&self) -> PairMetric {
+        PairMetric {
+            facet_a: self.facet_b,
+            facet_b: self.facet_a,
+            sigma_min_a: self.sigma_min_b,
+            sigma_min_b: self.sigma_min_a,
+        }
+    }
+}
+
+/// Pays for the rounding of all weighing, about ten operations in `f32`, with sixteen times 2^-24.
+const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
+
+/// A metric in tree coordinates.
+pub(super) struct Folded {
+    pub a: Weights,
+    pub b: Weights,
+    /// World distance of one unit, so chosen that no weight exceeds 1.
+    unit: f64,
+}
+
+impl Folded {
+    pub fn new(metric: &PairMetric, a: &Normal, b: &Normal) -> Self {
+        let (axes_a, norm_a) = (metric.facet_a * a.scale, metric.sigma_min_a * a.scale);
+        let (axes_b, norm_b) = (metric.facet_b * b.scale, metric.sigma_min_b * b.scale);
+        let unit = axes_a.max(axes_b).max_element().max(norm_a).max(norm_b);
+        // Without a unit every bound is zero: nothing is skipped, and nothing lost.
+        let inverse = if unit.is_normal() { unit.recip() } else { 0.0 };
+        let weight = |w: f64| (w * inverse) as f32;
+        let squared = |w: f64| weight(w) * weight(w);
+        let weights =
+            |axes: DVec3, norm: f64| Weights { axes: axes.to_array().map(squared), norm: squared(norm) };
+        let unit = if inverse > 0.0 { unit } else { 0.0 };
+        Folded { a: weights(axes_a, norm_a), b: weights(axes_b, norm_b), unit }
+    }
+
+    /// The lower bound in the world of a squared distance in units.
+    #[inline]
+    pub fn world(&self, squared: f32) -> f64 {
+        f64::from(squared).sqrt() * self.unit * (1.0 - ROUNDING)
+    }
+}

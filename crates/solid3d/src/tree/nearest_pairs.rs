@@ -1,0 +1,95 @@
+//! Branch and bound for two trees.
+
+use super::lanes::distances_squared;
+use super::metric::{Folded, PairMetric};
+use super::nearest::push_unless_far;
+use super::node::{Child, WIDTH};
+use super::pairs::{Duel, Step};
+use super::relative::Relative;
+use super::{Place, Traversal, Tree};
+
+/// Visits the pairs of leaves that may hold primitives nearer to each other, in the world, than `best`; nearest children first.
+///
+/// `visit` lowers the best distance as it finds nearer primitives; pairs whose lower bound is not below it are skipped. At zero
+/// the query ends. Nothing nearer is lost, however the placements stretch, shear and mirror.
+///
+/// ```
+/// use solid3d::{Aabb, glam::{DAffine3, DVec3}, tree::{PairMetric, Relative, Traversal, Tree, nearest_pairs}};
+///
+/// let points: Vec<DVec3> = (0..100).map(|i| DVec3::new(f64::from(i), 0.0, 0.0)).collect();
+/// let tree = Tree::build(&points.iter().map(|&p| Aabb::new(p, p)).collect::<Vec<_>>());
+/// let b_to_a = DAffine3::from_translation(DVec3::new(101.5, 2.0, 0.0));
+/// let relative = Relative { b_to_a, a_to_b: b_to_a.inverse(), slack_in_a: 1e-12, slack_in_b: 1e-12 };
+/// let metric = PairMetric { facet_a: DVec3::ONE, facet_b: DVec3::ONE, sigma_min_a: 1.0, sigma_min_b: 1.0 };
+///
+/// let mut best = f64::INFINITY;
+/// nearest_pairs(&tree, &tree, &relative, &metric, &mut best, &mut Traversal::default(), |leaf_a, leaf_b, best| {
+///     for &i in leaf_a {
+///         for &j in leaf_b {
+///             *best = best.min(points[i as usize].distance(b_to_a.transform_point3(points[j as usize])));
+///         }
+///     }
+/// });
+/// assert_eq!(best, DVec3::new(2.5, 2.0, 0.0).length());
+/// ```
+pub fn nearest_pairs(
+    a: &Tree,
+    b: &Tree,
+    relative: &Relative,
+    metric: &PairMetric,
+    best: &mut f64,
+    traversal: &mut Traversal,
+    mut visit: impl FnMut(&[u32], &[u32], &mut f64),
+) {
+    let duel = Duel::new(a, b, relative);
+    let metric = Folded::new(metric, &a.normal, &b.normal);
+    let Traversal { counters, near_pairs: stack, .. } = traversal;
+    stack.clear();
+    stack.push((0.0, (Place::ROOT, Place::ROOT)));
+    while let Some((least, (in_a, in_b))) = stack.pop() {
+        if least >= *best {
+            continue;
+        }
+        let from = stack.len();
+        match duel.step(in_a, in_b) {
+            Step::Leaves(leaf_a, leaf_b) => {
+                counters.leaf_visits += 1;
+                visit(leaf_a, leaf_b, best);
+            }
+            Step::OpenA(node) => {
+                counters.box_tests += 1;
+                let probe = duel.b_to_a.probe(&b.box_at(in_b));
+                let lanes = &a.nodes[node];
+                let squared = distances_squared(lanes, &duel.b_to_a, &probe, &metric.a, &metric.b);
+                each_lane(&lanes.child, &squared, &metric, |least, lane| {
+                    push_unless_far((least, (Place::lane(node, lane), in_b)), *best, stack, from);
+                });
+            }
+            Step::OpenB(node) => {
+                counters.box_tests += 1;
+                let probe = duel.a_to_b.probe(&a.box_at(in_a));
+                let lanes = &b.nodes[node];
+                let squared = distances_squared(lanes, &duel.a_to_b, &probe, &metric.b, &metric.a);
+                each_lane(&lanes.child, &squared, &metric, |least, lane| {
+                    push_unless_far((least, (in_a, Place::lane(node, lane))), *best, stack, from);
+                });
+            }
+            Step::Nothing => {}
+        }
+    }
+}
+
+/// Calls `f` with the bound in the world of each lane in use.
+#[inline]
+fn each_lane(
+    children: &[Child; WIDTH],
+    squared: &[f32; WIDTH],
+    metric: &Folded,
+    mut f: impl FnMut(f64, usize),
+) {
+    for (lane, (_, &squared)) in
+        children.iter().zip(squared).enumerate().filter(|(_, (c, _))| **c != Child::EMPTY)
+    {
+        f(metric.world(squared), lane);
+    }
+}
