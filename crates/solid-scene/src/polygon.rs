@@ -14,13 +14,11 @@ const FOLD_TOLERANCE: f64 = 1e-9;
 /// Three corners or more give a fan around the first, unless a triangle of the fan would be folded over, facing against
 /// the polygon: then ears are cut, in the plane of the polygon's area vector. Fewer corners give nothing.
 pub(crate) fn triangulate(corners: &[u32], vertices: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
-    if corners.len() > 3 && corners.len() <= EARCUT_CORNERS_MAX {
-        if let Some(ears) = ears_where_folded(corners, vertices) {
-            triangles.extend(ears);
-            return;
-        }
+    let may_cut = corners.len() > 3 && corners.len() <= EARCUT_CORNERS_MAX;
+    match may_cut.then(|| ears_where_folded(corners, vertices)).flatten() {
+        Some(ears) => triangles.extend(ears),
+        None => triangles.extend(fan(corners)),
     }
-    triangles.extend(fan(corners));
 }
 
 fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {

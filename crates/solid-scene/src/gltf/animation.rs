@@ -33,10 +33,8 @@ impl Animation {
             Some(choice) => chosen(&names, choice)?,
             None if names.is_empty() => return Ok(Animation::default()),
             None => {
-                if let [first, others @ ..] = names.as_slice() {
-                    if !others.is_empty() {
-                        warnings.push(format!("plays the animation {first}, not {}", others.join(", ")));
-                    }
+                if names.len() > 1 {
+                    warnings.push(format!("plays the animation {}, not {}", names[0], names[1..].join(", ")));
                 }
                 0
             }

@@ -158,12 +158,10 @@ impl Header {
 }
 
 fn element(words: &[&str], line: usize) -> Result<Element> {
-    if let [name, count] = words {
-        if let Ok(count) = count.parse() {
-            return Ok(Element { name: (*name).to_owned(), count, properties: Vec::new() });
-        }
-    }
-    Err(Fault::at(line, "expected `element`, a name and a count"))
+    let expected = || Fault::at(line, "expected `element`, a name and a count");
+    let [name, count] = words else { return Err(expected()) };
+    let count = count.parse().map_err(|_| expected())?;
+    Ok(Element { name: (*name).to_owned(), count, properties: Vec::new() })
 }
 
 fn property(words: &[&str], line: usize) -> Result<Property> {
