@@ -9,7 +9,8 @@ use crate::vrml::limits::CONCAVE_CORNERS_MAX;
 impl Builder<'_> {
     /// The vertices are the points of the Coordinate node, all and in its order, so that they deform with it.
     ///
-    /// The field `convex` is not believed: each face is looked at.
+    /// The field `convex` is not believed: each face is looked at. A face whose corners coincide stays, as degenerate
+    /// triangles: exporters write points and edges that way.
     pub(super) fn face_set(&mut self, node: Node) -> Result<Option<Geometry>, SceneError> {
         let Coordinates { points, deformation } = self.coordinates(node)?;
         let graph = self.graph;
@@ -21,7 +22,6 @@ impl Builder<'_> {
             for &index in polygon {
                 corners.push(self.vertex(node, index, points.len())?);
             }
-            drop_repeats(&mut corners);
             if corners.len() < 3 {
                 small += usize::from(!polygon.is_empty());
                 continue;
@@ -39,13 +39,5 @@ impl Builder<'_> {
             self.warn(node, format!("{small} faces have fewer than three corners; passed over"));
         }
         self.mesh(node, points, triangles, deformation)
-    }
-}
-
-/// Drops corners that repeat the one before: exporters close polygons by repeating the first.
-fn drop_repeats(corners: &mut Vec<u32>) {
-    corners.dedup();
-    while corners.len() > 1 && corners.first() == corners.last() {
-        corners.pop();
     }
 }

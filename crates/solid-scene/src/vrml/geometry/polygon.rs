@@ -19,7 +19,7 @@ pub(super) struct Splitter {
 #[derive(Clone, Copy)]
 pub(super) struct Face<'a> {
     pub points: &'a [DVec3],
-    /// At least three, without one twice in a row.
+    /// At least three.
     pub corners: &'a [u32],
 }
 
@@ -80,12 +80,13 @@ impl Splitter {
     }
 }
 
-/// Whether a counter-clockwise polygon turns left at each corner, and once around in all.
+/// Whether a counter-clockwise polygon turns left at each corner, and once around in all. Corners may coincide.
 fn turns_once(polygon: &[DVec2]) -> bool {
-    let at = |i: usize| polygon[i % polygon.len()];
+    let next = |i: usize| polygon[(i + 1) % polygon.len()];
+    let edges = polygon.iter().enumerate().map(|(i, &p)| next(i) - p).filter(|&edge| edge != DVec2::ZERO);
+    let Some(mut before) = edges.clone().last() else { return true };
     let mut rises = 0;
-    for i in 0..polygon.len() {
-        let (before, after) = (at(i + 1) - at(i), at(i + 2) - at(i + 1));
+    for after in edges {
         if before.perp_dot(after) < -INWARD * before.length() * after.length() {
             return false;
         }
@@ -96,6 +97,7 @@ fn turns_once(polygon: &[DVec2]) -> bool {
             return false;
         }
         rises += usize::from(ascends(before) != ascends(after));
+        before = after;
     }
     rises <= 2
 }
@@ -163,6 +165,12 @@ mod tests {
         let turn = |i: f64| DVec2::from_angle(i * 0.8 * std::f64::consts::PI);
         let star: Vec<DVec2> = (0..5).map(|i| turn(f64::from(i))).collect();
         assert!(!turns_once(&star));
+    }
+
+    #[test]
+    fn corners_that_coincide_make_degenerate_triangles() {
+        let square = [DVec3::ZERO, DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y, DVec3::ZERO];
+        assert_eq!(split(&square).len(), 4);
     }
 
     #[test]
