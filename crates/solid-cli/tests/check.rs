@@ -219,6 +219,15 @@ fn an_output_that_cannot_be_written_is_an_error() {
     desk.run("check a.obj b.obj --csv .").assert_fails(&[".: can't be written"]);
 }
 
+#[test]
+fn what_is_read_is_not_overwritten() {
+    let desk = Desk::with_boxes();
+    desk.run("check a.obj b.obj --json b.obj").assert_fails(&["b.obj", "overwritten"]);
+    desk.run("check a.obj b.obj --csv ./a.obj").assert_fails(&["a.obj", "overwritten"]);
+    desk.run("check a.obj --json same --csv same").assert_fails(&["same", "different"]);
+    desk.run("check a.obj b.obj").assert_status(1);
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_an_error() {
