@@ -78,19 +78,28 @@ fn a_deformation_is_seen() {
     assert_eq!(colliding(&run), [8]);
 }
 
+/// A triangle under a node, which holds a node with the same triangle.
+const NESTED: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"name":"hull","mesh":0,"children":[1]},{"name":"turret","mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
 #[test]
 fn nodes_on_one_root_path_are_not_tested_unless_a_rule_says_so() {
-    let shape = "Shape { geometry Box { size 2 2 2 } }";
-    let text = format!(
-        "{VRML}DEF hull Transform {{ children [ {shape} DEF turret Transform {{ children {shape} }} ] }}\n"
-    );
-    let rules = "[[pair]]\na = \"*\"\nb = \"**\"\nresponse = \"simple\"\n";
-    let desk = Desk::new().file("s.wrl", text).file("r.toml", rules);
-    let run = desk.run("check s.wrl --json -");
+    let pair = |a: &str, b: &str| format!("[[pair]]\na = \"{a}\"\nb = \"{b}\"\nresponse = \"simple\"\n");
+    let object = "[[object]]\nname = \"*\"\nresponse = \"simple\"\n";
+    let desk = Desk::new().file("s.gltf", NESTED).file("object.toml", object);
+    let desk = desk.file("pair.toml", pair("tur*", "hull")).file("all.toml", pair("*", "*"));
+    let run = desk.run("check s.gltf --json -");
+    run.assert_status(0);
     assert_eq!(run.json()["objects"].as_array().unwrap().len(), 2);
-    let free = colliding(&run).is_empty();
-    assert_eq!(free, run.status == 0);
-    assert_eq!(colliding(&desk.run("check s.wrl --json - --rules r.toml")), [0]);
+    desk.run("check s.gltf --rules object.toml").assert_status(0);
+    desk.run("check s.gltf --rules pair.toml").assert_status(1);
+    desk.run("check s.gltf --rules all.toml").assert_status(1);
+    let twice = desk.run("check s.gltf s.gltf --json -").json();
+    assert_eq!(twice["summary"]["pairs"], 4, "files are apart");
 }
 
 #[test]

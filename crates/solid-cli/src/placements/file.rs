@@ -144,6 +144,8 @@ impl Lines<'_> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     const HEADER: &str = "frame,object,tx,ty,tz,qx,qy,qz,qw\n";
@@ -198,6 +200,16 @@ mod tests {
             let expected =
                 "expected the header frame,object,tx,ty,tz,qx,qy,qz,qw, optionally followed by sx,sy,sz";
             assert!(line == 1 && message.ends_with(expected), "{text:?}: {line} {message}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(body in "[0-9a-z,.\"\r\n -]{0,60}", any in ".{0,60}") {
+            let _ = read(&any);
+            if let Err((line, _)) = read(&format!("{HEADER}{body}")) {
+                prop_assert!(line >= 1 && line as usize <= 2 + body.matches('\n').count());
+            }
         }
     }
 }

@@ -187,6 +187,24 @@ mod tests {
     }
 
     #[test]
+    fn rules_that_make_too_many_pairs_are_refused_before_they_do() {
+        let names: Vec<String> = (0..3200).map(|i| i.to_string()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let ids = vec![ObjectId::default(); names.len()];
+        let objects = Objects { names: &names, ids: &ids, exempt: &[] };
+        let rules = |a: &str| {
+            let text = format!("[[pair]]\na = \"{a}\"\nb = \"*\"\nresponse = \"smart\"");
+            Rules::parse(Path::new("r.toml"), &text).expect("the rules are well formed")
+        };
+        let error = apply(&rules("*?"), None, &objects, &mut World::new()).expect_err("10 million pairs");
+        assert!(
+            error.to_string().starts_with("r.toml:2: the rules for pairs make 10240000 pairs"),
+            "{error}"
+        );
+        assert!(apply(&rules("*"), None, &objects, &mut World::new()).is_ok());
+    }
+
+    #[test]
     fn patterns_that_match_nothing_are_named() {
         let case = case(
             "[[object]]\nname = \"shpi\"\nresponse = \"ignore\"\n[[pair]]\na = \"x*\"\nb = \"ship\"\nresponse = \"ignore\"",
