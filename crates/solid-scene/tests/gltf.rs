@@ -1,5 +1,7 @@
 //! glTF files of others, against what two other programs computed of them.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test")]
+
 mod data;
 
 use std::path::Path;
@@ -145,5 +147,13 @@ fn the_baked_fox_runs() {
         let distance = vertices.iter().zip(baked).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
         // The fox is 155 long, so that a unit in the last place of its baked coordinates is 8e-6.
         assert!(distance < 2e-5, "frame {frame}: {distance}");
+    }
+}
+
+#[test]
+fn truncated_files_are_refused() {
+    let Some(folder) = data::folder() else { return };
+    for path in data::files(&folder.join("gltf"), &["glb", "gltf"]) {
+        assert_eq!(data::load_truncated("gltf", &path, 40), 0, "{}", path.display());
     }
 }

@@ -36,3 +36,18 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     files.sort();
     files
 }
+
+/// Cuts files off at places all over them and loads what is left. Gives how many of them load: no cut may panic.
+#[allow(dead_code, reason = "each test file is a crate of its own")]
+pub fn load_truncated(name: &str, path: &Path, cuts: usize) -> usize {
+    let bytes = std::fs::read(path).unwrap();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("cut").with_extension(path.extension().unwrap());
+    let mut loaded = 0;
+    for cut in 0..cuts {
+        std::fs::write(&file, &bytes[..bytes.len() * cut / cuts]).unwrap();
+        loaded += usize::from(load(&file).is_ok());
+    }
+    loaded
+}

@@ -43,12 +43,12 @@ fn an_orientation_interpolator_turns_and_others_scale() {
 
 #[test]
 fn center_is_animated_too() {
-    let text = format!(
-        "DEF T Transform {{ rotation 0 0 1 3.14159265358979 children Shape {{ geometry Box {{}} }} }}
-         DEF C TimeSensor {{}} DEF I PositionInterpolator {{ key [ 0 1 ] keyValue [ 0 0 0, 1 0 0 ] }}
-         ROUTE C.fraction_changed TO I.set_fraction ROUTE I.value_changed TO T.center"
+    let scene = scene(
+        "DEF T Transform { rotation 0 0 1 3.14159265358979 children Shape { geometry Box {} } }
+         DEF C TimeSensor {} DEF I PositionInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 1 0 0 ] }
+         ROUTE C.fraction_changed TO I.set_fraction ROUTE I.value_changed TO T.center",
     );
-    assert_near(origin(&scene(&text), 0.5), DVec3::X);
+    assert_near(origin(&scene, 0.5), DVec3::X);
 }
 
 const CLOTH: &str = "Shape { geometry IndexedFaceSet { coordIndex [ 0 1 2 ]

@@ -132,10 +132,9 @@ fn differences(row: &Expected, scene: &Scene) -> Vec<String> {
     let triangles: Option<Vec<_>> =
         each.map(|(object, pose)| bounds::triangles(object.shape(), &pose.placement)).collect();
     let triangles = triangles.map(|lists| lists.concat());
-    if let (Some(expected), Some(triangles)) = (row.triangles, &triangles) {
-        if expected != triangles.len() {
-            differences.push(format!("{}: {} triangles, expected {expected}", row.file, triangles.len()));
-        }
+    let count = triangles.as_ref().map(Vec::len);
+    if row.triangles.is_some() && row.triangles != count && count.is_some() {
+        differences.push(format!("{}: {count:?} triangles, expected {:?}", row.file, row.triangles));
     }
     if let (Some(expected), Some(triangles)) = (row.area, &triangles) {
         let area: f64 = triangles.iter().map(bounds::area).sum();

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
 
-use crate::files::{Folder, error, load, load_file};
+use crate::files::{Folder, error, load, load_file, scene, warnings};
 
 /// A file with some of everything.
 const EVERYTHING: &str = r#"#VRML V2.0 utf8
@@ -141,20 +141,43 @@ fn an_extrusion_of_too_many_points_is_an_error() {
 }
 
 #[test]
-fn a_concave_face_of_too_many_corners_is_an_error() {
+fn a_face_of_too_many_corners_is_a_fan_with_a_warning() {
     let corners = "0 1 2 3 ".repeat(10_000);
     let points = "coord Coordinate { point [ 0 0 0, 2 0 0, .5 .5 0, 0 2 0 ] }";
-    refused(
-        &format!("Shape {{ geometry IndexedFaceSet {{ {points} coordIndex [ {corners} ] }} }}"),
-        "a concave face has 40000 corners",
-    );
+    let scene =
+        scene(&format!("Shape {{ geometry IndexedFaceSet {{ {points} coordIndex [ {corners} ] }} }}"));
+    assert_eq!(scene.objects()[0].shape().primitive_count(), 39_998);
+    assert_eq!(warnings(&scene), ["IndexedFaceSet: a face of more than 10000 corners is taken as convex"]);
 }
 
 #[test]
 fn what_would_be_slow_to_parse_is_an_error() {
     refused(&"ROUTE a.b TO c.d\n".repeat(30_000), "more than 20000 ROUTEs");
     refused(&"Group{}".repeat(300_000), "more than 200000 nodes");
+    refused(&"DEF A Group{}".repeat(30_000), "more than 20000 names given again by DEF");
+    refused(&format!("Script {{ {} }}", "field SFBool a TRUE ".repeat(30_000)), "more than 20000 declared");
     let lookalikes: String = (0..2_000).map(|i| format!("USEa{i} ")).collect();
-    refused(&lookalikes, "names begin with USE");
+    refused(&lookalikes, "names that begin with USE");
     assert!(load(&"#/* \n".repeat(300_000)).is_ok());
+}
+
+/// What the limits let through at most.
+#[test]
+fn what_is_just_within_the_limits_is_read_in_time() {
+    let worst = [
+        "DEF A Group{}".repeat(20_000) + &"Group{}".repeat(179_000),
+        format!("DEF A Transform{{}} {}", "ROUTE A.scale TO A.scale ".repeat(19_000)),
+        format!(
+            "Script {{ {} }}",
+            (0..19_000).map(|i| format!("field SFBool a{i} TRUE ")).collect::<String>()
+        ),
+        (0..19_000).map(|i| format!("DEF A{i} Transform {{}} ")).collect::<String>()
+            + &(1..19_000).map(|i| format!("ROUTE A0.scale TO A{i}.scale ")).collect::<String>(),
+    ];
+    for text in worst {
+        let start = Instant::now();
+        assert!(load(&text).is_ok());
+        println!("{:?} for {}...", start.elapsed(), &text[..30]);
+        assert!(start.elapsed() < Duration::from_secs(30));
+    }
 }
