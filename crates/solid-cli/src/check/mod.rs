@@ -1,0 +1,115 @@
+//! `solid check`: a scene, played and tested frame by frame.
+
+mod clock;
+mod files;
+mod motion;
+mod player;
+mod report;
+mod root_paths;
+mod stage;
+mod timeline;
+
+use std::io::{IsTerminal, Write};
+
+use anyhow::{Context, Result};
+use solid_scene::Scene;
+use solid3d::Response;
+
+use crate::args::CheckArgs;
+use crate::output::{self, is_stdout};
+use crate::placements::Placements;
+use crate::record::{CsvRecorder, JsonRecorder, Recorder};
+use crate::rules::{self, Objects, Rules};
+use crate::table::Style;
+use crate::{Verdict, complain, scene};
+use clock::{Clock, Times};
+use motion::Motion;
+use player::Player;
+use report::Report;
+use stage::Stage;
+use timeline::Timeline;
+
+/// Checks what the command line says.
+pub fn run(args: &CheckArgs) -> Result<Verdict> {
+    files::refuse_clashes(args)?;
+    let (mut clock, mut times) = (Clock::start(), Times::default());
+    let rules = args.rules.as_deref().map(Rules::read).transpose()?.unwrap_or_default();
+    let scene = scene::load(&args.scene)?;
+    scene::warnings(&scene).for_each(|warning| complain("warning", warning));
+    let placements = placements(args, &scene)?;
+    let timeline = timeline(args, &scene, placements.as_ref())?;
+    let motion = match &placements {
+        Some(placements) => Motion::table(&scene, placements),
+        None => Motion::animation(&scene),
+    };
+    let mut stage = Stage::new(&scene, motion, timeline.time(0))?;
+    set_responses(&rules, args.response.map(Response::from), &scene, &mut stage)?;
+    let recorders = recorders(args, &scene)?;
+    clock.lap(&mut times.load);
+
+    let mut player = Player { scene: &scene, stage, recorders, clock, times };
+    let pairs = player.play(&timeline)?;
+    let statistics = player.stage.statistics();
+    print(args, &Report { scene: &scene, pairs: &pairs, statistics, times: player.times })?;
+    Ok(if pairs.summary().collisions > 0 { Verdict::Collisions } else { Verdict::Clean })
+}
+
+fn placements(args: &CheckArgs, scene: &Scene) -> Result<Option<Placements>> {
+    let Some(path) = &args.placements else {
+        return Ok(None);
+    };
+    let placements = Placements::read(path, &names(scene))?;
+    if placements.rows().is_empty() {
+        complain("warning", format_args!("{}: there are no rows; nothing is placed", path.display()));
+    }
+    Ok(Some(placements))
+}
+
+fn timeline(args: &CheckArgs, scene: &Scene, placements: Option<&Placements>) -> Result<Timeline> {
+    let Some(placements) = placements else {
+        return Timeline::between(args.from.unwrap_or(0.0), args.to.unwrap_or(scene.duration()), args.fps);
+    };
+    let place = || placements.rows().last().map(|row| placements.place(row.line)).unwrap_or_default();
+    Timeline::until(placements.last_frame(), args.fps).with_context(place)
+}
+
+fn names(scene: &Scene) -> Vec<&str> {
+    scene.objects().iter().map(|object| object.name()).collect()
+}
+
+fn set_responses(rules: &Rules, default: Option<Response>, scene: &Scene, stage: &mut Stage) -> Result<()> {
+    let exempt = root_paths::pairs(scene.objects());
+    let names = names(scene);
+    let (world, ids) = stage.world();
+    let objects = Objects { names: &names, ids, exempt: &exempt };
+    let warnings = rules::apply(rules, default, &objects, world)?;
+    warnings.iter().for_each(|warning| complain("warning", warning));
+    Ok(())
+}
+
+/// The recorders that write files.
+fn recorders(args: &CheckArgs, scene: &Scene) -> Result<Vec<Box<dyn Recorder>>> {
+    let mut recorders: Vec<Box<dyn Recorder>> = Vec::new();
+    if let Some(path) = &args.json {
+        recorders.push(Box::new(JsonRecorder::new(output::open(path)?, scene)?));
+    }
+    if let Some(path) = &args.csv {
+        recorders.push(Box::new(CsvRecorder::new(output::open(path)?)?));
+    }
+    Ok(recorders)
+}
+
+/// Prints the report. When standard output carries data, it carries nothing else: then there is no table, and statistics,
+/// if asked for, go to standard error.
+fn print(args: &CheckArgs, report: &Report) -> Result<()> {
+    let piped = [&args.json, &args.csv].into_iter().flatten().any(|path| is_stdout(path));
+    let mut output = if piped { output::stderr() } else { output::stdout() };
+    if !piped {
+        let style = Style::on(std::io::stdout().is_terminal());
+        output.write_all(report.text(style).as_bytes())?;
+    }
+    if args.stats {
+        output.write_all(report.statistics().as_bytes())?;
+    }
+    Ok(output.flush()?)
+}

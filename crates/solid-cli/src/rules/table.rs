@@ -1,0 +1,220 @@
+//! Bringing rules into a world's response table.
+
+use anyhow::{Result, bail};
+use solid3d::{ObjectId, Response, World};
+
+use super::file::{PairRule, Rules};
+use super::names::NameIndex;
+
+/// How many pairs of objects the rules for pairs may make: each is an entry of the world's table, of some 100 bytes. A rule
+/// for all pairs (`*` with `*`) makes none.
+const PAIRS_MAX: usize = 10_000_000;
+
+/// The objects that rules are about, by their place in the scene.
+pub struct Objects<'a> {
+    /// Unique.
+    pub names: &'a [&'a str],
+    pub ids: &'a [ObjectId],
+    /// Pairs that are not tested unless a rule for the pair says so.
+    pub exempt: &'a [(usize, usize)],
+}
+
+/// Sets the responses of a world. Returns warnings, for patterns that match nothing.
+pub fn apply(
+    rules: &Rules,
+    default: Option<Response>,
+    objects: &Objects,
+    world: &mut World,
+) -> Result<Vec<String>> {
+    let mut index = NameIndex::new(objects.names);
+    let named: Vec<_> =
+        rules.objects.iter().map(|rule| (index.matching(&rule.name), rule.response)).collect();
+    let paired: Vec<_> = rules.pairs.iter().map(|rule| Paired::find(rule, &mut index)).collect();
+    // A rule for all pairs overrides all that is before and below it, without an entry for each pair.
+    let universal = rules.pairs.iter().rposition(is_universal);
+    let rest = match universal {
+        Some(rule) => {
+            world.set_default_response(rules.pairs[rule].response);
+            &paired[rule + 1..]
+        }
+        None => {
+            world.set_default_response(default.or(rules.default).unwrap_or(Response::Witness));
+            set_objects(&named, objects, world)?;
+            &paired
+        }
+    };
+    set_pairs(rest, objects.ids, world)?;
+    Ok(index.into_warnings())
+}
+
+fn is_universal(rule: &PairRule) -> bool {
+    rule.a.pattern.is_universal() && rule.b.pattern.is_universal()
+}
+
+/// A rule for pairs, with the objects that its two sides name.
+struct Paired<'a> {
+    rule: &'a PairRule,
+    these: Vec<usize>,
+    those: Vec<usize>,
+}
+
+impl<'a> Paired<'a> {
+    fn find(rule: &'a PairRule, index: &mut NameIndex) -> Self {
+        Paired { rule, these: index.matching(&rule.a), those: index.matching(&rule.b) }
+    }
+}
+
+/// Sets the responses of objects, and exempts what is exempt.
+fn set_objects(named: &[(Vec<usize>, Response)], objects: &Objects, world: &mut World) -> Result<()> {
+    for (found, response) in named {
+        for &object in found {
+            world.set_object_response(objects.ids[object], *response)?;
+        }
+    }
+    for &(a, b) in objects.exempt {
+        world.clear_pair_response(objects.ids[a], objects.ids[b])?;
+    }
+    Ok(())
+}
+
+/// Sets the responses of pairs, later rules over earlier ones.
+fn set_pairs(paired: &[Paired], ids: &[ObjectId], world: &mut World) -> Result<()> {
+    let mut count = 0usize;
+    for Paired { rule, these, those } in paired {
+        count = count.saturating_add(these.len().saturating_mul(those.len()));
+        if count > PAIRS_MAX {
+            let place = &rule.a.place;
+            bail!("{place}: the rules for pairs make {count} pairs so far; the limit is {PAIRS_MAX}");
+        }
+        for &a in these {
+            for &b in those.iter().filter(|&&b| b != a) {
+                world.set_pair_response(ids[a], ids[b], rule.response)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use solid3d::Shape;
+    use solid3d::glam::DAffine3;
+
+    use super::*;
+
+    /// A world of some objects, with rules.
+    struct Case {
+        world: World,
+        ids: Vec<ObjectId>,
+        warnings: Vec<String>,
+    }
+
+    const NAMES: [&str; 4] = ["ship", "mine1", "mine2", "sweeper"];
+
+    fn case(rules: &str, default: Option<Response>, exempt: &[(usize, usize)]) -> Case {
+        let mut world = World::new();
+        let ball = Shape::sphere(1.0).expect("the radius is fine");
+        let add = |_: &&str| world.add(&ball, DAffine3::IDENTITY).expect("the placement is fine");
+        let ids: Vec<_> = NAMES.iter().map(add).collect();
+        let rules = Rules::parse(Path::new("r.toml"), rules).expect("the rules are well formed");
+        let objects = Objects { names: &NAMES, ids: &ids, exempt };
+        let warnings = apply(&rules, default, &objects, &mut world).expect("the rules are few");
+        Case { world, ids, warnings }
+    }
+
+    impl Case {
+        fn of(&self, a: usize, b: usize) -> Response {
+            self.world.response(self.ids[a], self.ids[b]).expect("both are there")
+        }
+    }
+
+    #[test]
+    fn pair_goes_before_object_and_object_before_default() {
+        let case = case(
+            "default = \"simple\"\n[[object]]\nname = \"mine*\"\nresponse = \"ignore\"\n\
+             [[pair]]\na = \"sweeper\"\nb = \"mine?\"\nresponse = \"smart\"",
+            None,
+            &[],
+        );
+        assert_eq!(case.of(0, 3), Response::Simple);
+        assert_eq!(case.of(0, 1), Response::Ignore);
+        assert_eq!(case.of(2, 3), Response::Smart);
+        assert!(case.warnings.is_empty());
+    }
+
+    #[test]
+    fn later_rules_override_earlier_ones() {
+        let object = |response| format!("[[object]]\nname = \"ship\"\nresponse = \"{response}\"\n");
+        let case = case(&(object("ignore") + &object("smart")), None, &[]);
+        assert_eq!(case.of(0, 3), Response::Smart);
+    }
+
+    #[test]
+    fn the_command_line_overrides_the_default() {
+        let case = case("default = \"simple\"", Some(Response::Smart), &[]);
+        assert_eq!(case.of(0, 1), Response::Smart);
+    }
+
+    #[test]
+    fn without_rules_it_is_witness() {
+        assert_eq!(case("", None, &[]).of(0, 1), Response::Witness);
+    }
+
+    #[test]
+    fn a_root_path_is_exempt_unless_a_pair_rule_says_otherwise() {
+        let objects = "[[object]]\nname = \"*\"\nresponse = \"simple\"\n";
+        let case_of = |pair: &str| case(&format!("{objects}{pair}"), None, &[(0, 1), (2, 3)]);
+        assert_eq!(case_of("").of(0, 1), Response::Ignore);
+        let case = case_of("[[pair]]\na = \"mine1\"\nb = \"ship\"\nresponse = \"smart\"");
+        assert_eq!((case.of(0, 1), case.of(2, 3)), (Response::Smart, Response::Ignore));
+    }
+
+    #[test]
+    fn a_rule_for_all_pairs_is_one_for_each() {
+        let before = "[[object]]\nname = \"ship\"\nresponse = \"simple\"\n\
+                      [[pair]]\na = \"ship\"\nb = \"sweeper\"\nresponse = \"ignore\"\n";
+        let after = "[[pair]]\na = \"mine1\"\nb = \"mine2\"\nresponse = \"witness\"\n";
+        let universal = "[[pair]]\na = \"*\"\nb = \"*\"\nresponse = \"smart\"\n";
+        let spelled = "[[pair]]\na = \"*?\"\nb = \"*?\"\nresponse = \"smart\"\n";
+        let quick = case(&format!("{before}{universal}{after}"), None, &[(0, 1)]);
+        let slow = case(&format!("{before}{spelled}{after}"), None, &[(0, 1)]);
+        for (a, b) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
+            assert_eq!(quick.of(a, b), slow.of(a, b), "{a} {b}");
+        }
+        assert_eq!((quick.of(0, 3), quick.of(1, 2)), (Response::Smart, Response::Witness));
+    }
+
+    #[test]
+    fn rules_that_make_too_many_pairs_are_refused_before_they_do() {
+        let names: Vec<String> = (0..3200).map(|i| i.to_string()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let ids = vec![ObjectId::default(); names.len()];
+        let objects = Objects { names: &names, ids: &ids, exempt: &[] };
+        let rules = |a: &str| {
+            let text = format!("[[pair]]\na = \"{a}\"\nb = \"*\"\nresponse = \"smart\"");
+            Rules::parse(Path::new("r.toml"), &text).expect("the rules are well formed")
+        };
+        let error = apply(&rules("*?"), None, &objects, &mut World::new()).expect_err("10 million pairs");
+        assert!(
+            error.to_string().starts_with("r.toml:2: the rules for pairs make 10240000 pairs"),
+            "{error}"
+        );
+        assert!(apply(&rules("*"), None, &objects, &mut World::new()).is_ok());
+    }
+
+    #[test]
+    fn patterns_that_match_nothing_are_named() {
+        let case = case(
+            "[[object]]\nname = \"shpi\"\nresponse = \"ignore\"\n[[pair]]\na = \"x*\"\nb = \"ship\"\nresponse = \"ignore\"",
+            None,
+            &[],
+        );
+        let expected = [
+            "r.toml:2: \"shpi\" matches no object; did you mean \"ship\"?",
+            "r.toml:5: \"x*\" matches no object",
+        ];
+        assert_eq!(case.warnings, expected);
+    }
+}
