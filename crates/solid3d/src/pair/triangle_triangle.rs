@@ -97,3 +97,81 @@ fn orient3d(p: &DVec3, q: &DVec3, r: &DVec3, s: &DVec3) -> f64 {
     let coord = |p: &DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     robust::orient3d(coord(p), coord(q), coord(r), coord(s))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::Rng;
+    use rand::rngs::StdRng;
+    use solid_oracle::generate::seeded;
+    use solid_oracle::triangles_intersect;
+
+    fn lattice_triangle(rng: &mut StdRng, end: i32) -> Triangle {
+        let mut corner = || DVec3::from_array(std::array::from_fn(|_| f64::from(rng.random_range(0..=end))));
+        [corner(), corner(), corner()]
+    }
+
+    /// Compares with the oracle in both orders and for every order of the corners; returns the answer.
+    fn check(x: &Triangle, y: &Triangle) -> bool {
+        let expected = triangles_intersect(x, y);
+        for [i, j, k] in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
+            let turned = [x[i], x[j], x[k]];
+            assert_eq!(intersect(&turned, y), expected, "{turned:?} {y:?}");
+            assert_eq!(intersect(y, &turned), expected, "{y:?} {turned:?}");
+        }
+        expected
+    }
+
+    /// On a lattice of 27 points, coplanar, touching and degenerate triangles abound.
+    #[test]
+    fn lattice_triangles_agree_with_the_oracle() {
+        let seed = 20;
+        println!("seed {seed}");
+        let mut rng = seeded(seed);
+        let (cases, mut hits) = (60_000, 0);
+        for _ in 0..cases {
+            let (x, y) = (lattice_triangle(&mut rng, 2), lattice_triangle(&mut rng, 2));
+            hits += i32::from(check(&x, &y));
+        }
+        println!("{hits} of {cases} hit");
+        assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))));
+    }
+
+    /// The same in one plane, also a slanted one; no other test sees so many coplanar pairs.
+    #[test]
+    fn coplanar_triangles_agree_with_the_oracle() {
+        let seed = 21;
+        println!("seed {seed}");
+        let mut rng = seeded(seed);
+        let (cases, mut hits) = (30_000, 0);
+        for case in 0..cases {
+            let plane = [
+                [DVec3::X, DVec3::Y],
+                [DVec3::Y, DVec3::Z],
+                [DVec3::new(1.0, 2.0, 0.0), DVec3::new(0.0, 1.0, 3.0)],
+            ];
+            let [u, v] = plane[case as usize % 3];
+            let lift = |t: Triangle| t.map(|p| p.x * u + p.y * v);
+            let (x, y) =
+                (lattice_triangle(&mut rng, 5), lattice_triangle(&mut rng, 5).map(|p| p + 2.0 * DVec3::X));
+            hits += i32::from(check(&lift(x), &lift(y)));
+        }
+        println!("{hits} of {cases} hit");
+        assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))));
+    }
+
+    /// One unit in the last place decides.
+    #[test]
+    fn neighbours_of_touching_corners_are_told_apart() {
+        let t = [DVec3::new(0.1, 0.7, 0.3), DVec3::new(0.9, 0.2, 0.4), DVec3::new(0.3, 0.1, 0.8)];
+        let mut hits = 0;
+        for k in 0..4000 {
+            let weight = f64::from(k) / 4000.0;
+            let near = t[0].lerp(t[1], weight).lerp(t[2], 0.3);
+            let away = near + DVec3::new(0.7, 0.6, 0.9) * if k % 2 == 0 { 1.0 } else { -1.0 };
+            hits += i32::from(check(&t, &[near, away, away + 0.1 * DVec3::X]));
+        }
+        println!("{hits} of 4000 hit");
+        assert!((1200..=2800).contains(&hits));
+    }
+}

@@ -1,0 +1,213 @@
+//! What the integration tests share: random meshes, complex shapes and placements, and the oracle's view of them.
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "every test file uses a part of it; helpers of tests may panic"
+)]
+
+use glam::{DAffine3, DMat3, DVec3};
+use rand::Rng;
+use rand::rngs::StdRng;
+use solid_oracle::Convex;
+use solid_oracle::generate::{PlacementKind, random_placement};
+use solid3d::{ComplexShapeBuilder, Shape, glam};
+
+/// A union of hulls of vertices, as the oracle sees it.
+#[derive(Clone, Debug)]
+pub struct Soup {
+    pub vertices: Vec<DVec3>,
+    pub primitives: Vec<Vec<u32>>,
+    pub is_mesh: bool,
+}
+
+impl Soup {
+    pub fn mesh(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Soup {
+        Soup { vertices, primitives: triangles.into_iter().map(|t| t.to_vec()).collect(), is_mesh: true }
+    }
+
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        self.primitives.iter().map(|p| [p[0], p[1], p[2]]).collect()
+    }
+
+    pub fn shape(&self) -> Shape {
+        if self.is_mesh {
+            return Shape::mesh(self.vertices.clone(), self.triangles()).unwrap();
+        }
+        let builder = ComplexShapeBuilder::new(self.vertices.clone());
+        self.primitives.iter().fold(builder, |builder, p| builder.polyhedron(p)).build().unwrap()
+    }
+
+    pub fn placed(&self, at: &DAffine3) -> Vec<DVec3> {
+        self.vertices.iter().map(|&v| at.transform_point3(v)).collect()
+    }
+
+    /// The vertices of each primitive, placed.
+    pub fn hulls(&self, at: &DAffine3) -> Vec<Vec<DVec3>> {
+        let placed = self.placed(at);
+        self.primitives.iter().map(|p| p.iter().map(|&i| placed[i as usize]).collect()).collect()
+    }
+
+    pub fn scaled(mut self, size: f64) -> Soup {
+        self.vertices.iter_mut().for_each(|v| *v *= size);
+        self
+    }
+}
+
+pub fn in_cube(rng: &mut StdRng) -> DVec3 {
+    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
+}
+
+pub fn direction(rng: &mut StdRng) -> DVec3 {
+    loop {
+        let v = in_cube(rng);
+        if (1e-3..=1.0).contains(&v.length_squared()) {
+            return v.normalize();
+        }
+    }
+}
+
+pub fn log_uniform(rng: &mut StdRng, low: f64, high: f64) -> f64 {
+    rng.random_range(low.ln()..=high.ln()).exp()
+}
+
+/// A placement of any kind, translated by about `size`.
+pub fn placement(rng: &mut StdRng, size: f64) -> DAffine3 {
+    let kind = PlacementKind::ALL[rng.random_range(0..PlacementKind::ALL.len())];
+    let mut at = random_placement(rng, kind);
+    at.translation *= size;
+    at
+}
+
+/// A rectangle of `rows * columns` vertices, mapped; `wrapped` joins its ends in both directions.
+fn sheet(rows: u32, columns: u32, wrapped: [bool; 2], map: impl FnMut(f64, f64) -> DVec3) -> Soup {
+    let mut map = map;
+    let mut vertices = Vec::new();
+    for i in 0..rows {
+        for j in 0..columns {
+            let part =
+                |k: u32, of: u32, wrapped: bool| f64::from(k) / f64::from(if wrapped { of } else { of - 1 });
+            vertices.push(map(part(i, rows, wrapped[0]), part(j, columns, wrapped[1])));
+        }
+    }
+    let mut triangles = Vec::new();
+    for i in 0..(if wrapped[0] { rows } else { rows - 1 }) {
+        for j in 0..(if wrapped[1] { columns } else { columns - 1 }) {
+            let at = |di: u32, dj: u32| (i + di) % rows * columns + (j + dj) % columns;
+            triangles.push([at(0, 0), at(1, 0), at(1, 1)]);
+            triangles.push([at(0, 0), at(1, 1), at(0, 1)]);
+        }
+    }
+    Soup::mesh(vertices, triangles)
+}
+
+pub fn torus(rows: u32, columns: u32, tube: f64) -> Soup {
+    use std::f64::consts::TAU;
+    sheet(rows, columns, [true, true], |u, v| {
+        let radius = 1.0 + tube * (TAU * v).cos();
+        DVec3::new(radius * (TAU * u).cos(), tube * (TAU * v).sin(), radius * (TAU * u).sin()) / (1.0 + tube)
+    })
+}
+
+pub fn bumpy_sphere(rng: &mut StdRng, rows: u32, columns: u32) -> Soup {
+    use std::f64::consts::{PI, TAU};
+    sheet(rows, columns, [false, true], |u, v| {
+        let (polar, round) = (PI * u, TAU * v);
+        let radius = rng.random_range(0.7..=1.0);
+        radius * DVec3::new(polar.sin() * round.cos(), polar.cos(), polar.sin() * round.sin())
+    })
+}
+
+pub fn grid(rng: &mut StdRng, rows: u32, columns: u32) -> Soup {
+    let bump = rng.random_range(0.0..=0.3);
+    sheet(rows, columns, [false, false], |u, v| {
+        DVec3::new(2.0 * u - 1.0, bump * rng.random_range(-1.0..=1.0), 2.0 * v - 1.0)
+    })
+}
+
+/// Random triangles in the cube, a few of them degenerate.
+pub fn triangle_soup(rng: &mut StdRng, count: u32) -> Soup {
+    let size = rng.random_range(0.05..=0.5);
+    let mut vertices = Vec::new();
+    for _ in 0..count {
+        let center = in_cube(rng);
+        let corners: [DVec3; 3] = std::array::from_fn(|_| center + size * in_cube(rng));
+        vertices.extend(match rng.random_range(0..12) {
+            0 => [corners[0]; 3],
+            1 => [corners[0], corners[1], corners[1]],
+            _ => corners,
+        });
+    }
+    Soup::mesh(vertices, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+}
+
+/// A mesh of about `count` triangles, at most about 1 from its origin.
+pub fn random_mesh(rng: &mut StdRng, count: u32) -> Soup {
+    let side = (f64::from(count) / 2.0).sqrt();
+    let (rows, columns) = ((side as u32).max(3), (f64::from(count) / 2.0 / side).ceil().max(3.0) as u32);
+    match rng.random_range(0..4) {
+        0 => {
+            let tube = rng.random_range(0.2..=0.8);
+            torus(rows, columns, tube)
+        }
+        1 => bumpy_sphere(rng, rows, columns),
+        2 => grid(rng, rows, columns),
+        _ => triangle_soup(rng, count),
+    }
+}
+
+/// Points, segments, triangles, tetrahedra, polygons and polyhedra, which share some vertices.
+pub fn random_complex(rng: &mut StdRng, count: u32) -> Soup {
+    let size = rng.random_range(0.1..=0.5);
+    let (mut vertices, mut primitives) = (Vec::new(), Vec::new());
+    for _ in 0..count {
+        let first = vertices.len() as u32;
+        let center = in_cube(rng);
+        let corners = match rng.random_range(0..6) {
+            polygon @ 4 => {
+                let (u, v) = (direction(rng), direction(rng));
+                let n = polygon + rng.random_range(0..5);
+                let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(n);
+                (0..n).map(|i| center + size * (angle(i).cos() * u + angle(i).sin() * v)).collect()
+            }
+            5 => (0..rng.random_range(5..=12)).map(|_| center + size * in_cube(rng)).collect(),
+            few => (0..=few).map(|_| center + size * in_cube(rng)).collect::<Vec<_>>(),
+        };
+        vertices.extend(corners);
+        let mut primitive: Vec<u32> = (first..vertices.len() as u32).collect();
+        if rng.random_range(0..8) == 0 {
+            primitive[0] = rng.random_range(0..vertices.len() as u32);
+        }
+        primitives.push(primitive);
+    }
+    Soup { vertices, primitives, is_mesh: false }
+}
+
+/// The library's shape for one of the oracle's.
+pub fn shape_of(convex: &Convex) -> Shape {
+    match convex {
+        Convex::Sphere { radius } => Shape::sphere(*radius),
+        Convex::Cuboid { half } => Shape::cuboid(2.0 * *half),
+        Convex::Cone { radius, half_height } => Shape::cone(*radius, 2.0 * half_height),
+        Convex::Cylinder { radius, half_height } => Shape::cylinder(*radius, 2.0 * half_height),
+        Convex::Capsule { radius, half_height } => Shape::capsule(*radius, 2.0 * half_height),
+        Convex::Hull { points } => Shape::convex_hull(points),
+    }
+    .unwrap()
+}
+
+/// Both factors of a placement times a power of two: the world in another unit of length.
+pub fn rescaled(at: &DAffine3, factor: f64) -> DAffine3 {
+    DAffine3 { matrix3: at.matrix3 * factor, translation: at.translation * factor }
+}
+
+/// How long an axis of a placement is at most.
+pub fn stretch(at: &DAffine3) -> f64 {
+    let DMat3 { x_axis, y_axis, z_axis } = at.matrix3;
+    (x_axis.length_squared() + y_axis.length_squared() + z_axis.length_squared()).sqrt()
+}
+
+pub fn assert_rate(what: &str, hits: usize, cases: usize) {
+    let rate = hits as f64 / cases as f64;
+    println!("{what}: {hits} of {cases} hit");
+    assert!((0.3..=0.7).contains(&rate), "{what}: a hit rate of {rate} tests little");
+}

@@ -1,0 +1,523 @@
+//! Meshes and complex shapes against each other and against convex shapes, judged by brute force.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{
+    Soup, assert_rate, direction, in_cube, log_uniform, placement, random_complex, random_mesh, rescaled,
+    shape_of, stretch, torus,
+};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use rand::Rng;
+use rand::rngs::StdRng;
+use solid_oracle::generate::{random_shape, seeded};
+use solid_oracle::{
+    Convex, Verdict, distance_bounds, hulls_intersect_exact, mesh_distance, mesh_pairs, verdict,
+};
+use solid3d::{Aabb, Error, Shape, glam, query};
+
+/// Two placed soups near each other, and the extent of both.
+struct Case {
+    a: Soup,
+    at_a: DAffine3,
+    b: Soup,
+    at_b: DAffine3,
+    size: f64,
+}
+
+impl Case {
+    /// B's origin is put near a vertex of A, up to `away` sizes of B off.
+    fn new(rng: &mut StdRng, a: Soup, b: Soup, away: f64) -> Case {
+        let size = log_uniform(rng, 1e-6, 1e6);
+        let ratio = if rng.random_range(0..3) == 0 { log_uniform(rng, 1e-3, 1e3) } else { 1.0 };
+        let (a, b) = (a.scaled(size), b.scaled(size * ratio));
+        let (at_a, mut at_b) = (placement(rng, 3.0 * size), placement(rng, size));
+        let vertex = at_a.transform_point3(a.vertices[rng.random_range(0..a.vertices.len())]);
+        let off = away * rng.random_range(0.0..=1.0) * size * ratio;
+        at_b.translation = vertex + off * direction(rng);
+        Case { size: size * (stretch(&at_a) + ratio * stretch(&at_b)), a, at_a, b, at_b }
+    }
+
+    fn pair_of_meshes(rng: &mut StdRng) -> Case {
+        let count = |rng: &mut StdRng| log_uniform(rng, 20.0, 2000.0) as u32;
+        let (n, m) = (count(rng), count(rng));
+        let (a, b) = (random_mesh(rng, n), random_mesh(rng, m));
+        Case::new(rng, a, b, 1.7)
+    }
+
+    /// Complex against complex or mesh, either first.
+    fn pair_of_soups(rng: &mut StdRng) -> Case {
+        let count = |rng: &mut StdRng| log_uniform(rng, 1.0, 60.0) as u32;
+        let (n, m) = (count(rng), count(rng));
+        let a = random_complex(rng, n);
+        let b = if rng.random() { random_complex(rng, m) } else { random_mesh(rng, m.max(20)) };
+        let (a, b) = if rng.random() { (a, b) } else { (b, a) };
+        Case::new(rng, a, b, 1.5)
+    }
+
+    fn meshes_meet(&self) -> bool {
+        let (placed_a, placed_b) = (self.a.placed(&self.at_a), self.b.placed(&self.at_b));
+        !mesh_pairs(&placed_a, &self.a.triangles(), &placed_b, &self.b.triangles()).is_empty()
+    }
+
+    fn mesh_distance(&self) -> f64 {
+        let (placed_a, placed_b) = (self.a.placed(&self.at_a), self.b.placed(&self.at_b));
+        mesh_distance(&placed_a, &self.a.triangles(), &placed_b, &self.b.triangles())
+    }
+
+    fn soups_meet(&self) -> bool {
+        let (hulls_a, hulls_b) = (self.a.hulls(&self.at_a), self.b.hulls(&self.at_b));
+        let boxed = |hulls: &[Vec<DVec3>]| -> Vec<Aabb> {
+            hulls.iter().map(|points| Aabb::of_points(points.iter().copied())).collect()
+        };
+        let (boxes_a, boxes_b) = (boxed(&hulls_a), boxed(&hulls_b));
+        (0..hulls_a.len()).any(|i| {
+            (0..hulls_b.len())
+                .any(|j| boxes_a[i].overlaps(&boxes_b[j]) && hulls_intersect_exact(&hulls_a[i], &hulls_b[j]))
+        })
+    }
+
+    fn soup_distance(&self) -> f64 {
+        let (hulls_a, hulls_b) = (self.a.hulls(&self.at_a), self.b.hulls(&self.at_b));
+        let mut least = f64::INFINITY;
+        for a in &hulls_a {
+            let box_a = Aabb::of_points(a.iter().copied());
+            for b in &hulls_b {
+                let gap = box_a.gap(&Aabb::of_points(b.iter().copied())).length();
+                if gap * (1.0 - 1e-14) < least {
+                    least = least.min(distance_of(a, b));
+                }
+            }
+        }
+        least
+    }
+
+    fn shapes(&self) -> (Shape, Shape) {
+        (self.a.shape(), self.b.shape())
+    }
+}
+
+fn distance_of(a: &[DVec3], b: &[DVec3]) -> f64 {
+    let hull = |points: &[DVec3]| Convex::Hull { points: points.to_vec() };
+    distance_bounds(&hull(a), &DAffine3::IDENTITY, &hull(b), &DAffine3::IDENTITY).1
+}
+
+fn distance_to(soup: &Soup, at: &DAffine3, point: DVec3) -> f64 {
+    if soup.is_mesh {
+        return mesh_distance(&soup.placed(at), &soup.triangles(), &[point], &[[0, 0, 0]]);
+    }
+    soup.hulls(at).iter().map(|hull| distance_of(hull, &[point])).fold(f64::INFINITY, f64::min)
+}
+
+/// What the library says must be `meet` and `distance`, in both orders, with points that bear it out.
+fn check(case: &Case, meet: bool, distance: f64, context: &str) {
+    let (a, b) = case.shapes();
+    let (at_a, at_b, size) = (&case.at_a, &case.at_b, case.size);
+    assert_eq!(query::intersects(&a, at_a, &b, at_b).unwrap(), meet, "{context}");
+    assert_eq!(query::intersects(&b, at_b, &a, at_a).unwrap(), meet, "{context}, swapped");
+    if let Some(point) = query::common_point(&a, at_a, &b, at_b).unwrap() {
+        let off = distance_to(&case.a, at_a, point).max(distance_to(&case.b, at_b, point));
+        assert!(off <= 1e-9 * size, "{context}: the common point is off by {off:e} of {size:e}");
+    }
+    for swapped in [false, true] {
+        let found = if swapped {
+            query::distance(&b, at_b, &a, at_a).unwrap()
+        } else {
+            query::distance(&a, at_a, &b, at_b).unwrap()
+        };
+        let error = (found.distance - distance).abs();
+        assert!(error <= 1e-9 * distance + 1e-12 * size, "{context}: {} for {distance}", found.distance);
+        assert_eq!(found.distance == 0.0, meet, "{context}: {} for {distance}", found.distance);
+        let (on_a, on_b) =
+            if swapped { (found.point_on_b, found.point_on_a) } else { (found.point_on_a, found.point_on_b) };
+        let off = distance_to(&case.a, at_a, on_a).max(distance_to(&case.b, at_b, on_b));
+        assert!(off <= 1e-9 * size, "{context}: closest points off by {off:e} of {size:e}");
+        assert!((on_a.distance(on_b) - distance).abs() <= 1e-9 * (distance + 1e-3 * size), "{context}");
+    }
+}
+
+#[test]
+fn meshes_agree_with_brute_force() {
+    let seed = 1;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (cases, mut hits) = (1500, 0);
+    for i in 0..cases {
+        let case = Case::pair_of_meshes(&mut rng);
+        let meet = case.meshes_meet();
+        let distance = if meet { 0.0 } else { case.mesh_distance() };
+        check(&case, meet, distance, &format!("case {i}"));
+        hits += usize::from(meet);
+    }
+    assert_rate("mesh against mesh", hits, cases);
+}
+
+#[test]
+fn complex_shapes_agree_with_brute_force() {
+    let seed = 2;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (cases, mut hits) = (2000, 0);
+    for i in 0..cases {
+        let case = Case::pair_of_soups(&mut rng);
+        let meet = case.soups_meet();
+        let distance = if meet { 0.0 } else { case.soup_distance() };
+        check(&case, meet, distance, &format!("case {i}"));
+        hits += usize::from(meet);
+    }
+    assert_rate("complex shape against complex shape or mesh", hits, cases);
+}
+
+/// The verdicts on all primitives together: `None` when it is too close to call.
+fn soup_meets_convex(
+    case: &Soup,
+    at: &DAffine3,
+    convex: &Convex,
+    at_convex: &DAffine3,
+    size: f64,
+) -> Option<bool> {
+    let mut open = false;
+    for primitive in &case.primitives {
+        let points = primitive.iter().map(|&i| case.vertices[i as usize]).collect();
+        match verdict(&Convex::Hull { points }, at, convex, at_convex) {
+            Verdict::Intersecting { .. } => return Some(true),
+            Verdict::Separated { gap } => open |= gap < 1e-11 * size,
+            Verdict::Uncertain { .. } => open = true,
+        }
+    }
+    if open { None } else { Some(false) }
+}
+
+#[test]
+fn meshes_and_complex_shapes_against_every_convex_kind_agree_with_brute_force() {
+    let seed = 3;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (cases, mut hits, mut open) = (3000, 0, 0);
+    for i in 0..cases {
+        let count = log_uniform(&mut rng, 1.0, 80.0) as u32;
+        let soup =
+            if rng.random() { random_mesh(&mut rng, count) } else { random_complex(&mut rng, count.min(40)) };
+        let convex = random_shape(&mut rng, 1.0);
+        let one = Soup::mesh(vec![DVec3::ZERO], vec![[0; 3]]);
+        let Case { a: soup, at_a, at_b, size, b: _ } = Case::new(&mut rng, soup, one, 1.6);
+        // The convex shape has unit size, so its own placement scales it.
+        let at_b = DAffine3 { matrix3: at_b.matrix3 * (size / 4.0), translation: at_b.translation };
+        let size = size + stretch(&at_b);
+        let away = direction(&mut rng) * rng.random_range(0.0..=0.5) * stretch(&at_b);
+        let at_b = DAffine3 { translation: at_b.translation + away, ..at_b };
+        let Some(meet) = soup_meets_convex(&soup, &at_a, &convex, &at_b, size) else {
+            open += 1;
+            continue;
+        };
+        hits += usize::from(meet);
+        let context = format!("case {i}, {convex:?}");
+        let (a, b) = (soup.shape(), shape_of(&convex));
+        let found = query::common_point(&a, &at_a, &b, &at_b).unwrap();
+        assert_eq!(found.is_some(), meet, "{context}");
+        assert_eq!(query::intersects(&b, &at_b, &a, &at_a).unwrap(), meet, "{context}, swapped");
+        if let Some(point) = found {
+            let on_b = Convex::Hull { points: vec![point] };
+            let off = distance_bounds(&convex, &at_b, &on_b, &DAffine3::IDENTITY).1;
+            let off = off.max(distance_to(&soup, &at_a, point));
+            assert!(off <= 1e-9 * size, "{context}: the common point is off by {off:e} of {size:e}");
+        }
+        let (mut low, mut high) = (f64::INFINITY, f64::INFINITY);
+        if meet {
+            (low, high) = (0.0, 0.0);
+        } else {
+            for primitive in &soup.primitives {
+                let points = primitive.iter().map(|&i| soup.vertices[i as usize]).collect();
+                let bounds = distance_bounds(&Convex::Hull { points }, &at_a, &convex, &at_b);
+                (low, high) = (low.min(bounds.0), high.min(bounds.1));
+            }
+        }
+        for found in [query::distance(&a, &at_a, &b, &at_b), query::distance(&b, &at_b, &a, &at_a)] {
+            let distance = found.unwrap().distance;
+            let error = (distance - high).max(low - distance);
+            assert!(error <= 1e-9 * high + 1e-12 * size, "{context}: {distance} not in {low}..{high}");
+        }
+    }
+    println!("too close to call: {open}");
+    assert!(open * 20 <= cases);
+    assert_rate("soup against convex", hits, cases);
+}
+
+/// Soups of a few primitives with corners of a small lattice: coplanar, touching and degenerate ones abound. Placements
+/// that move lattice points exactly leave no excuse for a wrong answer.
+#[test]
+fn touching_coplanar_and_degenerate_soups_are_decided_exactly() {
+    let seed = 4;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (cases, mut hits, mut touches) = (6000, 0, 0);
+    for i in 0..cases {
+        let flat = rng.random_range(0..4) == 0;
+        let a = lattice_soup(&mut rng, flat);
+        let b = lattice_soup(&mut rng, flat);
+        let (at_a, mut at_b) = (lattice_placement(&mut rng), lattice_placement(&mut rng));
+        if flat {
+            at_b.translation = at_a.translation + at_a.matrix3 * DVec3::new(1.0, 2.0, 0.0);
+            at_b.matrix3 = at_a.matrix3;
+        } else {
+            let mut vertex = |soup: &Soup| soup.vertices[rng.random_range(0..soup.vertices.len())];
+            let (on_a, on_b) = (at_a.transform_point3(vertex(&a)), at_b.matrix3 * vertex(&b));
+            at_b.translation = on_a - on_b;
+            if rng.random_range(0..5) < 2 {
+                at_b.translation[rng.random_range(0..3)] += [-0.5, 0.5][rng.random_range(0..2)];
+            }
+        }
+        let size = 20.0;
+        let case = Case { a, at_a, b, at_b, size };
+        let meet = case.soups_meet();
+        hits += usize::from(meet);
+        if meet {
+            let apart: Vec<DVec3> =
+                [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|v| [v, -v]).collect();
+            let moved = |v: &DVec3| {
+                let at_b = DAffine3 { translation: case.at_b.translation + *v / 64.0, ..case.at_b };
+                Case { a: case.a.clone(), at_a: case.at_a, b: case.b.clone(), at_b, size }.soups_meet()
+            };
+            touches += usize::from(!apart.iter().all(moved));
+        }
+        let distance = if meet { 0.0 } else { case.soup_distance() };
+        check(&case, meet, distance, &format!("case {i}: {:?} {:?} {:?} {:?}", case.a, at_a, case.b, at_b));
+    }
+    println!("{touches} of them only touch");
+    assert_rate("lattice soups", hits, cases);
+    assert!(touches * 4 > hits);
+}
+
+fn lattice_point(rng: &mut StdRng, flat: bool) -> DVec3 {
+    let mut k = || f64::from(rng.random_range(0..=4));
+    DVec3::new(k(), k(), if flat { 0.0 } else { k() })
+}
+
+fn lattice_soup(rng: &mut StdRng, flat: bool) -> Soup {
+    let vertices: Vec<DVec3> = (0..rng.random_range(1..=8)).map(|_| lattice_point(rng, flat)).collect();
+    let is_mesh = rng.random();
+    let primitives = (0..rng.random_range(1..=3))
+        .map(|_| {
+            let corners = if is_mesh { 3 } else { rng.random_range(1..=6) };
+            (0..corners).map(|_| rng.random_range(0..vertices.len() as u32)).collect()
+        })
+        .collect();
+    Soup { vertices, primitives, is_mesh }
+}
+
+/// A signed permutation of the axes, powers of two along them, a lattice translation.
+fn lattice_placement(rng: &mut StdRng) -> DAffine3 {
+    let turn = rng.random_range(0..3);
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    let mut factor = || [-2.0, -1.0, 0.5, 1.0, 2.0, 4.0][rng.random_range(0..6)];
+    let columns: [DVec3; 3] = std::array::from_fn(|i| axes[(i + turn) % 3] * factor());
+    let shift = lattice_point(rng, false) - lattice_point(rng, false);
+    DAffine3 { matrix3: DMat3::from_cols(columns[0], columns[1], columns[2]), translation: shift }
+}
+
+#[test]
+fn shared_vertices_shared_edges_and_t_junctions_touch() {
+    let one = |corners: [[f64; 3]; 3]| Shape::mesh(corners.map(DVec3::from), [[0, 1, 2]]).unwrap();
+    let base = one([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]);
+    let touching = [
+        ("shared vertex", [[0.0, 0.0, 0.0], [-1.0, 0.0, 1.0], [-1.0, -1.0, 2.0]]),
+        ("shared edge", [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, -4.0, 1.0]]),
+        ("shared edge, coplanar", [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, -4.0, 0.0]]),
+        ("vertex on an edge", [[1.0, 0.0, 0.0], [2.0, -3.0, 1.0], [0.0, -3.0, 1.0]]),
+        ("vertex on an edge, coplanar", [[1.0, 0.0, 0.0], [2.0, -3.0, 0.0], [0.0, -3.0, 0.0]]),
+        ("vertex on the face", [[1.0, 1.0, 0.0], [1.0, 1.0, 3.0], [2.0, 1.0, 3.0]]),
+        ("edge within the face", [[1.0, 1.0, 0.0], [1.0, 2.0, 0.0], [1.0, 1.0, 3.0]]),
+        ("inside, coplanar", [[1.0, 1.0, 0.0], [1.5, 1.0, 0.0], [1.0, 1.5, 0.0]]),
+        ("the same", [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]]),
+        ("a point on the face", [[1.0, 1.0, 0.0]; 3]),
+        ("a segment across the face", [[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [1.0, 1.0, 0.0]]),
+    ];
+    let at = DAffine3::IDENTITY;
+    for (what, corners) in touching {
+        let other = one(corners);
+        assert!(query::intersects(&base, &at, &other, &at).unwrap(), "{what}");
+        assert!(query::intersects(&other, &at, &base, &at).unwrap(), "{what}");
+        assert_eq!(query::distance(&base, &at, &other, &at).unwrap().distance, 0.0, "{what}");
+    }
+}
+
+#[test]
+fn identical_meshes_on_top_of_each_other_intersect_everywhere() {
+    let seed = 5;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    for i in 0..300 {
+        let count = rng.random_range(20..500);
+        let soup = random_mesh(&mut rng, count);
+        let at = placement(&mut rng, 10.0);
+        let shape = soup.shape();
+        let again = soup.shape();
+        assert!(query::intersects(&shape, &at, &shape, &at).unwrap(), "case {i}");
+        assert!(query::intersects(&shape, &at, &again, &at).unwrap(), "case {i}");
+        assert_eq!(query::distance(&shape, &at, &again, &at).unwrap().distance, 0.0, "case {i}");
+        let point = query::common_point(&shape, &at, &again, &at).unwrap().unwrap();
+        assert!(distance_to(&soup, &at, point) < 1e-12 * 20.0);
+    }
+}
+
+fn any_case(rng: &mut StdRng) -> Case {
+    if rng.random() {
+        let (n, m) = (rng.random_range(20..400), rng.random_range(20..400));
+        let (a, b) = (random_mesh(rng, n), random_mesh(rng, m));
+        Case::new(rng, a, b, 1.7)
+    } else {
+        Case::pair_of_soups(rng)
+    }
+}
+
+/// Law: the unit of length changes no answer.
+#[test]
+fn a_power_of_two_changes_no_bit() {
+    let seed = 6;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (cases, mut hits) = (1500, 0);
+    for i in 0..cases {
+        let mut case = any_case(&mut rng);
+        let convex = random_shape(&mut rng, case.size / 5.0);
+        let (a, b) = case.shapes();
+        let b = if i % 3 == 0 { shape_of(&convex) } else { b };
+        let before = query::distance(&a, &case.at_a, &b, &case.at_b).unwrap();
+        hits += usize::from(before.distance == 0.0);
+        for exponent in [-300, -97, -1, 1, 41, 300] {
+            let factor = f64::exp2(f64::from(exponent));
+            let (at_a, at_b) = (rescaled(&case.at_a, factor), rescaled(&case.at_b, factor));
+            let after = query::distance(&a, &at_a, &b, &at_b).unwrap();
+            assert_eq!(
+                after.distance.to_bits(),
+                (before.distance * factor).to_bits(),
+                "case {i} 2^{exponent}"
+            );
+            let met = query::intersects(&a, &at_a, &b, &at_b).unwrap();
+            assert_eq!(
+                met,
+                query::intersects(&a, &case.at_a, &b, &case.at_b).unwrap(),
+                "case {i} 2^{exponent}"
+            );
+        }
+        // The same by scaling the vertices instead of the placements.
+        if i % 3 != 0 {
+            for exponent in [-300, 300] {
+                let factor = f64::exp2(f64::from(exponent));
+                let (a, b) = (case.a.clone().scaled(factor).shape(), case.b.clone().scaled(factor).shape());
+                case.at_a.translation *= factor;
+                case.at_b.translation *= factor;
+                let after = query::distance(&a, &case.at_a, &b, &case.at_b).unwrap();
+                assert_eq!(
+                    after.distance.to_bits(),
+                    (before.distance * factor).to_bits(),
+                    "case {i} 2^{exponent}"
+                );
+                case.at_a.translation /= factor;
+                case.at_b.translation /= factor;
+            }
+        }
+    }
+    assert_rate("power of two", hits, cases);
+}
+
+/// Law: placing both by the same rigid map changes no answer beyond the error.
+#[test]
+fn a_common_rigid_placement_changes_nothing() {
+    let seed = 7;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (cases, mut hits) = (3000, 0);
+    for i in 0..cases {
+        let case = any_case(&mut rng);
+        let (a, b) = case.shapes();
+        let before = query::distance(&a, &case.at_a, &b, &case.at_b).unwrap().distance;
+        let turn = DQuat::from_axis_angle(direction(&mut rng), rng.random_range(0.0..6.0));
+        let away = rng.random_range(0.0..100.0);
+        let rigid = DAffine3::from_rotation_translation(turn, away * case.size * in_cube(&mut rng));
+        let (at_a, at_b) = (rigid * case.at_a, rigid * case.at_b);
+        let after = query::distance(&a, &at_a, &b, &at_b).unwrap().distance;
+        assert!((after - before).abs() <= 1e-12 * case.size, "case {i}: {before} became {after}");
+        let met = query::intersects(&a, &at_a, &b, &at_b).unwrap();
+        assert_eq!(met, before == 0.0, "case {i}");
+        hits += usize::from(met);
+    }
+    assert_rate("rigid", hits, cases);
+}
+
+/// Asserts that both shapes give the same answers against another, whichever trees they have.
+fn assert_same_answers(x: &Shape, y: &Shape, at: &DAffine3, other: &Shape, at_other: &DAffine3) -> bool {
+    let of = |shape: &Shape| {
+        let distance = query::distance(shape, at, other, at_other).unwrap().distance;
+        (query::intersects(shape, at, other, at_other).unwrap(), distance)
+    };
+    let (of_x, of_y) = (of(x), of(y));
+    assert_eq!(of_x.0, of_y.0);
+    assert!((of_x.1 - of_y.1).abs() <= 1e-12 * (of_y.1 + 10.0), "{} {}", of_x.1, of_y.1);
+    of_x.0
+}
+
+/// Law: a deformed shape answers as one built from its positions does, and its clones keep theirs.
+#[test]
+fn deformed_shapes_answer_as_fresh_ones() {
+    let seed = 8;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut cases, mut hits) = (0, 0);
+    for round in 0..240 {
+        let count = rng.random_range(20..600);
+        let soup = match round % 3 {
+            0 => torus(24, 12, 0.4),
+            1 => random_mesh(&mut rng, count),
+            _ => random_complex(&mut rng, count / 10),
+        };
+        let original = soup.shape();
+        let mut shape = original.clone();
+        let mut kept: Vec<(Shape, Soup)> = vec![(original, soup.clone())];
+        for step in 1..=6 {
+            let mut now = soup.clone();
+            // Small waves; at last a twist by many turns, after which the old tree is good for nothing.
+            let twist = if step > 4 { 3.0 * f64::from(step) } else { 0.1 * f64::from(step) };
+            for v in &mut now.vertices {
+                *v = DQuat::from_rotation_y(twist * v.length()) * *v + 0.02 * in_cube(&mut rng);
+            }
+            shape.deform(&now.vertices).unwrap();
+            kept.push((shape.clone(), now));
+        }
+        let probe = random_mesh(&mut rng, 60).shape();
+        let ball = Shape::sphere(0.3).unwrap();
+        for (kept, soup) in &kept {
+            assert_eq!(kept.vertices().unwrap(), soup.vertices);
+            let (at, mut at_other) = (placement(&mut rng, 1.0), placement(&mut rng, 1.0));
+            at_other.translation = at.translation + direction(&mut rng) * rng.random_range(0.3..3.0);
+            let fresh = soup.shape();
+            for other in [&probe, &ball] {
+                hits += usize::from(assert_same_answers(kept, &fresh, &at, other, &at_other));
+                cases += 1;
+            }
+        }
+    }
+    assert_rate("deformed", hits, cases);
+}
+
+#[test]
+fn a_refused_deformation_leaves_the_shape_as_it_was() {
+    let soup = torus(12, 8, 0.4);
+    let mut shape = soup.shape();
+    let wrong = vec![DVec3::ZERO; soup.vertices.len() - 1];
+    assert!(matches!(shape.deform(&wrong), Err(Error::PositionCount { count: 95, expected: 96 })));
+    let mut wild = vec![DVec3::ONE; soup.vertices.len()];
+    for bad in [f64::NAN, f64::INFINITY, -1.0001e100] {
+        wild[7].y = bad;
+        let error = shape.deform(&wild).unwrap_err();
+        assert!(matches!(error, Error::Vertex { index: 7, .. }), "{error}");
+        assert!(error.to_string().contains("vertex 7"), "{error}");
+    }
+    assert_eq!(shape.vertices().unwrap(), soup.vertices);
+    let ball = Shape::sphere(0.1).unwrap();
+    let at = DAffine3::from_translation(DVec3::new(0.9, 0.3, 0.2));
+    let of = |shape: &Shape| query::distance(shape, &DAffine3::IDENTITY, &ball, &at).unwrap();
+    assert_eq!(of(&shape), of(&soup.shape()));
+    let mut convex = Shape::cuboid(DVec3::ONE).unwrap();
+    assert!(matches!(convex.deform(&[]), Err(Error::NotDeformable { .. })));
+}
