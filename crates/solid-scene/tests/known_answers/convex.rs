@@ -119,14 +119,21 @@ fn jolt_hulls() {
     let Some(folder) = folder("convex") else { return };
     let sets = point_sets(&std::fs::read(folder.join("jolt_convex_hulls_open.bin")).unwrap());
     let mut tally = Tally::new("jolt_convex_hulls_open");
+    let mut flat = Vec::new();
     for_each_row(&folder.join("jolt_convex_hulls_open.csv"), |row| {
         let index: usize = row.number("index").unwrap();
         let label = format!("set {index}");
         let points = &sets[index];
         assert_eq!(points.len(), row.number::<usize>("n_points").unwrap());
         let hull = Shape::convex_hull(points).unwrap();
-        let (found, expected) = (hull.vertices().unwrap().len(), row.number("hull_vertices_cgal"));
-        tally.check(expected == Some(found), || format!("{label}: {found} vertices, CGAL {expected:?}"));
+        let found = hull.vertices().unwrap().len();
+        if row.text("affine_dim") == "3" {
+            let expected = row.number("hull_vertices_cgal");
+            tally.check(expected == Some(found), || format!("{label}: {found} vertices, CGAL {expected:?}"));
+        } else {
+            println!("{label}: {found} vertices of a set of dimension {}", row.text("affine_dim"));
+            flat.push(found);
+        }
         let size = diameter(points);
         let part = (index % 8) as f64 / 7.0;
         let (here, moved) = (DAffine3::IDENTITY, DVec3::new(0.64, 0.6, -0.48) * size * part);
@@ -138,6 +145,8 @@ fn jolt_hulls() {
         let distance = query::distance(&hull, &here, &hull, &moved).unwrap().distance;
         tally.error(&label, (low - distance).max(distance - high).max(0.0) / size, DISTANCE_ERROR);
     });
+    // CGAL counts no vertices of a flat set. The file has one, and rational arithmetic by hand gives its hull 6 corners.
+    tally.check(flat == [6], || format!("flat sets have {flat:?} corners"));
     tally.finish_representative();
 }
 

@@ -22,6 +22,7 @@ pub(crate) fn intersecting_faces(mesh: &Shape, broad_phase: BroadPhaseKind) -> V
     pairs.filter(|&(i, j)| !share_vertex(corners(i), corners(j))).collect()
 }
 
-fn share_vertex(a: [DVec3; 3], b: [DVec3; 3]) -> bool {
+/// Whether two faces have a corner at the same place.
+pub(crate) fn share_vertex(a: [DVec3; 3], b: [DVec3; 3]) -> bool {
     a.iter().any(|corner| b.contains(corner))
 }

@@ -4,7 +4,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 use serde_json::Value;
 use solid_oracle::{Convex, Verdict, distance_bounds, verdict};
-use solid3d::query;
+use solid3d::{convex::gjk::TOUCHING_ERROR, query};
 
 use crate::convex::{reach, shape};
 use crate::data::{folder, json};
@@ -35,10 +35,10 @@ fn check(tally: &mut Tally, case: &Value) {
         + stretch(&at_b) * reach(&b)
         + (at_b.translation - at_a.translation).length();
     let hit = match verdict(&a, &at_a, &b, &at_b) {
-        Verdict::Separated { .. } => false,
+        Verdict::Separated { gap } if gap > TOUCHING_ERROR * size => false,
         Verdict::Intersecting { .. } => true,
-        Verdict::Uncertain { gap_max } => {
-            println!("{name}: touches within {gap_max:e}; touching counts as intersecting");
+        touch => {
+            println!("{name}: {touch:?} of size {size}; touching counts as intersecting");
             true
         }
     };

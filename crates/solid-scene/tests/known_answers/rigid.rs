@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use glam::{DAffine3, DVec3};
-use solid3d::{BroadPhaseKind, ObjectId, Shape, World, WorldOptions, query};
+use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+use solid3d::{BroadPhaseKind, ComplexShapeBuilder, ObjectId, Shape, World, WorldOptions, query};
 
 use crate::data::{Row, folder, for_each_row, json, model};
 use crate::tally::Tally;
@@ -50,7 +50,11 @@ fn check_all(name: &str) {
     };
     let pair = Pair { a: shape("meshA", "trisA"), b: shape("meshB", "trisB") };
     let size = facts["radius_sum"].as_f64().unwrap();
+    let variants = variants(&pair, size);
     check_agreed(&pair, size, &folder.join(format!("{name}.csv")));
+    for variant in &variants {
+        check_variant(variant, name, &folder.join(format!("{name}.csv")));
+    }
     let disputed = folder.join(format!("{name}.disputed.csv"));
     if disputed.exists() {
         check_disputed(&pair, size, &disputed);
@@ -131,7 +135,7 @@ fn check_points(tally: &mut Tally, label: &str, pair: &Pair, at: &DAffine3, size
 }
 
 /// A world for each broad phase, with B moving from row to row.
-struct Worlds(Vec<(World, ObjectId)>);
+struct Worlds(Vec<(World, [ObjectId; 2])>);
 
 impl Worlds {
     fn new(pair: &Pair) -> Self {
@@ -139,8 +143,14 @@ impl Worlds {
         Worlds(kinds.map(|broad_phase| world(pair, broad_phase)).into())
     }
 
+    fn place_a(&mut self, at: &DAffine3) {
+        for (world, [a, _]) in &mut self.0 {
+            world.set_placement(*a, *at).unwrap();
+        }
+    }
+
     fn check(&mut self, tally: &mut Tally, label: &str, at: &DAffine3, collide: bool) {
-        for (world, b) in &mut self.0 {
+        for (world, [_, b]) in &mut self.0 {
             world.set_placement(*b, *at).unwrap();
             let found = world.test().len();
             world.proceed();
@@ -149,9 +159,69 @@ impl Worlds {
     }
 }
 
-fn world(pair: &Pair, broad_phase: BroadPhaseKind) -> (World, ObjectId) {
+fn world(pair: &Pair, broad_phase: BroadPhaseKind) -> (World, [ObjectId; 2]) {
     let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
-    world.add(&pair.a, DAffine3::IDENTITY).unwrap();
-    let b = world.add(&pair.b, DAffine3::IDENTITY).unwrap();
-    (world, b)
+    let ids = [&pair.a, &pair.b].map(|shape| world.add(shape, DAffine3::IDENTITY).unwrap());
+    (world, ids)
+}
+
+/// The same pair said differently: the answers are the same.
+struct Variant {
+    what: &'static str,
+    pair: Pair,
+    /// Applied to both.
+    map: DAffine3,
+}
+
+/// Every so many rows the variants are asked.
+const VARIANTS_EVERY: usize = 10;
+
+fn variants(pair: &Pair, size: f64) -> Vec<Variant> {
+    let turn = DQuat::from_euler(EulerRot::XYZ, 0.3, -1.1, 2.0);
+    let far = DVec3::new(-3e3, 1e3, 2e3) * size;
+    let sheared =
+        DMat3::from_cols(DVec3::new(2.0, 0.5, 0.0), DVec3::new(0.1, 0.3, -0.7), DVec3::new(1.0, 0.0, 1.0));
+    let turned =
+        |scale: f64| DAffine3::from_scale_rotation_translation(DVec3::splat(scale), turn, far * scale);
+    let mirrored = DAffine3::from_scale_rotation_translation(DVec3::new(-1.0, 1.0, 1.0), turn, DVec3::ZERO);
+    let same = || Pair { a: pair.a.clone(), b: pair.b.clone() };
+    let swapped = Pair { a: as_polygons(&pair.a), b: as_polygons(&pair.b) };
+    vec![
+        Variant { what: "far away", pair: same(), map: turned(1.0) },
+        Variant { what: "tiny", pair: same(), map: turned(1e-30) },
+        Variant { what: "huge", pair: same(), map: turned(1e30) },
+        Variant { what: "mirrored", pair: same(), map: mirrored },
+        Variant { what: "sheared", pair: same(), map: DAffine3::from_mat3(sheared) },
+        Variant { what: "as polygons, sheared", pair: swapped, map: DAffine3::from_mat3(sheared) },
+    ]
+}
+
+/// A mesh as a complex shape of polygons with four corners, one of them twice: for these GJK decides.
+fn as_polygons(mesh: &Shape) -> Shape {
+    let builder = ComplexShapeBuilder::new(mesh.vertices().unwrap());
+    let triangles = mesh.triangles().unwrap().iter();
+    triangles.fold(builder, |builder, &[i, j, k]| builder.polygon(&[i, j, k, i])).build().unwrap()
+}
+
+fn check_variant(variant: &Variant, name: &str, path: &Path) {
+    let Variant { what, pair: Pair { a, b }, map } = variant;
+    let mut tally = Tally::new(format!("{name}, {what}"));
+    let mut worlds = Worlds::new(&variant.pair);
+    let mut count = 0;
+    for_each_row(path, |row| {
+        count += 1;
+        if count % VARIANTS_EVERY != 0 {
+            return;
+        }
+        let (label, collide) = (label(&row), row.flag("collide"));
+        let at = *map * row.placement("");
+        tally.hit(&label, collide, query::intersects(a, map, b, &at).unwrap());
+        let swapped = query::intersects(b, &at, a, map).unwrap();
+        tally.check(swapped == collide, || format!("{label}: {swapped} when swapped"));
+        let distance = query::distance(b, &at, a, map).unwrap().distance;
+        tally.check((distance == 0.0) == collide, || format!("{label}: distance {distance:e}"));
+        worlds.place_a(map);
+        worlds.check(&mut tally, &label, &at, collide);
+    });
+    tally.finish();
 }
