@@ -7,6 +7,8 @@
 mod bad_meshes;
 #[path = "known_answers/casts.rs"]
 mod casts;
+#[path = "known_answers/ccd.rs"]
+mod ccd;
 #[path = "known_answers/convex.rs"]
 mod convex;
 #[path = "known_answers/data.rs"]
