@@ -19,3 +19,12 @@ pub use glam;
 pub use shape::{ComplexShapeBuilder, Shape, ShapeKind};
 pub use solid_convex as convex;
 pub use world::{Collision, Contact, ObjectId, Response, Statistics, World, WorldOptions};
+
+/// The code of the guide and of the README, as tests.
+#[cfg(doctest)]
+mod documents {
+    #[doc = include_str!("../../../docs/guide.md")]
+    struct Guide;
+    #[doc = include_str!("../../../README.md")]
+    struct Readme;
+}

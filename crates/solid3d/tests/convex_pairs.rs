@@ -1,6 +1,8 @@
 //! Pairs of convex shapes of all kinds, judged by the certificates of the oracle: no wrong answer where the oracle is
 //! certain beyond the stated error.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::collections::BTreeSet;
 
 use glam::{DAffine3, DVec3};
