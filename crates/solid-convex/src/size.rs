@@ -22,7 +22,7 @@ pub struct SizeError {
 impl fmt::Display for SizeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let SizeError { argument, value } = self;
-        write!(f, "{argument} is {value}; it must be from {MAGNITUDE_MIN:e} to {MAGNITUDE_MAX:e}")
+        write!(f, "{argument} is {value:?}; it must be from {MAGNITUDE_MIN:e} to {MAGNITUDE_MAX:e}")
     }
 }
 

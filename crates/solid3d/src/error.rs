@@ -78,7 +78,7 @@ pub enum Error {
     },
     /// A placement has an entry that is not finite, or too large.
     #[error(
-        "placement has the entry {value}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
+        "placement has the entry {value:?}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
     )]
     PlacementEntry {
         /// The entry.
@@ -110,6 +110,11 @@ pub enum Error {
         /// The object.
         id: ObjectId,
     },
+}
+
+/// Three coordinates, short also when they are huge.
+fn coordinates(v: &DVec3) -> String {
+    format!("({:?}, {:?}, {:?})", v.x, v.y, v.z)
 }
 
 /// A result whose error names what was wrong with the input.

@@ -11,6 +11,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use crate::bounds::Aabb;
 use crate::error::Result;
 use crate::pair::{self, Placed, Relation, Scratch};
 use crate::placement;
@@ -111,6 +112,20 @@ pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAff
         point_on_a: placement_a.transform_point3(closest.points.on_a),
         point_on_b: placement_b.transform_point3(closest.points.on_b),
     })
+}
+
+/// A box of the world around a placed shape: for a convex shape the smallest, up to a margin for rounding; for a mesh or a
+/// complex shape the smallest around its local box, which is cheaper (thesis, section 6.3.4).
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// let right = DAffine3::from_translation(DVec3::X * 3.0);
+/// let bounds = query::bounds(&Shape::sphere(1.0)?, &right)?;
+/// assert!((bounds.min.x - 2.0).abs() < 1e-9 && (bounds.max.x - 4.0).abs() < 1e-9);
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn bounds(shape: &Shape, placement: &DAffine3) -> Result<Aabb> {
+    Ok(pair::world_bounds(placed(shape, placement)?))
 }
 
 fn placed<'a>(shape: &'a Shape, placement: &'a DAffine3) -> Result<Placed<'a>> {

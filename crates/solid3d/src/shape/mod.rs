@@ -27,7 +27,7 @@ use crate::hull::Hull;
 /// let ball = Shape::sphere(0.5)?;
 /// assert_eq!(ball.kind(), ShapeKind::Sphere);
 /// let error = Shape::sphere(-1.0).unwrap_err();
-/// assert_eq!(error.to_string(), "radius is -1; it must be from 1e-100 to 1e100");
+/// assert_eq!(error.to_string(), "radius is -1.0; it must be from 1e-100 to 1e100");
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 #[derive(Clone, Debug)]
