@@ -8,7 +8,7 @@
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
-use crate::difference::SupportPoint;
+use crate::difference::{SUPPORT_ERROR, SupportPoint};
 
 /// Up to four support points. Invariant: after [`reduce`](Simplex::reduce), the smallest set whose hull contains the
 /// closest point, with positive barycentric coordinates that sum to 1.
@@ -39,6 +39,10 @@ struct Feature {
 
 /// The faces of a tetrahedron, each with the vertex opposite. The first three have the newest vertex.
 const FACES: [([usize; 3], usize); 4] = [([0, 1, 3], 2), ([1, 2, 3], 0), ([2, 0, 3], 1), ([0, 1, 2], 3)];
+
+/// Six times the volume between the origin and a face, beyond which the face has the origin inside whatever rounding does;
+/// coordinates are below 2. Of flatter tetrahedra all faces are looked at.
+const CLEARLY_INSIDE: f64 = 1e-6;
 
 impl Simplex {
     pub fn new() -> Self {
@@ -73,11 +77,13 @@ impl Simplex {
             1 => self.vertex(0),
             2 => self.edge([0, 1]),
             3 => self.face([0, 1, 2]),
-            4 if self.contains_origin() => {
-                self.barycentric = self.origin_in_tetrahedron();
-                return Reduced::ContainsOrigin;
-            }
-            4 => self.tetrahedron_boundary(),
+            4 => match self.sides_of_origin() {
+                Some(sides) if sides.iter().all(|&side| side >= 0.0) => {
+                    self.barycentric = self.origin_in_tetrahedron();
+                    return Reduced::ContainsOrigin;
+                }
+                sides => self.tetrahedron_boundary(sides.unwrap_or_default()),
+            },
             _ => unreachable!("a simplex has one to four points"),
         };
         self.keep(&feature);
@@ -132,20 +138,20 @@ impl Simplex {
         closest([[j, k], [k, i]].into_iter().map(|edge| self.edge(edge))).unwrap_or_else(|| self.vertex(k))
     }
 
-    /// Whether the tetrahedron contains the origin: exact signs.
-    fn contains_origin(&self) -> bool {
+    /// On which side of each of the [`FACES`] the origin is, six times the volume it makes with the face: positive inside,
+    /// with exact signs. `None` for a flat tetrahedron.
+    fn sides_of_origin(&self) -> Option<[f64; 4]> {
         let [p, q, r, s] = [0, 1, 2, 3].map(|i| coord(self.w(i)));
-        let origin = coord(DVec3::ZERO);
         let volume = orient3d(p, q, r, s);
-        let parts = || {
-            [
-                orient3d(origin, q, r, s),
-                orient3d(p, origin, r, s),
-                orient3d(p, q, origin, s),
-                orient3d(p, q, r, origin),
-            ]
-        };
-        volume != 0.0 && parts().iter().all(|&part| part == 0.0 || (part > 0.0) == (volume > 0.0))
+        let origin = coord(DVec3::ZERO);
+        // With the origin in place of the vertex opposite.
+        let parts = [
+            orient3d(p, q, origin, s),
+            orient3d(origin, q, r, s),
+            orient3d(p, origin, r, s),
+            orient3d(p, q, r, origin),
+        ];
+        (volume != 0.0).then(|| parts.map(|part| part * volume.signum()))
     }
 
     /// The barycentric coordinates of the origin in the tetrahedron that contains it.
@@ -153,15 +159,24 @@ impl Simplex {
     /// Not the ratios of its determinants: of a flat tetrahedron these have the right sign but no right digit. Of the
     /// coordinates found from each face, with and without the fourth point, those are taken that give the origin best.
     fn origin_in_tetrahedron(&self) -> [f64; 4] {
-        let residual =
-            |weights: &[f64; 4]| (0..4).map(|i| self.w(i) * weights[i]).sum::<DVec3>().length_squared();
-        let candidates = FACES.into_iter().flat_map(|(face, apex)| {
-            let mut on_face = [0.0; 4];
+        let over_faces = FACES.iter().map(|&(face, apex)| self.origin_over(face, apex));
+        let on_faces = FACES.iter().map(|&(face, _)| {
             let feature = self.face(face);
-            (0..feature.len).for_each(|k| on_face[feature.indices[k]] = feature.weights[k]);
-            [on_face, self.origin_over(face, apex)]
+            let mut weights = [0.0; 4];
+            (0..feature.len).for_each(|k| weights[feature.indices[k]] = feature.weights[k]);
+            weights
         });
-        candidates.min_by(|x, y| residual(x).total_cmp(&residual(y))).unwrap_or([0.25; 4])
+        let (mut best, mut best_residual) = ([0.25; 4], f64::INFINITY);
+        for weights in over_faces.chain(on_faces) {
+            let residual = (0..4).map(|i| self.w(i) * weights[i]).sum::<DVec3>().length_squared();
+            if residual < best_residual {
+                (best, best_residual) = (weights, residual);
+            }
+            if best_residual <= SUPPORT_ERROR * SUPPORT_ERROR {
+                break;
+            }
+        }
+        best
     }
 
     /// The barycentric coordinates of the origin: that of the apex by its height over the face, the others in the face.
@@ -179,10 +194,14 @@ impl Simplex {
         all.map(|weight| weight / total)
     }
 
-    /// The closest point of the tetrahedron's boundary, the origin being outside or the tetrahedron flat.
-    fn tetrahedron_boundary(&self) -> Feature {
-        // Only faces with the newest point, which lies beyond the face of the others (Theorem 4.8).
-        closest(FACES[..3].iter().map(|&(face, _)| self.face(face))).unwrap_or_else(|| self.vertex(3))
+    /// The closest point of the tetrahedron's boundary: on a face with the newest point, which lies beyond the face of the
+    /// others (Theorem 4.8), that does not clearly have the origin inside. Where rounding leaves no such face, on any of them.
+    fn tetrahedron_boundary(&self, sides: [f64; 4]) -> Feature {
+        let newest = || FACES[..3].iter().zip(sides).map(|(&(face, _), side)| (face, side));
+        let toward_origin = newest().filter(|(_, side)| *side <= CLEARLY_INSIDE);
+        closest(toward_origin.map(|(face, _)| self.face(face)))
+            .or_else(|| closest(newest().map(|(face, _)| self.face(face))))
+            .unwrap_or_else(|| self.vertex(3))
     }
 }
 
