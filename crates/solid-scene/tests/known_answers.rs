@@ -30,3 +30,5 @@ mod rigid;
 mod simulation;
 #[path = "known_answers/tally.rs"]
 mod tally;
+#[path = "known_answers/touching.rs"]
+mod touching;
