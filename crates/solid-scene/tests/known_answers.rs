@@ -2,6 +2,7 @@
 //!
 //! The data is in the folder that the environment variable `SOLID_DATA` names; without it every test says so and passes.
 //! Each test prints how many rows it compared, how many of them hit, and the worst error.
+#![cfg(test)]
 
 #[path = "known_answers/bad_meshes.rs"]
 mod bad_meshes;
@@ -29,3 +30,5 @@ mod rigid;
 mod simulation;
 #[path = "known_answers/tally.rs"]
 mod tally;
+#[path = "known_answers/touching.rs"]
+mod touching;

@@ -28,7 +28,7 @@ impl Tally {
 
     /// Notes an error, in units of the size of the data, and its limit.
     pub fn error(&mut self, row: &str, error: f64, limit: f64) {
-        if !(error <= self.worst) {
+        if error > self.worst || error.is_nan() {
             self.worst = error;
         }
         self.check(error <= limit, || format!("{row}: off by {error:e}, more than {limit:e}"));

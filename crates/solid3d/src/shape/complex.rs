@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use solid_convex::{IndexedPoints, Points};
+use solid_convex::IndexedPoints;
 
 use super::validate;
 use crate::bounds::Aabb;
@@ -41,6 +41,14 @@ impl Primitives {
         match self {
             Primitives::Triangles(triangles) => &triangles[i],
             Primitives::Mixed { first, indices } => &indices[first[i] as usize..first[i + 1] as usize],
+        }
+    }
+
+    /// The indices of all primitives, one after the other.
+    fn indices(&self) -> &[u32] {
+        match self {
+            Primitives::Triangles(triangles) => triangles.as_flattened(),
+            Primitives::Mixed { indices, .. } => indices,
         }
     }
 
@@ -106,9 +114,10 @@ impl Complex {
         self.primitives.bounds(primitive, &self.vertices)
     }
 
-    /// The convex hull of the whole.
-    pub fn hull(&self) -> Points<'_> {
-        Points::new(&self.vertices).expect("a complex shape has a vertex")
+    /// The convex hull of all primitives; vertices that none of them names have no part in it.
+    pub fn hull(&self) -> IndexedPoints<'_> {
+        IndexedPoints::new(&self.vertices, self.primitives.indices())
+            .expect("a primitive has a vertex, and its indices were checked")
     }
 
     /// The tree over the primitives.
@@ -147,4 +156,27 @@ impl Complex {
 fn build(primitives: &Primitives, vertices: &[DVec3]) -> Tree {
     let boxes: Vec<Aabb> = (0..primitives.len() as u32).map(|i| primitives.bounds(i, vertices)).collect();
     Tree::build(&boxes)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DAffine3, DVec3};
+
+    use crate::{ComplexShapeBuilder, Shape, query};
+
+    /// The hull of the primitives, not of the vertex buffer, has a separating axis.
+    #[test]
+    fn vertices_without_a_primitive_take_no_part() {
+        let vertices = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z * 100.0];
+        let mesh = Shape::mesh(vertices, [[0, 1, 2]]).unwrap();
+        let complex = ComplexShapeBuilder::new(vertices).triangle([0, 1, 2]).segment([0, 1]).build().unwrap();
+        let above = DAffine3::from_translation(DVec3::new(0.1, 0.1, 10.0));
+        let ball = Shape::sphere(1.0).unwrap();
+        for shape in [&mesh, &complex] {
+            for other in [&mesh, &complex, &ball] {
+                let axis = query::separating_axis(shape, &DAffine3::IDENTITY, other, &above).unwrap();
+                assert!(axis.is_some_and(|axis| axis.z < 0.0), "{axis:?}");
+            }
+        }
+    }
 }
