@@ -49,6 +49,11 @@ impl SceneObject {
         self.degenerate
     }
 
+    /// The nodes from the root of its file to this one, as numbers of the file's own.
+    pub fn path(&self) -> &[u32] {
+        &self.path
+    }
+
     /// Whether the two nodes lie on one root path: one holds the other, so that they are one thing, and are not tested
     /// against each other (thesis, section 2.2).
     pub fn on_root_path_with(&self, other: &SceneObject) -> bool {

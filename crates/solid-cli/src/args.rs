@@ -1,0 +1,179 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use solid3d::Response;
+
+/// Frames per second when nothing else is asked for.
+pub const FPS_DEFAULT: f64 = 30.0;
+
+const EXIT_STATUS: &str = "\
+Exit status:
+  0  no collisions
+  1  collisions
+  2  bad input or usage; one message on standard error says what and where";
+
+const CHECK_NOTES: &str = "\
+Objects:
+  Every node with geometry is an object. Nodes on one root path (one holds the other) are not tested against each
+  other. Shapes are closed sets, so touching collides; a mesh is a surface, so a body wholly inside one does not.
+
+Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any characters, `?` for one.
+    default = \"witness\"             # ignore, simple, witness or smart
+
+    [[object]]                      # all pairs with the object
+    name = \"mine*\"
+    response = \"ignore\"
+
+    [[pair]]                        # the pair, in whichever order
+    a = \"ship*\"
+    b = \"sweeper\"
+    response = \"smart\"
+  A rule for the pair overrides one for an object, which overrides the default; of two objects with rules the first
+  in the scene decides. Of the rules of one level the last that matches holds. A rule for a pair also holds on a root
+  path. --response overrides the default.
+
+Placements (--placements FILE.csv): in place of the animation,
+    frame,object,tx,ty,tz,qx,qy,qz,qw
+    0,ship,0,0,0,0,0,0,1
+    12,ship,1.5,0,0,0,0,0.7071,0.7071
+  places the object from that frame on: a translation and a quaternion (normalised here), optionally followed by a scale
+  sx,sy,sz. Objects stay where they are at time 0 until placed. Frames run from 0 to the largest in the file.";
+
+/// Finds every collision in an animated scene
+#[derive(Debug, Parser)]
+#[command(name = "solid", version, after_help = EXIT_STATUS)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Plays the animation frame by frame and reports what collides
+    #[command(after_help = EXIT_STATUS, after_long_help = format!("{CHECK_NOTES}\n\n{EXIT_STATUS}"))]
+    Check(CheckArgs),
+    /// Says what is in the files: objects, kinds, sizes, units, animation, defects
+    Info(InfoArgs),
+}
+
+/// Which files, and how to read them.
+#[derive(Args, Debug)]
+pub struct SceneArgs {
+    /// Scene files, which together make one scene: .wrl, .gltf, .glb, .obj, .stl, .ply
+    #[arg(value_name = "SCENE", required = true)]
+    pub files: Vec<PathBuf>,
+
+    /// Make each group of an OBJ file an object
+    #[arg(long)]
+    pub split: bool,
+}
+
+#[derive(Args, Debug)]
+pub struct InfoArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+}
+
+#[derive(Args, Debug)]
+pub struct CheckArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+
+    /// Frames per second
+    #[arg(long, value_name = "N", default_value_t = FPS_DEFAULT, value_parser = fps, allow_negative_numbers = true)]
+    pub fps: f64,
+
+    /// Time of the first frame, in seconds [default: 0]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    pub from: Option<f64>,
+
+    /// Time of the last frame, in seconds [default: the end of the animation]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    pub to: Option<f64>,
+
+    /// Which pairs to test, and for what, by object name
+    #[arg(long, value_name = "FILE.toml")]
+    pub rules: Option<PathBuf>,
+
+    /// Placements per frame, in place of the animation
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["from", "to"])]
+    pub placements: Option<PathBuf>,
+
+    /// What to find out about colliding pairs [default: witness]
+    #[arg(long, value_name = "RESPONSE")]
+    pub response: Option<ResponseArg>,
+
+    /// Write every frame and collision as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Write every collision as a row of CSV; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+
+    /// Print how much work it was
+    #[arg(long)]
+    pub stats: bool,
+}
+
+/// A response that finds something.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum ResponseArg {
+    /// That they collide
+    Simple,
+    /// A common point
+    Witness,
+    /// The closest points of the previous frame, and the normal between them
+    Smart,
+}
+
+impl From<ResponseArg> for Response {
+    fn from(response: ResponseArg) -> Response {
+        match response {
+            ResponseArg::Simple => Response::Simple,
+            ResponseArg::Witness => Response::Witness,
+            ResponseArg::Smart => Response::Smart,
+        }
+    }
+}
+
+fn fps(text: &str) -> Result<f64, String> {
+    number(text, |x| x > 0.0, "a finite number above 0")
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    number(text, |x| x >= 0.0, "a finite number of seconds, at least 0")
+}
+
+fn number(text: &str, fits: impl Fn(f64) -> bool, expected: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && fits(x) => Ok(x),
+        _ => Err(format!("expected {expected}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn numbers_that_are_no_rate_or_time_are_refused() {
+        for text in ["0", "-1", "nan", "inf", "1e999", "x", ""] {
+            assert!(fps(text).is_err(), "{text}");
+        }
+        assert_eq!(fps("29.97"), Ok(29.97));
+        for text in ["-0.1", "nan", "inf", "1s"] {
+            assert!(seconds(text).is_err(), "{text}");
+        }
+        assert_eq!(seconds("0"), Ok(0.0));
+    }
+}

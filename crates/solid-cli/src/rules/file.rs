@@ -1,0 +1,194 @@
+//! Rules as they stand in a TOML file.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, anyhow};
+use serde::Deserialize;
+use solid3d::Response;
+use toml::Spanned;
+
+use super::pattern::Pattern;
+
+/// The rules of a file, in its order.
+#[derive(Debug, Default)]
+pub struct Rules {
+    pub(super) default: Option<Response>,
+    pub(super) objects: Vec<ObjectRule>,
+    pub(super) pairs: Vec<PairRule>,
+}
+
+/// What is wanted of all pairs with some objects.
+#[derive(Debug)]
+pub(super) struct ObjectRule {
+    pub name: Names,
+    pub response: Response,
+}
+
+/// What is wanted of the pairs of some objects with others.
+#[derive(Debug)]
+pub(super) struct PairRule {
+    pub a: Names,
+    pub b: Names,
+    pub response: Response,
+}
+
+/// A pattern, with where it stands.
+#[derive(Debug)]
+pub(super) struct Names {
+    pub pattern: Pattern,
+    pub text: String,
+    /// `rules.toml:7`
+    pub place: String,
+}
+
+impl Rules {
+    /// Reads a file.
+    pub fn read(path: &Path) -> Result<Rules> {
+        let text = std::fs::read_to_string(path).with_context(|| format!("{}", path.display()))?;
+        Rules::parse(path, &text)
+    }
+
+    /// The rules of a text; `path` is where it is from, for messages.
+    pub(super) fn parse(path: &Path, text: &str) -> Result<Rules> {
+        let source = Source { path: path.to_owned(), text };
+        let written: Written = toml::from_str(text).map_err(|error| source.fault(&error))?;
+        let object = |rule: WrittenObject| ObjectRule {
+            name: source.names(rule.name),
+            response: rule.response.into(),
+        };
+        let pair = |rule: WrittenPair| PairRule {
+            a: source.names(rule.a),
+            b: source.names(rule.b),
+            response: rule.response.into(),
+        };
+        Ok(Rules {
+            default: written.default.map(Response::from),
+            objects: written.object.into_iter().map(object).collect(),
+            pairs: written.pair.into_iter().map(pair).collect(),
+        })
+    }
+}
+
+/// A text and where it is from.
+struct Source<'a> {
+    path: PathBuf,
+    text: &'a str,
+}
+
+impl Source<'_> {
+    fn names(&self, text: Spanned<String>) -> Names {
+        let place = self.place(text.span());
+        let text = text.into_inner();
+        Names { pattern: Pattern::new(&text), text, place }
+    }
+
+    fn fault(&self, error: &toml::de::Error) -> anyhow::Error {
+        let place = error.span().map_or_else(|| self.path.display().to_string(), |span| self.place(span));
+        anyhow!("{place}: {}", error.message().replace('\n', "; "))
+    }
+
+    fn place(&self, span: Range<usize>) -> String {
+        let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
+        let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
+        format!("{}:{line}", self.path.display())
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    default: Option<WrittenResponse>,
+    #[serde(default)]
+    object: Vec<WrittenObject>,
+    #[serde(default)]
+    pair: Vec<WrittenPair>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenObject {
+    name: Spanned<String>,
+    response: WrittenResponse,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenPair {
+    a: Spanned<String>,
+    b: Spanned<String>,
+    response: WrittenResponse,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum WrittenResponse {
+    Ignore,
+    Simple,
+    Witness,
+    Smart,
+}
+
+impl From<WrittenResponse> for Response {
+    fn from(response: WrittenResponse) -> Response {
+        match response {
+            WrittenResponse::Ignore => Response::Ignore,
+            WrittenResponse::Simple => Response::Simple,
+            WrittenResponse::Witness => Response::Witness,
+            WrittenResponse::Smart => Response::Smart,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Rules> {
+        Rules::parse(Path::new("rules.toml"), text)
+    }
+
+    #[test]
+    fn rules_keep_their_order_and_place() {
+        let rules = parse(
+            "default = \"smart\"\n\n[[object]]\nname = \"mine*\"\nresponse = \"ignore\"\n\
+             [[pair]]\na = \"x\"\nb = \"y\"\nresponse = \"simple\"\n",
+        )
+        .expect("the rules are well formed");
+        assert_eq!(rules.default, Some(Response::Smart));
+        assert_eq!(
+            (rules.objects[0].name.place.as_str(), rules.objects[0].response),
+            ("rules.toml:4", Response::Ignore)
+        );
+        assert_eq!((rules.pairs[0].b.text.as_str(), rules.pairs[0].b.place.as_str()), ("y", "rules.toml:8"));
+    }
+
+    #[test]
+    fn mistakes_name_their_line_and_what_was_expected() {
+        for (text, expected) in [
+            (
+                "default = \"none\"",
+                "rules.toml:1: unknown variant `none`, expected one of `ignore`, `simple`",
+            ),
+            (
+                "\ncolour = 1",
+                "rules.toml:2: unknown field `colour`, expected one of `default`, `object`, `pair`",
+            ),
+            ("[[object]]\nname = \"x\"", "rules.toml:1: missing field `response`"),
+            ("[[pair]]\na = \"x\"\nb = 3\nresponse = \"simple\"", "rules.toml:3: invalid type: integer"),
+            ("[[pair]\n", "rules.toml:1: "),
+            ("object = 3", "rules.toml:1: invalid type: integer"),
+        ] {
+            let error = parse(text).expect_err(text).to_string();
+            assert!(error.starts_with(expected) && !error.contains('\n'), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn no_text_panics() {
+        for text in ["\u{feff}", "[[object]]\nname=\"ü", "default = \"\\ud800\"", "\0", "[[object]]\r\nname"]
+        {
+            assert!(parse(text).is_err() || text == "\u{feff}", "{text:?}");
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Loading the scene that the command line names.
+
+use anyhow::Result;
+use solid_scene::{LoadOptions, Scene};
+
+use crate::args::SceneArgs;
+use crate::words;
+
+/// Loads the files into one scene.
+pub fn load(args: &SceneArgs) -> Result<Scene> {
+    let mut options = LoadOptions::default();
+    options.split = args.split;
+    Ok(Scene::load(&args.files, &options)?)
+}
+
+/// What was passed over or guessed in the files, a line each.
+pub fn warnings(scene: &Scene) -> impl Iterator<Item = String> {
+    scene.warnings().map(|(file, warning)| words::printable(&format!("{}: {warning}", file.display())))
+}
+
+/// How much geometry there is, in words: `3 objects, 5804 triangles, 2 other primitives`.
+pub fn amount(scene: &Scene) -> String {
+    let (mut triangles, mut others) = (0, 0);
+    for object in scene.objects() {
+        let primitives = object.shape().primitive_count();
+        match object.shape().triangles() {
+            Some(_) => triangles += primitives,
+            None => others += primitives,
+        }
+    }
+    let objects = words::count(words::size(scene.objects().len()), "object");
+    let triangles = words::count(words::size(triangles), "triangle");
+    match others {
+        0 => format!("{objects}, {triangles}"),
+        _ => format!("{objects}, {triangles}, {}", words::count(words::size(others), "other primitive")),
+    }
+}

@@ -1,0 +1,85 @@
+//! Numbers and names in words for people.
+
+use solid3d::glam::DVec3;
+
+/// How many digits of a coordinate are worth reading.
+const DIGITS: i32 = 4;
+
+/// `1 frame`, `2 frames`.
+pub fn count(n: impl Into<u64>, noun: &str) -> String {
+    match n.into() {
+        1 => format!("1 {noun}"),
+        n if noun.ends_with('x') => format!("{n} {noun}es"),
+        n => format!("{n} {noun}s"),
+    }
+}
+
+/// A number of things, to count.
+pub fn size(n: usize) -> u64 {
+    n as u64
+}
+
+/// A time or duration in seconds, without the unit.
+pub fn seconds(time: f64) -> String {
+    format!("{time:.3}")
+}
+
+/// A point, to four significant digits.
+pub fn point(p: DVec3) -> String {
+    format!("({}, {}, {})", figure(p.x), figure(p.y), figure(p.z))
+}
+
+/// A number, to four significant digits.
+pub fn figure(x: f64) -> String {
+    let magnitude = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
+    if !(-4..=6).contains(&magnitude) {
+        return format!("{x:.*e}", (DIGITS - 1) as usize);
+    }
+    let text = format!("{x:.*}", (DIGITS - 1 - magnitude).max(0) as usize);
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// A name from a file as it can be shown: control characters, which could move the cursor, escaped.
+pub fn printable(name: &str) -> String {
+    let escape = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
+    name.chars().map(escape).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_have_four_digits_and_no_idle_zeros() {
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (1.0, "1"),
+            (-2.5, "-2.5"),
+            (1.23456, "1.235"),
+            (12345.6, "12346"),
+            (0.000123456, "0.0001235"),
+            (1e-9, "1.000e-9"),
+            (-1.5e20, "-1.500e20"),
+            (9.99996, "10"),
+            (100.0, "100"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(figure(x), text);
+        }
+    }
+
+    #[test]
+    fn nouns_agree_with_their_number() {
+        assert_eq!(count(1u64, "frame"), "1 frame");
+        assert_eq!(count(0u64, "frame"), "0 frames");
+        assert_eq!(count(2u64, "box"), "2 boxes");
+    }
+
+    #[test]
+    fn control_characters_do_not_reach_the_terminal() {
+        assert_eq!(printable("a\x1b[2Jb\n"), "a\\u{1b}[2Jb\\n");
+        assert_eq!(printable("Würfel 1"), "Würfel 1");
+    }
+}
