@@ -38,8 +38,8 @@ Placements (--placements FILE.csv): in place of the animation,
     frame,object,tx,ty,tz,qx,qy,qz,qw
     0,ship,0,0,0,0,0,0,1
     12,ship,1.5,0,0,0,0,0.7071,0.7071
-  places the object from that frame on: a translation and a quaternion (normalised here), optionally followed by a scale
-  sx,sy,sz. Objects stay where they are at time 0 until placed. Frames run from 0 to the largest in the file.";
+  A row places the object from its frame on: a translation and a quaternion (normalised when read), optionally followed
+  by a scale sx,sy,sz. Until placed, objects stay where they are at time 0. Frames run from 0 to the largest in the file.";
 
 /// Finds every collision in an animated scene
 #[derive(Debug, Parser)]
@@ -68,6 +68,10 @@ pub struct SceneArgs {
     /// Make each group of an OBJ file an object
     #[arg(long)]
     pub split: bool,
+
+    /// The animation of a glTF file to play, by its name or else by its number, from 0 [default: the first]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub animation: Option<String>,
 }
 
 #[derive(Args, Debug)]

@@ -10,6 +10,7 @@ use crate::words;
 pub fn load(args: &SceneArgs) -> Result<Scene> {
     let mut options = LoadOptions::default();
     options.split = args.split;
+    options.animation.clone_from(&args.animation);
     Ok(Scene::load(&args.files, &options)?)
 }
 

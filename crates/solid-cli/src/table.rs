@@ -1,7 +1,11 @@
 //! Tables: with rules for a person at a terminal, plain for `grep`, `awk` and `diff`.
 
-use comfy_table::presets::{NOTHING, UTF8_HORIZONTAL_ONLY};
-use comfy_table::{CellAlignment, Table};
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+
+/// Rules around the table and under its headings.
+const RULED: TableStyle = TableStyle::new().top_border(RULE).header_separator(RULE).bottom_border(RULE);
+const RULE: LineStyle = LineStyle::new('─', '─', '─', '─');
 
 /// How a table is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +35,8 @@ pub enum Column {
 /// Draws a table, with a line break at the end.
 pub fn draw(style: Style, columns: &[Column], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut table = Table::new();
-    table.load_preset(match style {
-        Style::Ruled => UTF8_HORIZONTAL_ONLY,
+    table.load_style(match style {
+        Style::Ruled => RULED,
         Style::Plain => NOTHING,
     });
     table.set_header(columns.iter().map(|column| match *column {

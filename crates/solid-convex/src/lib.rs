@@ -28,7 +28,7 @@ mod size;
 mod support;
 
 pub use gjk::{Closest, Outcome, Witness};
-pub use kinds::{Capsule, Cone, Cuboid, Cylinder, IndexedPoints, Points, Sphere};
+pub use kinds::{Capsule, Cone, Cuboid, Cylinder, IndexedPoints, Points, Polytope, Sphere};
 pub use size::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError, unit_scale};
 pub use support::Support;
 

@@ -37,6 +37,9 @@ struct Feature {
     len: usize,
 }
 
+/// The faces of a tetrahedron, each with the vertex opposite. The first three have the newest vertex.
+const FACES: [([usize; 3], usize); 4] = [([0, 1, 3], 2), ([1, 2, 3], 0), ([2, 0, 3], 1), ([0, 1, 2], 3)];
+
 impl Simplex {
     pub fn new() -> Self {
         let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
@@ -70,13 +73,11 @@ impl Simplex {
             1 => self.vertex(0),
             2 => self.edge([0, 1]),
             3 => self.face([0, 1, 2]),
-            4 => match self.origin_in_tetrahedron() {
-                Some(barycentric) => {
-                    self.barycentric = barycentric;
-                    return Reduced::ContainsOrigin;
-                }
-                None => self.tetrahedron_boundary(),
-            },
+            4 if self.contains_origin() => {
+                self.barycentric = self.origin_in_tetrahedron();
+                return Reduced::ContainsOrigin;
+            }
+            4 => self.tetrahedron_boundary(),
             _ => unreachable!("a simplex has one to four points"),
         };
         self.keep(&feature);
@@ -113,63 +114,82 @@ impl Simplex {
         Feature { v, indices: [i, j, 0], weights: [1.0 - t, t, 0.0], len: 2 }
     }
 
+    /// The closest point of a face whose last point is the newest.
     fn face(&self, [i, j, k]: [usize; 3]) -> Feature {
         let (p, q, r) = (self.w(i), self.w(j), self.w(k));
-        let n = normal([q - p, r - q, p - r]);
-        let area = n.length_squared();
-        // Signed areas of the triangles that the projected origin makes with the edges, twice the face's and scaled by it.
-        // With an edge as one factor the error is relative to the edge, not to the distance from the origin.
-        let at_p = n.dot((r - q).cross(-q));
-        let at_q = n.dot((p - r).cross(-r));
-        let at_r = n.dot((q - p).cross(-p));
-        if at_p > 0.0 && at_q > 0.0 && at_r > 0.0 && area > 0.0 {
-            let nearest = [q, r]
-                .into_iter()
-                .fold(p, |x, y| if y.length_squared() < x.length_squared() { y } else { x });
-            let v = n * (n.dot(nearest) / area);
-            let total = at_p + at_q + at_r;
+        let weights = weights([p, q, r], 1.0, DVec3::ZERO);
+        if weights.iter().all(|&weight| weight > 0.0) {
+            let n = normal([q - p, r - q, p - r]);
+            let nearest = nearest([p, q, r]);
             return Feature {
-                v,
+                v: n * (n.dot(nearest) / n.length_squared()),
                 indices: [i, j, k],
-                weights: [at_p / total, at_q / total, at_r / total],
+                weights,
                 len: 3,
             };
         }
-        let outside = [(at_p, [j, k]), (at_q, [k, i]), (at_r, [i, j])];
-        closest(
-            outside
-                .into_iter()
-                .filter(|(side, _)| *side <= 0.0 || area <= 0.0)
-                .map(|(_, edge)| self.edge(edge)),
-        )
-        .unwrap_or_else(|| self.vertex(i))
+        // The newest point is part of the result (Theorem 4.8), whatever the weights of a sliver say.
+        closest([[j, k], [k, i]].into_iter().map(|edge| self.edge(edge))).unwrap_or_else(|| self.vertex(k))
     }
 
-    /// The barycentric coordinates of the origin when the tetrahedron contains it: exact signs.
-    fn origin_in_tetrahedron(&self) -> Option<[f64; 4]> {
+    /// Whether the tetrahedron contains the origin: exact signs.
+    fn contains_origin(&self) -> bool {
         let [p, q, r, s] = [0, 1, 2, 3].map(|i| coord(self.w(i)));
         let origin = coord(DVec3::ZERO);
         let volume = orient3d(p, q, r, s);
-        if volume == 0.0 {
-            return None;
-        }
-        let parts = [
-            orient3d(origin, q, r, s),
-            orient3d(p, origin, r, s),
-            orient3d(p, q, origin, s),
-            orient3d(p, q, r, origin),
-        ];
-        let inside = parts.iter().all(|&part| part == 0.0 || (part > 0.0) == (volume > 0.0));
-        let total: f64 = parts.iter().sum();
-        inside.then(|| parts.map(|part| part / total))
+        let parts = || {
+            [
+                orient3d(origin, q, r, s),
+                orient3d(p, origin, r, s),
+                orient3d(p, q, origin, s),
+                orient3d(p, q, r, origin),
+            ]
+        };
+        volume != 0.0 && parts().iter().all(|&part| part == 0.0 || (part > 0.0) == (volume > 0.0))
+    }
+
+    /// The barycentric coordinates of the origin in the tetrahedron that contains it.
+    ///
+    /// Not the ratios of its determinants: of a flat tetrahedron these have the right sign but no right digit. Of the
+    /// coordinates found from each face, with and without the fourth point, those are taken that give the origin best.
+    fn origin_in_tetrahedron(&self) -> [f64; 4] {
+        let residual =
+            |weights: &[f64; 4]| (0..4).map(|i| self.w(i) * weights[i]).sum::<DVec3>().length_squared();
+        let candidates = FACES.into_iter().flat_map(|(face, apex)| {
+            let mut on_face = [0.0; 4];
+            let feature = self.face(face);
+            (0..feature.len).for_each(|k| on_face[feature.indices[k]] = feature.weights[k]);
+            [on_face, self.origin_over(face, apex)]
+        });
+        candidates.min_by(|x, y| residual(x).total_cmp(&residual(y))).unwrap_or([0.25; 4])
+    }
+
+    /// The barycentric coordinates of the origin: that of the apex by its height over the face, the others in the face.
+    fn origin_over(&self, [i, j, k]: [usize; 3], apex: usize) -> [f64; 4] {
+        let (p, q, r, s) = (self.w(i), self.w(j), self.w(k), self.w(apex));
+        let n = normal([q - p, r - q, p - r]);
+        let of_apex = (-n.dot(p) / n.dot(s - p)).clamp(0.0, 1.0);
+        // What the face has to contribute: weights that sum to `rest`, and that point.
+        let (rest, target) = (1.0 - of_apex, -of_apex * s);
+        let in_face = weights([p, q, r], rest, target).map(|weight| weight.max(0.0));
+        let mut all = [0.0; 4];
+        all[apex] = of_apex;
+        (all[i], all[j], all[k]) = (in_face[0], in_face[1], in_face[2]);
+        let total: f64 = all.iter().sum();
+        all.map(|weight| weight / total)
     }
 
     /// The closest point of the tetrahedron's boundary, the origin being outside or the tetrahedron flat.
     fn tetrahedron_boundary(&self) -> Feature {
         // Only faces with the newest point, which lies beyond the face of the others (Theorem 4.8).
-        let faces = [[0, 1, 3], [1, 2, 3], [2, 0, 3]];
-        closest(faces.into_iter().map(|face| self.face(face))).unwrap_or_else(|| self.vertex(3))
+        closest(FACES[..3].iter().map(|&(face, _)| self.face(face))).unwrap_or_else(|| self.vertex(3))
     }
+}
+
+/// The point nearest to the origin; the first of equals.
+fn nearest(points: [DVec3; 3]) -> DVec3 {
+    let nearer = |x: DVec3, y: DVec3| if y.length_squared() < x.length_squared() { y } else { x };
+    points.into_iter().fold(points[0], nearer)
 }
 
 /// The point closest to the origin on the line through `p` along `edge`. `p` should be the nearer end of the edge, whose
@@ -195,6 +215,30 @@ pub(crate) fn normal([pq, qr, rp]: [DVec3; 3]) -> DVec3 {
     } else {
         pq.cross(qr)
     }
+}
+
+/// The weights of three points that sum to `sum` and whose combination is as close as can be to a point: negative where it
+/// is outside of the triangle, not numbers where the triangle is degenerate.
+///
+/// First across the longest edge, then along it: what the short side of a sliver leaves uncertain then stays as small as
+/// that side. Signed areas, the usual way, let it move the result along the long one.
+fn weights(points: [DVec3; 3], sum: f64, target: DVec3) -> [f64; 3] {
+    let length_squared = |i: usize, j: usize| (points[j] - points[i]).length_squared();
+    let edges = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
+    let longest = |x: [usize; 3], y: [usize; 3]| {
+        if length_squared(y[0], y[1]) > length_squared(x[0], x[1]) { y } else { x }
+    };
+    let [i, j, k] = edges.into_iter().fold(edges[0], longest);
+    // From the end of the longest edge that is nearer to the third point.
+    let [i, j] = if length_squared(i, k) <= length_squared(j, k) { [i, j] } else { [j, i] };
+    let (long, short) = (points[j] - points[i], points[k] - points[i]);
+    let rest = target - sum * points[i];
+    let across = perpendicular(short, long);
+    let of_k = perpendicular(rest, long).dot(across) / across.length_squared();
+    let of_j = (rest - short * of_k).dot(long) / long.length_squared();
+    let mut weights = [0.0; 3];
+    (weights[i], weights[j], weights[k]) = (sum - of_k - of_j, of_j, of_k);
+    weights
 }
 
 /// The feature whose closest point is nearest to the origin; the first of equals.

@@ -31,7 +31,7 @@ pub(crate) fn decide(pair: &PlacedPair, limits: Limits) -> Decision {
         if encloses && shows_common_point(pair, &simplex) {
             return Decision::Common(simplex.vertices);
         }
-        let gap = pair.gap_along(&axis.to_exact().normalised());
+        let gap = pair.gap_along(&axis.to_exact());
         gap_best = gap_best.max(gap);
         distance_max = distance_max.min(distance_up(pair, &simplex));
         if gap > 0.0 {
@@ -109,12 +109,12 @@ fn cut_until_proven(pair: &PlacedPair, met: &mut Vec<Vertex>) -> Cut {
             return Cut::Open;
         }
         let Separation::Axis(axis) = separate(&points, &origin) else { return Cut::Common };
-        let axis = Vec3::from_exact(&axis.normalised());
-        let gap = pair.gap_along(&axis.to_exact());
+        // All digits of the axis count where the points span less than a body: a needle next to a point.
+        let gap = pair.gap_along(&axis);
         if gap > 0.0 {
             return Cut::Gap(gap);
         }
-        let vertex = pair.support(-axis);
+        let vertex = pair.support(-Vec3::from_exact(&axis.normalised()));
         let Some(point) = pair.proven(&vertex) else { return Cut::Open };
         if points.contains(&point) {
             return Cut::Open;

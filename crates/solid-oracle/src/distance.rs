@@ -14,8 +14,8 @@ const WITHIN_SLACK: f64 = 1e-9;
 /// A certified interval `(lower, upper)` around the Euclidean distance of two placed shapes.
 ///
 /// `lower` rests on a verified axis, `upper` on two actual points; both are rigorous. `(0, 0)` when a common point is
-/// proven. The width is below 1e-9 of the distance unless the shapes touch up to 1e-20 of their size, where `lower`
-/// is zero.
+/// proven. The width is below 1e-9 of the distance where that is above 1e-11 of the size of the shapes. Nearer touches of
+/// round shapes widen it: of 5000 pairs the worst was 2e-5 wide at gaps of 1e-13, a tenth at 1e-15.
 ///
 /// ```
 /// use glam::{DAffine3, DVec3};
@@ -35,7 +35,7 @@ pub fn distance_bounds(a: &Convex, pa: &DAffine3, b: &Convex, pb: &DAffine3) -> 
 /// Whether `point` lies within `tolerance` of the placed shape.
 ///
 /// Never true for a point farther away than `tolerance * (1 + 1e-9)`; never false for one nearer than
-/// `tolerance * (1 - 1e-9)`, nor for one proven to lie in the shape.
+/// `tolerance * (1 - 1e-9)`, as long as the tolerance is above 1e-11 of the size; nor for one proven to lie in the shape.
 ///
 /// ```
 /// use glam::{DAffine3, DVec3};

@@ -42,7 +42,7 @@ pub fn penetration_bounds(a: &Convex, pa: &DAffine3, b: &Convex, pb: &DAffine3) 
     };
     let ball = inscribed(&pair, &vertices, Effort::THOROUGH);
     // A must move along the outward normal of B-A, the negated one of A-B.
-    let upper = -pair.gap_along(&(-ball.normal).to_exact().normalised());
+    let upper = -pair.gap_along(&(-ball.normal).to_exact());
     Some((ball.radius.min(upper), upper))
 }
 

@@ -103,6 +103,8 @@ impl<'a> PlacedPair<'a> {
 
     /// A rigorous lower bound of the gap along `axis` (A above B), in units of length; negative where none is proven.
     pub(crate) fn gap_along(&self, axis: &ExactVec3) -> f64 {
+        // The axis of an exact program may exceed the range of `f64`, with which hulls rule out most of their points.
+        let axis = &axis.normalised();
         let gap = -&(&self.a.support_value_up(&-axis) + &self.b.support_value_up(axis));
         let length_squared = axis.length_squared();
         match gap.sign() {

@@ -185,7 +185,9 @@ impl Convex {
             Self::Cone { radius, half_height } => {
                 let height = exact(*half_height);
                 let to_apex = &height - y;
+                // The first bound on the radius is all there is of a cone without height, a disc.
                 y.abs() <= height
+                    && radial() <= exact(*radius).square()
                     && &radial() * &height.scaled(1).square() <= (&exact(*radius) * &to_apex).square()
             }
             Self::Cuboid { .. } | Self::Hull { .. } => unreachable!("polytopes support at their own corners"),
@@ -230,6 +232,20 @@ mod tests {
     use glam::dvec3;
 
     use super::*;
+
+    #[test]
+    fn membership_is_exact_at_the_rim() {
+        let inside = |shape: &Convex, p: DVec3| shape.contains(&ExactVec3::from_f64(p));
+        let next = 1.0 + f64::EPSILON;
+        let cone = Convex::Cone { radius: 1.0, half_height: 1.0 };
+        assert!(inside(&cone, dvec3(0.5, 0.0, 0.0)) && !inside(&cone, dvec3(0.5 * next, 0.0, 0.0)));
+        let disc = Convex::Cone { radius: 1.0, half_height: 0.0 };
+        assert!(inside(&disc, DVec3::X) && !inside(&disc, DVec3::X * next));
+        let capsule = Convex::Capsule { radius: 1.0, half_height: 2.0 };
+        assert!(inside(&capsule, 3.0 * DVec3::Y) && !inside(&capsule, 3.0 * next * DVec3::Y));
+        let cylinder = Convex::Cylinder { radius: 5.0, half_height: 2.0 };
+        assert!(inside(&cylinder, dvec3(3.0, -2.0, 4.0)) && !inside(&cylinder, dvec3(3.0, -2.0, 4.0 * next)));
+    }
 
     #[test]
     fn support_points_lie_inside_and_attain_the_support_value() {

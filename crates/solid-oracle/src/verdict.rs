@@ -11,7 +11,8 @@ use crate::shape::Convex;
 pub enum Verdict {
     /// Proven apart.
     Separated {
-        /// A rigorous lower bound of the distance, positive; usually within 1e-9 of it.
+        /// A rigorous lower bound of the distance, positive; within about 1e-9 of it unless the gap is below 1e-11 of
+        /// the size.
         gap: f64,
     },
     /// Proven to share a point, be it a single one.
@@ -29,7 +30,18 @@ pub enum Verdict {
     },
 }
 
-/// For tests at the limit of precision: 1e-9 of the distance is known once the search stops.
+impl Verdict {
+    /// Whether a common point was proven or refuted, `None` when neither.
+    pub fn shares_point(&self) -> Option<bool> {
+        match self {
+            Self::Separated { .. } => Some(false),
+            Self::Intersecting { .. } => Some(true),
+            Self::Uncertain { .. } => None,
+        }
+    }
+}
+
+/// 1e-9 of the distance is known once the search stops.
 const LIMITS: Limits = Limits { relative_width: 1e-9, iterations_max: 400 };
 
 /// Decides whether two placed shapes share a point.

@@ -2,6 +2,12 @@
 //!
 //! Their reference values come from other libraries or from references of 60 digits; each test says how close.
 
+#![allow(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "helpers of tests print and unwrap as tests may"
+)]
+
 use std::path::PathBuf;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};

@@ -1,5 +1,7 @@
 //! Laws of the queries, and closed forms they must agree with.
 
+#![allow(clippy::print_stdout, reason = "tests print their seeds and their counts, from helpers too")]
+
 use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -30,14 +32,6 @@ fn distance(p: &Pair) -> (f64, f64) {
     distance_bounds(&p.a, &p.pa, &p.b, &p.pb)
 }
 
-fn hits(v: Verdict) -> Option<bool> {
-    match v {
-        Verdict::Separated { .. } => Some(false),
-        Verdict::Intersecting { .. } => Some(true),
-        Verdict::Uncertain { .. } => None,
-    }
-}
-
 /// Runs `check` on pairs of every regime, and says which seed.
 fn for_pairs(seed: u64, per_regime: usize, mut check: impl FnMut(&Pair)) {
     println!("seed {seed}");
@@ -53,7 +47,7 @@ fn for_pairs(seed: u64, per_regime: usize, mut check: impl FnMut(&Pair)) {
 fn swapping_keeps_the_verdict() {
     for_pairs(1, 150, |p| {
         let swapped = verdict(&p.b, &p.pb, &p.a, &p.pa);
-        if let (Some(s), Some(t)) = (hits(judge(p)), hits(swapped)) {
+        if let (Some(s), Some(t)) = (judge(p).shares_point(), swapped.shares_point()) {
             assert_eq!(s, t, "{p:?}");
         }
     });
@@ -74,7 +68,7 @@ fn a_power_of_two_scale_scales_gaps() {
                 (Verdict::Intersecting { depth: g }, Verdict::Intersecting { depth: h }) => {
                     assert!((g * s - h).abs() <= 1e-9 * h, "{p:?}");
                 }
-                (u, v) => assert_eq!(hits(u), hits(v), "{p:?}"),
+                (u, v) => assert_eq!(u.shares_point(), v.shares_point(), "{p:?}"),
             }
         }
     });
@@ -137,8 +131,8 @@ fn spheres_agree_with_the_closed_form() {
         let (p, q, r, s) = (
             DVec3::new(few(12), few(12), few(12)),
             DVec3::new(few(12), few(12), few(12)),
-            few(12).abs(),
-            few(12).abs(),
+            few(16).abs(),
+            few(16).abs(),
         );
         let (a, b) = (Convex::Sphere { radius: r }, Convex::Sphere { radius: s });
         let v = verdict(&a, &DAffine3::from_translation(p), &b, &DAffine3::from_translation(q));
@@ -239,7 +233,7 @@ fn hulls_agree_with_the_exact_program() {
         hit += u32::from(exact);
         let hull = |points: &[DVec3]| Convex::Hull { points: points.to_vec() };
         let v = verdict(&hull(&p), &DAffine3::IDENTITY, &hull(&q), &DAffine3::IDENTITY);
-        assert_eq!(hits(v), Some(exact), "{p:?} {q:?}");
+        assert_eq!(v.shares_point(), Some(exact), "{p:?} {q:?}");
     }
     println!("{hit} hits of {cases}");
     assert!((cases * 3 / 10..=cases * 7 / 10).contains(&hit));
@@ -275,9 +269,51 @@ fn singular_placements_are_judged() {
     let judge = |p: &DAffine3, q: &DAffine3| verdict(&ball, p, &ball, q);
     let disc = flattened(DVec3::new(1.0, 1.0, 0.0), DVec3::ZERO);
     let beside = |z: f64| flattened(DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.5, 0.0, z));
-    assert_eq!(hits(judge(&disc, &beside(0.0))), Some(true));
+    assert_eq!(judge(&disc, &beside(0.0)).shares_point(), Some(true));
     assert_eq!(judge(&disc, &beside(0.25)), Verdict::Separated { gap: 0.25 });
     let point = flattened(DVec3::ZERO, DVec3::new(0.0, 1.0, 0.0));
     assert_eq!(judge(&disc, &point), Verdict::Intersecting { depth: 0.0 });
     assert_eq!(judge(&point, &point), Verdict::Intersecting { depth: 0.0 });
+}
+
+/// Touches of round shapes at a known point, opened and closed by far less than an ulp of the coordinates.
+#[test]
+fn gaps_far_below_an_ulp_are_decided() {
+    let ball = |radius: f64| Convex::Sphere { radius };
+    let cases = [
+        (Convex::Capsule { radius: 2.5, half_height: 1.0 }, ball(2.5), DVec3::new(3.0, 5.0, 0.0)),
+        (Convex::Cylinder { radius: 3.0, half_height: 1.0 }, ball(5.0), DVec3::new(6.0, 5.0, 0.0)),
+        (Convex::Cone { radius: 3.0, half_height: 1.0 }, ball(5.0), DVec3::new(6.0, -5.0, 0.0)),
+        (Convex::Cone { radius: 1.0, half_height: 1.0 }, ball(5.0), DVec3::new(3.0, 5.0, 0.0)),
+    ];
+    for (shape, ball, centre) in &cases {
+        for exponent in [30, 50, 60, 66, 73, 80] {
+            for sign in [1.0, -1.0] {
+                let gap = sign * 2f64.powi(-exponent);
+                let away = DAffine3::from_translation(-gap * DVec3::new(3.0, 4.0 * centre.y.signum(), 0.0));
+                let placement = DAffine3::from_translation(*centre);
+                let v = verdict(shape, &away, ball, &placement);
+                assert_eq!(v.shares_point(), Some(gap < 0.0), "{gap:e} {shape:?} {v:?}");
+            }
+        }
+    }
+}
+
+/// Law: the generator leaves the gap it was asked for.
+#[test]
+fn near_touching_pairs_have_their_gap() {
+    let seed = 9;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut apart, mut kept) = (0, 0);
+    for _ in 0..500 {
+        let p = random_pair(&mut rng, Regime::NearTouching { relative_gap: 1e-6 });
+        let (low, high) = distance(&p);
+        if low > 0.0 {
+            apart += 1;
+            kept += usize::from((0.5 * (low + high) / p.size - 1e-6).abs() < 1e-9);
+        }
+    }
+    println!("{kept} of {apart} separated pairs have the gap asked for");
+    assert!((150..=350).contains(&apart) && kept * 100 >= apart * 90);
 }

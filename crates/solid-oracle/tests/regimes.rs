@@ -1,5 +1,7 @@
 //! Laws of the verdict over the generated regimes.
 
+#![allow(clippy::print_stdout, reason = "tests print their seeds and their counts, from helpers too")]
+
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
 use solid_oracle::{Verdict, verdict};
 
@@ -48,5 +50,36 @@ fn regimes_are_decided_and_balanced() {
         assert!(uncertain * 100 <= count, "{regime:?}: {uncertain} of {count} uncertain");
         let rate = f64::from(hits) / f64::from(count);
         assert!(!balanced || (0.3..=0.7).contains(&rate), "{regime:?}: hit rate {rate}");
+    }
+}
+
+/// The same over many seeds, with the slowest pair: `cargo test -p solid-oracle soak -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes a minute"]
+fn soak() {
+    let near = [1e-9, 1e-11, 1e-13, 1e-15].map(|relative_gap| Regime::NearTouching { relative_gap });
+    for regime in REGIMES.into_iter().map(|(regime, ..)| regime).chain(near) {
+        let seed = 1000;
+        let mut rng = seeded(seed);
+        let count = 20_000;
+        let (mut hits, mut uncertain, mut slowest) = (0, 0, (0.0, None));
+        for _ in 0..count {
+            let p = random_pair(&mut rng, regime);
+            let start = std::time::Instant::now();
+            let v = judge(&p);
+            let elapsed = start.elapsed().as_secs_f64();
+            hits += u32::from(matches!(v, Verdict::Intersecting { .. }));
+            if let Verdict::Uncertain { gap_max } = v {
+                uncertain += 1;
+                if uncertain < 6 {
+                    println!("  uncertain {:.1e} of the size: {p:?}", gap_max / p.size);
+                }
+            }
+            if elapsed > slowest.0 {
+                slowest = (elapsed, Some(p));
+            }
+        }
+        println!("{regime:?} seed {seed}: {hits} hits, {uncertain} uncertain of {count}");
+        println!("  slowest {:.1} ms: {:?}", slowest.0 * 1e3, slowest.1.map(|p| (p.a, p.b)));
     }
 }

@@ -12,6 +12,11 @@ pub(crate) struct Fault {
 }
 
 impl Fault {
+    /// A mistake at a line, counted from 1, where there are lines.
+    pub fn new(line: Option<usize>, message: impl Into<String>) -> Self {
+        Fault { line, message: message.into() }
+    }
+
     /// A mistake at a line, counted from 1.
     pub fn at(line: usize, message: impl Into<String>) -> Self {
         Fault { line: Some(line), message: message.into() }

@@ -3,46 +3,88 @@
 use earcut::Earcut;
 use glam::DVec3;
 
-/// The most corners of a polygon that is cut by ears, which takes quadratic time at worst; larger ones become fans.
-const EARCUT_CORNERS_MAX: usize = 10_000;
+/// The most corners of a polygon that is cut by ears, which takes quadratic time at worst: 20 ms for corners at random.
+pub(crate) const EARCUT_CORNERS_MAX: usize = 2_000;
 
 /// How far a triangle of a fan may face the wrong way and still count as rounding, relative to the polygon's area.
 const FOLD_TOLERANCE: f64 = 1e-9;
+
+/// How well triangles stand for their polygon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Cut {
+    /// They cover it.
+    Faithful,
+    /// They are a fan that is folded over, since the polygon has no area or too many corners for better.
+    Folded,
+}
 
 /// Triangulates a polygon over vertices that are there. The triangles name the polygon's own corners.
 ///
 /// Three corners or more give a fan around the first, unless a triangle of the fan would be folded over, facing against
 /// the polygon: then ears are cut, in the plane of the polygon's area vector. Fewer corners give nothing.
-pub(crate) fn triangulate(corners: &[u32], vertices: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
-    if corners.len() > 3 && corners.len() <= EARCUT_CORNERS_MAX {
-        if let Some(ears) = ears_where_folded(corners, vertices) {
-            triangles.extend(ears);
-            return;
-        }
+pub(crate) fn triangulate(corners: &[u32], vertices: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Cut {
+    if corners.len() <= 3 || !is_fan_folded(corners, vertices) {
+        triangles.extend(fan(corners));
+        return Cut::Faithful;
     }
-    triangles.extend(fan(corners));
+    let ears = if corners.len() <= EARCUT_CORNERS_MAX { ears(corners, vertices) } else { Vec::new() };
+    if ears.is_empty() {
+        triangles.extend(fan(corners));
+        return Cut::Folded;
+    }
+    triangles.extend(ears);
+    Cut::Faithful
+}
+
+/// What to tell the user of polygons, where there were some, that were cut no better than folded.
+pub(crate) fn folded_warning(count: usize) -> Option<String> {
+    let which = format!("without an area, or concave with more than {EARCUT_CORNERS_MAX} corners,");
+    match count {
+        0 => None,
+        1 => Some(format!("1 polygon {which} is a fan that is folded over")),
+        n => Some(format!("{n} polygons {which} are fans that are folded over")),
+    }
+}
+
+/// What to tell the user of faces, where there were some, that are no polygons.
+pub(crate) fn short_warning(count: usize) -> Option<String> {
+    match count {
+        0 => None,
+        1 => Some("1 face with fewer than 3 corners is passed over".to_owned()),
+        n => Some(format!("{n} faces with fewer than 3 corners are passed over")),
+    }
 }
 
 fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]])
 }
 
-/// Ears, when the fan is folded and ears can be cut.
-fn ears_where_folded(corners: &[u32], vertices: &[DVec3]) -> Option<Vec<[u32; 3]>> {
+/// Twice the area of a triangle, along its normal.
+fn area([a, b, c]: [u32; 3], vertices: &[DVec3]) -> DVec3 {
     let at = |i: u32| vertices[i as usize];
-    let area = |[a, b, c]: [u32; 3]| (at(b) - at(a)).cross(at(c) - at(a));
-    let normal: DVec3 = fan(corners).map(area).sum();
+    (at(b) - at(a)).cross(at(c) - at(a))
+}
+
+fn polygon_area(corners: &[u32], vertices: &[DVec3]) -> DVec3 {
+    fan(corners).map(|triangle| area(triangle, vertices)).sum()
+}
+
+/// Whether a triangle of the fan faces against the polygon.
+fn is_fan_folded(corners: &[u32], vertices: &[DVec3]) -> bool {
+    let normal = polygon_area(corners, vertices);
     let limit = -FOLD_TOLERANCE * normal.length_squared();
-    if !fan(corners).any(|triangle| area(triangle).dot(normal) < limit) {
-        return None;
-    }
-    let normal = normal.try_normalize()?;
+    fan(corners).any(|triangle| area(triangle, vertices).dot(normal) < limit)
+}
+
+/// The ears; none where the polygon has no area to speak of.
+fn ears(corners: &[u32], vertices: &[DVec3]) -> Vec<[u32; 3]> {
+    let Some(normal) = polygon_area(corners, vertices).try_normalize() else { return Vec::new() };
     let (u, v) = normal.any_orthonormal_pair();
-    let plane = corners.iter().map(|&i| at(i) - at(corners[0])).map(|p| [p.dot(u), p.dot(v)]);
+    let at = |i: u32| vertices[i as usize] - vertices[corners[0] as usize];
+    let plane = corners.iter().map(|&corner| at(corner)).map(|p| [p.dot(u), p.dot(v)]);
     let mut ears: Vec<u32> = Vec::new();
     Earcut::new().earcut(plane, &[], &mut ears);
-    let named = ears.chunks_exact(3).map(|ear| [0, 1, 2].map(|i| corners[ear[i] as usize]));
-    Some(named.collect()).filter(|ears: &Vec<_>| !ears.is_empty())
+    ears.chunks_exact(3).map(|ear| [0, 1, 2].map(|i| corners[ear[i] as usize])).collect()
 }
 
 #[cfg(test)]
@@ -52,13 +94,12 @@ mod tests {
     fn triangulated(vertices: &[DVec3]) -> Vec<[u32; 3]> {
         let corners: Vec<u32> = (0..vertices.len() as u32).collect();
         let mut triangles = Vec::new();
-        triangulate(&corners, vertices, &mut triangles);
+        assert_eq!(triangulate(&corners, vertices, &mut triangles), Cut::Faithful);
         triangles
     }
 
-    fn area(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
-        let at = |i: u32| vertices[i as usize];
-        triangles.iter().map(|&[a, b, c]| (at(b) - at(a)).cross(at(c) - at(a)).length() / 2.0).sum()
+    fn total_area(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+        triangles.iter().map(|&triangle| area(triangle, vertices).length() / 2.0).sum()
     }
 
     #[test]
@@ -77,7 +118,7 @@ mod tests {
             arrow.rotate_left(turn);
             let triangles = triangulated(&arrow);
             assert_eq!(triangles.len(), 2);
-            assert!((area(&arrow, &triangles) - 1.0).abs() < 1e-12, "{turn}: {triangles:?}");
+            assert!((total_area(&arrow, &triangles) - 1.0).abs() < 1e-12, "{turn}: {triangles:?}");
         }
     }
 
@@ -86,5 +127,21 @@ mod tests {
         assert_eq!(triangulated(&[DVec3::ONE; 5]).len(), 3);
         let bow = [DVec3::ZERO, DVec3::ONE, DVec3::X, DVec3::Y + DVec3::Z];
         assert!(!triangulated(&bow).is_empty());
+    }
+
+    /// The worst that ears are cut of: corners at random, which cross each other everywhere.
+    #[test]
+    fn large_tangles_end() {
+        let mut x = 1u32;
+        let mut random = || {
+            x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(x >> 8)
+        };
+        let tangle: Vec<DVec3> =
+            (0..=EARCUT_CORNERS_MAX).map(|_| DVec3::new(random(), random(), 0.0)).collect();
+        assert!(!triangulated(&tangle[1..]).is_empty());
+        let (corners, mut triangles) = ((0..=EARCUT_CORNERS_MAX as u32).collect::<Vec<_>>(), Vec::new());
+        assert_eq!(triangulate(&corners, &tangle, &mut triangles), Cut::Folded);
+        assert_eq!(triangles.len(), EARCUT_CORNERS_MAX - 1);
     }
 }

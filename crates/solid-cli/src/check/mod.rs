@@ -1,7 +1,9 @@
 //! `solid check`: a scene, played and tested frame by frame.
 
 mod clock;
+mod files;
 mod motion;
+mod player;
 mod report;
 mod root_paths;
 mod stage;
@@ -9,27 +11,27 @@ mod timeline;
 
 use std::io::{IsTerminal, Write};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use solid_scene::Scene;
 use solid3d::Response;
 
 use crate::args::CheckArgs;
 use crate::output::{self, is_stdout};
 use crate::placements::Placements;
-use crate::progress::Progress;
-use crate::record::{CsvRecorder, Frame, Hit, JsonRecorder, PairRecorder, Recorder};
+use crate::record::{CsvRecorder, JsonRecorder, Recorder};
 use crate::rules::{self, Objects, Rules};
 use crate::table::Style;
 use crate::{Verdict, complain, scene};
 use clock::{Clock, Times};
 use motion::Motion;
+use player::Player;
 use report::Report;
 use stage::Stage;
 use timeline::Timeline;
 
 /// Checks what the command line says.
 pub fn run(args: &CheckArgs) -> Result<Verdict> {
-    refuse_shared_output(args)?;
+    files::refuse_clashes(args)?;
     let (mut clock, mut times) = (Clock::start(), Times::default());
     let rules = args.rules.as_deref().map(Rules::read).transpose()?.unwrap_or_default();
     let scene = scene::load(&args.scene)?;
@@ -42,23 +44,14 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     };
     let mut stage = Stage::new(&scene, motion, timeline.time(0))?;
     set_responses(&rules, args.response.map(Response::from), &scene, &mut stage)?;
-    let mut recorders = recorders(args, &scene)?;
+    let recorders = recorders(args, &scene)?;
     clock.lap(&mut times.load);
 
-    let pairs = play(&scene, &timeline, &mut stage, &mut recorders, (&mut clock, &mut times))?;
-    let report = Report { scene: &scene, pairs: &pairs, statistics: stage.statistics(), times };
-    print(args, &report)?;
+    let mut player = Player { scene: &scene, stage, recorders, clock, times };
+    let pairs = player.play(&timeline)?;
+    let statistics = player.stage.statistics();
+    print(args, &Report { scene: &scene, pairs: &pairs, statistics, times: player.times })?;
     Ok(if pairs.summary().collisions > 0 { Verdict::Collisions } else { Verdict::Clean })
-}
-
-/// Two outputs can't go to one place.
-fn refuse_shared_output(args: &CheckArgs) -> Result<()> {
-    match (&args.json, &args.csv) {
-        (Some(json), Some(csv)) if json == csv => {
-            bail!("--json and --csv both write to {}; expected different files", json.display())
-        }
-        _ => Ok(()),
-    }
 }
 
 fn placements(args: &CheckArgs, scene: &Scene) -> Result<Option<Placements>> {
@@ -104,35 +97,6 @@ fn recorders(args: &CheckArgs, scene: &Scene) -> Result<Vec<Box<dyn Recorder>>> 
         recorders.push(Box::new(CsvRecorder::new(output::open(path)?)?));
     }
     Ok(recorders)
-}
-
-/// Shows and tests every frame.
-fn play(
-    scene: &Scene,
-    timeline: &Timeline,
-    stage: &mut Stage,
-    recorders: &mut [Box<dyn Recorder>],
-    (clock, times): (&mut Clock, &mut Times),
-) -> Result<PairRecorder> {
-    let mut pairs = PairRecorder::default();
-    let mut progress = Progress::new(timeline.frames());
-    let mut hits: Vec<Hit> = Vec::new();
-    for number in 0..timeline.frames() {
-        let time = timeline.time(number);
-        stage.show(number, time)?;
-        clock.lap(&mut times.moving);
-        stage.test(&mut hits);
-        clock.lap(&mut times.testing);
-        let frame = Frame { number, time, hits: &hits };
-        pairs.frame(scene, &frame)?;
-        recorders.iter_mut().try_for_each(|recorder| recorder.frame(scene, &frame))?;
-        progress.done(number + 1);
-        clock.lap(&mut times.writing);
-    }
-    let summary = pairs.summary();
-    recorders.iter_mut().try_for_each(|recorder| recorder.finish(&summary))?;
-    clock.lap(&mut times.writing);
-    Ok(pairs)
 }
 
 /// Prints the report. When standard output carries data, it carries nothing else: then there is no table, and statistics,

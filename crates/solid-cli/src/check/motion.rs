@@ -34,7 +34,7 @@ impl<'a> Motion<'a> {
         Motion::Table(Table { scene, placements, applied: 0, lines })
     }
 
-    /// Writes the pose of a frame. Frames come in order, from 0, and `pose` as the last one left it.
+    /// Writes the pose of a frame. Frames come in order, `pose` is fresh or as the last one left it.
     pub fn pose(&mut self, frame: u64, time: f64, pose: &mut Pose) {
         match self {
             Motion::Animation(scene) => scene.sample(time, pose),
@@ -56,7 +56,7 @@ impl<'a> Motion<'a> {
 
 impl Table<'_> {
     fn pose(&mut self, frame: u64, pose: &mut Pose) {
-        if frame == 0 {
+        if pose.objects.is_empty() {
             self.scene.sample(0.0, pose);
         }
         let rest = &self.placements.rows()[self.applied..];

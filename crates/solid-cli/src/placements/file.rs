@@ -53,26 +53,21 @@ impl Placements {
 type Mistake = (u64, String);
 
 fn rows(text: &str, names: &[&str]) -> std::result::Result<Vec<Row>, Mistake> {
-    let places: HashMap<&str, usize> = names.iter().enumerate().map(|(place, &name)| (name, place)).collect();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = Lines { text, at: 0, line: 1 };
-    let mut reader =
+    let mut csv =
         ReaderBuilder::new().has_headers(false).flexible(true).trim(Trim::All).from_reader(text.as_bytes());
-    let mut columns = None;
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| (lines.line, error.to_string()))?;
-        let line = lines.of(&record);
-        match columns {
-            None => columns = Some(header(&record).map_err(|message| (line, message))?),
-            Some(columns) => {
-                rows.push(row(&record, columns, line, names, &places).map_err(|message| (line, message))?);
-            }
-        }
-    }
-    if columns.is_none() {
+    let mut records = csv.records().map(|record| match record {
+        Ok(record) => Ok((lines.of(&record), record)),
+        Err(error) => Err((lines.line, error.to_string())),
+    });
+    let Some((line, record)) = records.next().transpose()? else {
         return Err((1, format!("the file is empty; expected {}", expected_header())));
-    }
+    };
+    let columns = header(&record).map_err(|message| (line, message))?;
+    let reader = RowReader::new(columns, names);
+    let read = |(line, record)| reader.row(line, &record).map_err(|message| (line, message));
+    let mut rows = records.map(|record| record.and_then(read)).collect::<std::result::Result<Vec<_>, _>>()?;
     rows.sort_by_key(|row| row.frame);
     Ok(rows)
 }
@@ -93,23 +88,36 @@ fn expected_header() -> String {
     format!("the header {}, optionally followed by {}", needed.join(","), optional.join(","))
 }
 
-fn row(
-    record: &StringRecord,
+/// Reads the rows below the header.
+struct RowReader<'a> {
     columns: usize,
-    line: u64,
-    names: &[&str],
-    places: &HashMap<&str, usize>,
-) -> fields::Result<Row> {
-    if record.len() != columns {
-        return Err(format!("there are {} fields; expected {columns}, as in the header", record.len()));
+    names: &'a [&'a str],
+    places: HashMap<&'a str, usize>,
+}
+
+impl<'a> RowReader<'a> {
+    fn new(columns: usize, names: &'a [&'a str]) -> Self {
+        let places = names.iter().enumerate().map(|(place, &name)| (name, place)).collect();
+        RowReader { columns, names, places }
     }
-    let texts: Vec<&str> = record.iter().collect();
-    let frame = fields::frame(texts[0])?;
-    let object = *places.get(texts[1]).ok_or_else(|| {
-        format!("there is no object {:?}{}", texts[1], suggest::hint(texts[1], names.iter().copied()))
-    })?;
-    let placement = fields::placement(&texts[2..], &COLUMNS[2..columns])?;
-    Ok(Row { frame, object, placement, line })
+
+    fn row(&self, line: u64, record: &StringRecord) -> fields::Result<Row> {
+        let (found, expected) = (record.len(), self.columns);
+        if found != expected {
+            return Err(format!("there are {found} fields; expected {expected}, as in the header"));
+        }
+        let texts: Vec<&str> = record.iter().collect();
+        let frame = fields::frame(texts[0])?;
+        let object = self.object(texts[1])?;
+        let placement = fields::placement(&texts[2..], &COLUMNS[2..expected])?;
+        Ok(Row { frame, object, placement, line })
+    }
+
+    fn object(&self, name: &str) -> fields::Result<usize> {
+        let unknown =
+            || format!("there is no object {name:?}{}", suggest::hint(name, self.names.iter().copied()));
+        self.places.get(name).copied().ok_or_else(unknown)
+    }
 }
 
 /// Counts lines along with the records. (A record's own line number counts from before the empty lines ahead of it.)
@@ -136,6 +144,8 @@ impl Lines<'_> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     const HEADER: &str = "frame,object,tx,ty,tz,qx,qy,qz,qw\n";
@@ -190,6 +200,16 @@ mod tests {
             let expected =
                 "expected the header frame,object,tx,ty,tz,qx,qy,qz,qw, optionally followed by sx,sy,sz";
             assert!(line == 1 && message.ends_with(expected), "{text:?}: {line} {message}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(body in "[0-9a-z,.\"\r\n -]{0,60}", any in ".{0,60}") {
+            let _ = read(&any);
+            if let Err((line, _)) = read(&format!("{HEADER}{body}")) {
+                prop_assert!(line >= 1 && line as usize <= 2 + body.matches('\n').count());
+            }
         }
     }
 }

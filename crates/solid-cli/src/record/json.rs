@@ -1,4 +1,11 @@
 //! The check as JSON: the scene, its objects, every frame with its collisions, and a summary.
+//!
+//! ```json
+//! {"scene":["ship.wrl"],
+//!  "objects":[{"id":0,"name":"ship","kind":"mesh","primitives":322}],
+//!  "frames":[{"frame":0,"time":0.0,"collisions":[{"a":"ship","b":"mine","point":[0,0,0],"normal":null}]}],
+//!  "summary":{"frames":1,"colliding_frames":1,"collisions":1,"pairs":1}}
+//! ```
 
 use std::io::Write;
 

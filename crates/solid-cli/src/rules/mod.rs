@@ -1,4 +1,21 @@
 //! The response table: which pairs matter, and what is wanted of them, by the names of the objects.
+//!
+//! ```toml
+//! default = "witness"        # ignore, simple, witness or smart
+//!
+//! [[object]]                 # all pairs with the object
+//! name = "mine*"
+//! response = "ignore"
+//!
+//! [[pair]]                   # the pair, in whichever order
+//! a = "ship*"
+//! b = "sweeper"
+//! response = "smart"
+//! ```
+//!
+//! `*` stands for any characters, `?` for one. As in the thesis (section 6.2), a rule for the pair overrides one for an
+//! object, which overrides the default; of two objects with rules the first in the scene decides. Of the rules of one level
+//! the last that matches holds. Pairs on one root path are ignored unless a rule for the pair says otherwise.
 
 mod file;
 mod names;

@@ -9,29 +9,37 @@ use crate::suggest;
 pub struct NameIndex<'a> {
     names: &'a [&'a str],
     places: HashMap<&'a str, usize>,
+    warnings: Vec<String>,
 }
 
 impl<'a> NameIndex<'a> {
     /// An index of unique names.
     pub fn new(names: &'a [&'a str]) -> Self {
-        NameIndex { names, places: names.iter().enumerate().map(|(place, &name)| (name, place)).collect() }
+        let places = names.iter().enumerate().map(|(place, &name)| (name, place)).collect();
+        NameIndex { names, places, warnings: Vec::new() }
     }
 
-    /// The places of the names that match, in order.
-    pub fn matching(&self, wanted: &Names) -> Vec<usize> {
-        if wanted.pattern.is_name() {
-            return self.places.get(wanted.text.as_str()).copied().into_iter().collect();
-        }
-        (0..self.names.len()).filter(|&place| wanted.pattern.matches(self.names[place])).collect()
-    }
-
-    /// In words, that nothing matches.
-    pub fn nothing_matches(&self, wanted: &Names) -> String {
-        let hint = if wanted.pattern.is_name() {
-            suggest::hint(&wanted.text, self.names.iter().copied())
+    /// The places of the names that match, in order. Notes when there are none.
+    pub fn matching(&mut self, wanted: &Names) -> Vec<usize> {
+        let found: Vec<usize> = if wanted.pattern.is_name() {
+            self.places.get(wanted.text.as_str()).copied().into_iter().collect()
         } else {
-            String::new()
+            (0..self.names.len()).filter(|&place| wanted.pattern.matches(self.names[place])).collect()
         };
+        if found.is_empty() {
+            self.warnings.push(self.nothing_matches(wanted));
+        }
+        found
+    }
+
+    /// What matched nothing, in words, a line each.
+    pub fn into_warnings(self) -> Vec<String> {
+        self.warnings
+    }
+
+    fn nothing_matches(&self, wanted: &Names) -> String {
+        let candidates = if wanted.pattern.is_name() { self.names } else { &[] };
+        let hint = suggest::hint(&wanted.text, candidates.iter().copied());
         format!("{}: {:?} matches no object{hint}", wanted.place, wanted.text)
     }
 }

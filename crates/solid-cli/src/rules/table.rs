@@ -6,7 +6,8 @@ use solid3d::{ObjectId, Response, World};
 use super::file::{PairRule, Rules};
 use super::names::NameIndex;
 
-/// How many pairs of objects the rules for pairs may name: each becomes an entry of the world's table, of some 100 bytes.
+/// How many pairs of objects the rules for pairs may make: each is an entry of the world's table, of some 100 bytes. A rule
+/// for all pairs (`*` with `*`) makes none.
 const PAIRS_MAX: usize = 10_000_000;
 
 /// The objects that rules are about, by their place in the scene.
@@ -25,59 +26,65 @@ pub fn apply(
     objects: &Objects,
     world: &mut World,
 ) -> Result<Vec<String>> {
-    let index = NameIndex::new(objects.names);
-    let mut warnings = Vec::new();
-    let named: Vec<_> = rules.objects.iter().map(|rule| index.matching(&rule.name)).collect();
-    let paired: Vec<_> =
-        rules.pairs.iter().map(|rule| [&rule.a, &rule.b].map(|names| index.matching(names))).collect();
-    let sides = rules
-        .pairs
-        .iter()
-        .zip(&paired)
-        .flat_map(|(rule, found)| [(&rule.a, &found[0]), (&rule.b, &found[1])]);
-    let all = rules.objects.iter().map(|rule| &rule.name).zip(&named).chain(sides);
-    warnings.extend(all.filter(|(_, found)| found.is_empty()).map(|(names, _)| index.nothing_matches(names)));
-
-    // A rule for all pairs overrides all that is below it, without an entry for each pair.
+    let mut index = NameIndex::new(objects.names);
+    let named: Vec<_> =
+        rules.objects.iter().map(|rule| (index.matching(&rule.name), rule.response)).collect();
+    let paired: Vec<_> = rules.pairs.iter().map(|rule| Paired::find(rule, &mut index)).collect();
+    // A rule for all pairs overrides all that is before and below it, without an entry for each pair.
     let universal = rules.pairs.iter().rposition(is_universal);
-    match universal {
-        Some(rule) => world.set_default_response(rules.pairs[rule].response),
+    let rest = match universal {
+        Some(rule) => {
+            world.set_default_response(rules.pairs[rule].response);
+            &paired[rule + 1..]
+        }
         None => {
             world.set_default_response(default.or(rules.default).unwrap_or(Response::Witness));
-            for (rule, found) in rules.objects.iter().zip(&named) {
-                for &object in found {
-                    world.set_object_response(objects.ids[object], rule.response)?;
-                }
-            }
-            for &(a, b) in objects.exempt {
-                world.clear_pair_response(objects.ids[a], objects.ids[b])?;
-            }
+            set_objects(&named, objects, world)?;
+            &paired
         }
-    }
-    let first = universal.map_or(0, |rule| rule + 1);
-    set_pairs(&rules.pairs[first..], &paired[first..], objects.ids, world)?;
-    Ok(warnings)
+    };
+    set_pairs(rest, objects.ids, world)?;
+    Ok(index.into_warnings())
 }
 
 fn is_universal(rule: &PairRule) -> bool {
     rule.a.pattern.is_universal() && rule.b.pattern.is_universal()
 }
 
-/// Sets the responses of pairs; `paired` are the objects that the two sides of each rule name.
-fn set_pairs(
-    rules: &[PairRule],
-    paired: &[[Vec<usize>; 2]],
-    ids: &[ObjectId],
-    world: &mut World,
-) -> Result<()> {
+/// A rule for pairs, with the objects that its two sides name.
+struct Paired<'a> {
+    rule: &'a PairRule,
+    these: Vec<usize>,
+    those: Vec<usize>,
+}
+
+impl<'a> Paired<'a> {
+    fn find(rule: &'a PairRule, index: &mut NameIndex) -> Self {
+        Paired { rule, these: index.matching(&rule.a), those: index.matching(&rule.b) }
+    }
+}
+
+/// Sets the responses of objects, and exempts what is exempt.
+fn set_objects(named: &[(Vec<usize>, Response)], objects: &Objects, world: &mut World) -> Result<()> {
+    for (found, response) in named {
+        for &object in found {
+            world.set_object_response(objects.ids[object], *response)?;
+        }
+    }
+    for &(a, b) in objects.exempt {
+        world.clear_pair_response(objects.ids[a], objects.ids[b])?;
+    }
+    Ok(())
+}
+
+/// Sets the responses of pairs, later rules over earlier ones.
+fn set_pairs(paired: &[Paired], ids: &[ObjectId], world: &mut World) -> Result<()> {
     let mut count = 0usize;
-    for (rule, [these, those]) in rules.iter().zip(paired) {
+    for Paired { rule, these, those } in paired {
         count = count.saturating_add(these.len().saturating_mul(those.len()));
         if count > PAIRS_MAX {
             let place = &rule.a.place;
-            bail!(
-                "{place}: the rules for pairs name {count} pairs so far; the limit is {PAIRS_MAX} (an [[object]] rule names any number)"
-            );
+            bail!("{place}: the rules for pairs make {count} pairs so far; the limit is {PAIRS_MAX}");
         }
         for &a in these {
             for &b in those.iter().filter(|&&b| b != a) {
@@ -177,6 +184,24 @@ mod tests {
             assert_eq!(quick.of(a, b), slow.of(a, b), "{a} {b}");
         }
         assert_eq!((quick.of(0, 3), quick.of(1, 2)), (Response::Smart, Response::Witness));
+    }
+
+    #[test]
+    fn rules_that_make_too_many_pairs_are_refused_before_they_do() {
+        let names: Vec<String> = (0..3200).map(|i| i.to_string()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let ids = vec![ObjectId::default(); names.len()];
+        let objects = Objects { names: &names, ids: &ids, exempt: &[] };
+        let rules = |a: &str| {
+            let text = format!("[[pair]]\na = \"{a}\"\nb = \"*\"\nresponse = \"smart\"");
+            Rules::parse(Path::new("r.toml"), &text).expect("the rules are well formed")
+        };
+        let error = apply(&rules("*?"), None, &objects, &mut World::new()).expect_err("10 million pairs");
+        assert!(
+            error.to_string().starts_with("r.toml:2: the rules for pairs make 10240000 pairs"),
+            "{error}"
+        );
+        assert!(apply(&rules("*"), None, &objects, &mut World::new()).is_ok());
     }
 
     #[test]

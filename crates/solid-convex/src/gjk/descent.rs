@@ -65,9 +65,10 @@ where
         if goal.reached(v, &p, &mut mu, !simplex.points().is_empty()) {
             return Descent { end: End::Separated, v, simplex: first_or(simplex, p) };
         }
-        let before = (!simplex.points().is_empty()).then(|| (simplex.clone(), v));
+        let before = matches!(goal, Goal::Distance { .. }).then(|| (simplex.clone(), v));
         let mut stalled = simplex.contains(&p);
         if !stalled {
+            let length_squared = if simplex.points().is_empty() { f64::INFINITY } else { v.length_squared() };
             simplex.push(p);
             match simplex.reduce() {
                 Reduced::ContainsOrigin => return Descent { end: End::Inside, v: DVec3::ZERO, simplex },
@@ -76,9 +77,7 @@ where
             if v.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
                 return Descent { end: End::Undecided, v, simplex };
             }
-            stalled = before.as_ref().is_some_and(|(_, before)| {
-                v.length_squared() > before.length_squared() * (1.0 - PROGRESS_MIN)
-            });
+            stalled = v.length_squared() > length_squared * (1.0 - PROGRESS_MIN);
         }
         if stalled {
             match refined(difference, &simplex) {

@@ -27,7 +27,7 @@ const DISTANCE_TOLERANCE: f64 = 1e-12;
 ///
 /// ```
 /// use solid_convex::{Cuboid, gjk};
-/// use glam::DAffine3;
+/// use glam::{DAffine3, DVec3};
 /// let block = Cuboid::new(DVec3::ONE)?;
 /// let right = DAffine3::from_translation(DVec3::new(3.0, 0.0, 0.0));
 /// let closest = gjk::closest_points(&block, &DAffine3::IDENTITY, &block, &right);

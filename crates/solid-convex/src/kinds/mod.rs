@@ -5,6 +5,7 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod points;
+mod polytope;
 mod sphere;
 
 pub use capsule::Capsule;
@@ -12,4 +13,5 @@ pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use points::{IndexedPoints, Points};
+pub use polytope::Polytope;
 pub use sphere::Sphere;

@@ -85,12 +85,12 @@ fn furthest(points: impl Iterator<Item = DVec3>, direction: DVec3) -> DVec3 {
     best
 }
 
-fn reach(points: impl Iterator<Item = DVec3>) -> DVec3 {
+pub(super) fn reach(points: impl Iterator<Item = DVec3>) -> DVec3 {
     points.fold(DVec3::ZERO, |r, p| r.max(p.abs()))
 }
 
 /// The mean, each point divided before it is added, so that the sum stays in range.
-fn mean(points: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
+pub(super) fn mean(points: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
     let share = 1.0 / points.clone().count() as f64;
     points.map(|p| p * share).sum()
 }

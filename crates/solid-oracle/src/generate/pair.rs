@@ -110,6 +110,9 @@ fn overlapping_or_apart(rng: &mut StdRng, size: f64) -> Pair {
     near(rng, pair)
 }
 
+/// How far B moves at most, in parts of the way after which the extents are surely apart; gives about 55 % hits.
+const WAY_MAX: f64 = 1.15;
+
 /// Moves B to a random part of the way along which the extents of both overlap.
 fn near(rng: &mut StdRng, mut pair: Pair) -> Pair {
     let size = pair.size;
@@ -117,7 +120,7 @@ fn near(rng: &mut StdRng, mut pair: Pair) -> Pair {
     pair.pb.translation = pair.pa.translation;
     let direction = random_direction(rng);
     let reach = placed(&pair).support(Vec3::from_f64(direction)).w.to_f64().dot(direction).max(0.0);
-    pair.pb.translation += direction * reach * rng.random_range(0.0..=1.0);
+    pair.pb.translation += direction * reach * rng.random_range(0.0..=WAY_MAX);
     pair
 }
 

@@ -1,5 +1,7 @@
 //! Animations: which one is played, and what it changes.
 
+use std::collections::HashMap;
+
 use glam::{DQuat, DVec3};
 use gltf::json::animation::Property;
 use gltf::json::validation::Checked;
@@ -12,12 +14,15 @@ use crate::fault::Result;
 /// The animation that is played; without any, nothing changes.
 #[derive(Debug, Default)]
 pub(super) struct Animation {
+    /// What moves nodes.
     channels: Vec<Channel>,
+    /// What changes the weights of nodes, by node.
+    weights: HashMap<usize, Sampler>,
     /// The time of the last key.
     pub duration: f64,
 }
 
-/// What is changed over time.
+/// A value of a node that is changed over time.
 #[derive(Debug)]
 struct Channel {
     node: usize,
@@ -33,10 +38,8 @@ impl Animation {
             Some(choice) => chosen(&names, choice)?,
             None if names.is_empty() => return Ok(Animation::default()),
             None => {
-                if let [first, others @ ..] = names.as_slice() {
-                    if !others.is_empty() {
-                        warnings.push(format!("plays the animation {first}, not {}", others.join(", ")));
-                    }
+                if names.len() > 1 {
+                    warnings.push(format!("plays the animation {}, not {}", names[0], names[1..].join(", ")));
                 }
                 0
             }
@@ -55,19 +58,22 @@ impl Animation {
                 .map_err(|fault| fault.of(&what))?;
             let sampler = Sampler::read(document, sampler, property, &what)?;
             animation.duration = animation.duration.max(sampler.end());
-            animation.channels.push(Channel { node, property, sampler });
+            match property {
+                Property::MorphTargetWeights => drop(animation.weights.insert(node, sampler)),
+                _ => animation.channels.push(Channel { node, property, sampler }),
+            }
         }
         Ok(animation)
     }
 
     /// Whether it moves nodes, rather than only changing weights.
     pub fn moves(&self) -> bool {
-        self.channels.iter().any(|channel| channel.property != Property::MorphTargetWeights)
+        !self.channels.is_empty()
     }
 
     /// Whether it changes the weights of a node.
     pub fn morphs(&self, node: usize) -> bool {
-        self.channels.iter().any(|channel| channel.is_weights_of(node))
+        self.weights.contains_key(&node)
     }
 
     /// Moves the nodes to where they are at a time.
@@ -75,10 +81,7 @@ impl Animation {
         let mut value = Vec::new();
         for Channel { node, property, sampler } in &self.channels {
             let local = &mut locals[*node];
-            match property {
-                Property::MorphTargetWeights => continue,
-                _ => sampler.sample(time, &mut value),
-            }
+            sampler.sample(time, &mut value);
             match property {
                 Property::Translation => local.translation = DVec3::from_slice(&value),
                 Property::Rotation => local.rotation = DQuat::from_slice(&value),
@@ -90,15 +93,9 @@ impl Animation {
 
     /// The weights of a node at a time; left as they are where nothing changes them.
     pub fn weights(&self, time: f64, node: usize, weights: &mut Vec<f64>) {
-        for channel in self.channels.iter().filter(|channel| channel.is_weights_of(node)) {
-            channel.sampler.sample(time, weights);
+        if let Some(sampler) = self.weights.get(&node) {
+            sampler.sample(time, weights);
         }
-    }
-}
-
-impl Channel {
-    fn is_weights_of(&self, node: usize) -> bool {
-        self.node == node && self.property == Property::MorphTargetWeights
     }
 }
 

@@ -38,8 +38,11 @@ pub(super) fn load(
     Ok(bytes)
 }
 
-/// At most `limit` bytes of a file.
+/// At most `limit` bytes of a file; a pipe, which could keep us waiting, is none.
 fn read(path: &Path, limit: u64) -> std::io::Result<Vec<u8>> {
+    if !path.metadata()?.is_file() {
+        return Err(std::io::Error::other("not a file"));
+    }
     let mut bytes = Vec::new();
     File::open(path)?.take(limit).read_to_end(&mut bytes)?;
     Ok(bytes)

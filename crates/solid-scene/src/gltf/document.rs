@@ -121,12 +121,13 @@ fn check_container(bytes: &[u8]) -> Result<()> {
 }
 
 fn check_version(root: &Root) -> Result<()> {
-    let version = &root.asset.version;
-    let least = root.asset.min_version.as_ref().unwrap_or(version);
-    if version.starts_with("2.") && least.starts_with("2.") {
+    let asset = &root.asset;
+    let least = asset.min_version.as_deref().unwrap_or("2.0");
+    if asset.version.starts_with("2.") && least == "2.0" {
         return Ok(());
     }
-    Err(format!("the file is of glTF {least}; expected 2.0").into())
+    let version = asset.min_version.as_ref().unwrap_or(&asset.version);
+    Err(format!("the file is of glTF {version}; expected 2.0").into())
 }
 
 fn check_extensions(root: &Root) -> Result<()> {

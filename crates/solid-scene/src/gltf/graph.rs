@@ -1,6 +1,6 @@
 //! The hierarchy of the nodes.
 
-use super::document::Document;
+use super::document::{Document, find};
 use crate::fault::Result;
 
 /// The deepest node: objects keep the path from their root, so that depth costs memory.
@@ -29,14 +29,7 @@ impl Graph {
         }
         let scene = match scene_roots(document)? {
             None => order.clone(),
-            Some(roots) => {
-                if let Some((node, parent)) = roots.iter().find_map(|&node| Some((node, parents[node]?))) {
-                    return Err(
-                        format!("the scene names node {node}, which is a child of node {parent}").into()
-                    );
-                }
-                walk(document, &roots)?
-            }
+            Some(roots) => walk(document, &roots)?,
         };
         Ok(Graph { parents, order, scene })
     }
@@ -69,13 +62,17 @@ fn parents(document: &Document) -> Result<Vec<Option<usize>>> {
     Ok(parents)
 }
 
-/// The roots, each followed by what is below it. Needs that every node has one parent at most.
+/// The roots, each followed by what is below it, every node once.
 fn walk(document: &Document, roots: &[usize]) -> Result<Vec<usize>> {
     let mut order = Vec::new();
+    let mut seen = vec![false; document.root.nodes.len()];
     let mut waiting: Vec<(usize, usize)> = roots.iter().rev().map(|&root| (root, 1)).collect();
     while let Some((node, depth)) = waiting.pop() {
         if depth > DEPTH_MAX {
             return Err(format!("node {node} is deeper than {DEPTH_MAX} nodes").into());
+        }
+        if std::mem::replace(&mut seen[node], true) {
+            continue;
         }
         order.push(node);
         waiting.extend(children(document, node).rev().map(|child| (child, depth + 1)));
@@ -83,25 +80,19 @@ fn walk(document: &Document, roots: &[usize]) -> Result<Vec<usize>> {
     Ok(order)
 }
 
-/// The roots of the scene; `None` where the file has no scene. A root that is named twice counts once.
+/// The roots of the scene; `None` where the file has no scene. They should have no parents, but some do, and stay where
+/// these place them.
 fn scene_roots(document: &Document) -> Result<Option<Vec<usize>>> {
     let scenes = &document.root.scenes;
     let scene = match document.root.scene {
-        Some(scene) => super::document::find("scene", scenes, scene.value())?,
+        Some(scene) => find("scene", scenes, scene.value())?,
         None => match scenes.first() {
             Some(scene) => scene,
             None => return Ok(None),
         },
     };
-    let mut seen = vec![false; document.root.nodes.len()];
-    let mut roots = Vec::new();
-    for node in scene.nodes.iter().map(|node| node.value()) {
-        document.node(node).map_err(|fault| fault.of("the scene"))?;
-        if !std::mem::replace(&mut seen[node], true) {
-            roots.push(node);
-        }
-    }
-    Ok(Some(roots))
+    let root = |node: usize| document.node(node).map(|_| node).map_err(|fault| fault.of("the scene"));
+    scene.nodes.iter().map(|node| root(node.value())).collect::<Result<_>>().map(Some)
 }
 
 /// A node on a cycle: where many steps up from a node that no root reaches lead.

@@ -133,10 +133,8 @@ impl<'a> Reader<'a> {
     fn shape(&mut self, node: usize, mesh: usize, deformation: &Deformation) -> Result<(Shape, usize)> {
         let soup = &deformation.geometry.soup;
         let deformed = deformation.skin.is_some() || !deformation.geometry.targets.is_empty();
-        if !deformed {
-            if let Some(shape) = self.shapes.get(&mesh) {
-                return Ok(shape.clone());
-            }
+        if let (false, Some(shape)) = (deformed, self.shapes.get(&mesh)) {
+            return Ok(shape.clone());
         }
         let primitives = 3 * soup.triangles.len() + 2 * soup.segments.len() + soup.points.len();
         self.document.spend(3 * soup.vertices.len() + primitives, "vertices and primitives")?;

@@ -143,18 +143,19 @@ fn check_times(times: &[f64], what: &str) -> Result<()> {
     }
 }
 
-/// Turns evenly from one rotation to another, the short way; neither is nearly 0.
+/// Turns evenly from one rotation to another, the short way (glTF 2.0, appendix C.3). The values are taken as they are,
+/// since files round them and other programs take them so: of 0.707 for the square root of 1/2, normalizing first would
+/// show in the fifth digit.
 ///
 /// Not glam's, which below an angle of about 2 degrees takes the chord for the arc.
 fn slerp(a: DQuat, b: DQuat, t: f64) -> DQuat {
-    let a = DVec4::from(unit(a).unwrap_or(a));
-    let b = DVec4::from(unit(b).unwrap_or(b));
+    let (a, b) = (DVec4::from(a), DVec4::from(b));
     let b = if a.dot(b) < 0.0 { -b } else { b };
-    // Half the angle from the chord, since the cosine tells nothing of a small one.
-    let angle = 2.0 * (0.5 * (b - a).length()).min(1.0).asin();
+    let angle = a.dot(b).min(1.0).acos();
     let sine = angle.sin();
+    // Rounding may have made the cosine of a small angle 1; then the chord is the arc.
     if sine == 0.0 {
-        return DQuat::from_vec4(a);
+        return DQuat::from_vec4(a.lerp(b, t));
     }
     DQuat::from_vec4(a * (((1.0 - t) * angle).sin() / sine) + b * ((t * angle).sin() / sine))
 }

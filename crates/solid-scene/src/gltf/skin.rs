@@ -99,7 +99,8 @@ impl Influences {
             self.influences.extend(used);
             let own = &mut self.influences[start..];
             let sum: f64 = own.iter().map(|&(_, weight)| weight).sum();
-            if !own.is_empty() && !(sum.is_finite() && sum > 0.0) {
+            let can_divide = sum.is_finite() && sum > 0.0;
+            if !own.is_empty() && !can_divide {
                 return Err(format!("{what}: the weights of vertex {vertex} have the sum {sum}").into());
             }
             own.iter_mut().for_each(|(_, weight)| *weight /= sum);

@@ -1,1 +1,520 @@
-//! Whole files, small ones.
+//! Whole files, small ones: what they mean, and that nothing in them does harm.
+
+use std::f64::consts::FRAC_1_SQRT_2;
+use std::path::Path;
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use glam::{DAffine3, DMat3, DVec3};
+use proptest::prelude::*;
+use serde_json::{Value, json};
+use solid3d::ShapeKind;
+
+use super::graph::DEPTH_MAX;
+use super::parse;
+use crate::part::Part;
+use crate::pose::ObjectPose;
+
+const BYTE: u32 = 5120;
+const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
+const FLOAT: u32 = 5126;
+
+/// A file under construction: accessors are added, each with a buffer of its own.
+struct File(Value);
+
+impl File {
+    fn new() -> File {
+        File(json!({
+            "asset": {"version": "2.0"}, "accessors": [], "bufferViews": [], "buffers": [], "nodes": [], "meshes": [],
+        }))
+    }
+
+    fn add(&mut self, array: &str, value: Value) -> usize {
+        let array = self.0[array].as_array_mut().unwrap();
+        array.push(value);
+        array.len() - 1
+    }
+
+    fn view(&mut self, bytes: &[u8]) -> usize {
+        let uri = format!("data:;base64,{}", BASE64_STANDARD.encode(bytes));
+        let buffer = self.add("buffers", json!({"byteLength": bytes.len(), "uri": uri}));
+        self.add("bufferViews", json!({"buffer": buffer, "byteLength": bytes.len()}))
+    }
+
+    fn accessor(&mut self, kind: &str, component: u32, count: usize, bytes: &[u8]) -> usize {
+        let view = self.view(bytes);
+        let accessor = json!({"bufferView": view, "type": kind, "componentType": component, "count": count});
+        self.add("accessors", accessor)
+    }
+
+    fn floats(&mut self, kind: &str, count: usize, values: &[f32]) -> usize {
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        self.accessor(kind, FLOAT, count, &bytes)
+    }
+
+    /// A mesh of one triangle, at the origin and on the axes x and y.
+    fn triangle(&mut self) -> usize {
+        let positions = self.floats("VEC3", 3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        self.add("meshes", json!({"name": "tri", "primitives": [{"attributes": {"POSITION": positions}}]}))
+    }
+
+    fn parse(&self) -> Result<Part, String> {
+        self.parse_animation(None)
+    }
+
+    fn parse_animation(&self, animation: Option<&str>) -> Result<Part, String> {
+        parse(self.0.to_string().as_bytes(), Path::new("no such folder"), animation)
+            .map_err(|fault| fault.message().to_owned())
+    }
+
+    fn refused(&self) -> String {
+        self.parse().map(|_| ()).unwrap_err()
+    }
+}
+
+/// Sets a value at a path, which may be new in an object.
+fn set(file: &mut File, path: &str, value: Value) {
+    let (parent, key) = path.rsplit_once('/').unwrap();
+    match file.0.pointer_mut(parent).unwrap() {
+        Value::Array(array) => array[key.parse::<usize>().unwrap()] = value,
+        object => object[key] = value,
+    }
+}
+
+fn pose(part: &Part, time: f64) -> Vec<ObjectPose> {
+    let mut poses =
+        vec![ObjectPose { placement: DAffine3::IDENTITY, positions: vec![DVec3::NAN] }; part.objects.len()];
+    part.motion.sample(time, &mut poses);
+    poses
+}
+
+/// A file with one of everything: a skinned strip with a morph target on a moving node, below another with the same
+/// triangle; sparse and quantized numbers; two animations.
+fn everything() -> File {
+    let mut file = File::new();
+    let sparse = file.view(&[2]);
+    let moved = file.view(&[1.0f32, 1.0, 0.0].map(f32::to_le_bytes).concat());
+    let base = file.floats("VEC3", 4, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 9.0, 9.0, 1.0, 1.0, 0.0]);
+    file.0["accessors"][base]["sparse"] = json!({
+        "count": 1, "indices": {"bufferView": sparse, "componentType": UNSIGNED_BYTE}, "values": {"bufferView": moved},
+    });
+    let target = file.floats("VEC3", 4, &[0.0, 0.0, 1.0].repeat(4));
+    let joints = file.accessor("VEC4", UNSIGNED_BYTE, 4, &[0, 1, 0, 0].repeat(4));
+    let weights = file.accessor("VEC4", UNSIGNED_BYTE, 4, &[255, 0, 0, 0, 127, 128, 0, 0].repeat(2));
+    file.0["accessors"][weights]["normalized"] = json!(true);
+    let indices = file.accessor("SCALAR", UNSIGNED_SHORT, 4, &[0, 0, 1, 0, 2, 0, 3, 0]);
+    let attributes = json!({"POSITION": base, "JOINTS_0": joints, "WEIGHTS_0": weights});
+    let skinned = file.add(
+        "meshes",
+        json!({"weights": [0.5], "primitives": [
+            {"attributes": attributes, "indices": indices, "mode": 5, "targets": [{"POSITION": target}]},
+        ]}),
+    );
+    let triangle = file.triangle();
+    let binds = file.floats("MAT4", 2, &glam::Mat4::IDENTITY.to_cols_array().repeat(2));
+    file.0["skins"] = json!([{"joints": [1, 2], "inverseBindMatrices": binds}]);
+    file.0["nodes"] = json!([
+        {"name": "root", "mesh": triangle, "children": [1, 3], "translation": [1, 2, 3]},
+        {"children": [2], "rotation": [0, 0, 0, 1]},
+        {"matrix": glam::Mat4::IDENTITY.to_cols_array()},
+        {"mesh": skinned, "skin": 0, "scale": [2, 2, 2]},
+    ]);
+    file.0["scenes"] = json!([{"nodes": [0]}]);
+    file.0["scene"] = json!(0);
+    let times = file.floats("SCALAR", 2, &[1.0, 3.0]);
+    let turns = file.floats("VEC4", 2, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
+    let path = file.floats("VEC3", 6, &[0.0; 18]);
+    let grows = file.floats("SCALAR", 2, &[0.0, 1.0]);
+    file.0["animations"] = json!([
+        {"name": "all", "samplers": [
+            {"input": times, "output": turns},
+            {"input": times, "output": path, "interpolation": "CUBICSPLINE"},
+            {"input": times, "output": grows, "interpolation": "STEP"},
+        ], "channels": [
+            {"sampler": 0, "target": {"node": 1, "path": "rotation"}},
+            {"sampler": 1, "target": {"node": 0, "path": "translation"}},
+            {"sampler": 2, "target": {"node": 3, "path": "weights"}},
+        ]},
+        {"samplers": [], "channels": []},
+    ]);
+    file
+}
+
+#[test]
+fn everything_is_sampled() {
+    let part = everything().parse().unwrap();
+    assert_eq!(part.warnings, ["plays the animation `all`, not 1"]);
+    assert_eq!((part.duration, part.unit), (3.0, "metre"));
+    let names: Vec<_> = part.objects.iter().map(|o| (&o.name[..], o.path.clone())).collect();
+    assert_eq!(names, [("root", vec![0]), ("node3", vec![0, 3])]);
+    let poses = pose(&part, 0.0);
+    assert_eq!(part.objects[1].shape.vertices().unwrap(), poses[1].positions);
+    // The sparse vertex is where the sparse values have it; the root's path is all at the origin.
+    assert_eq!(
+        poses[1].positions,
+        [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)]
+    );
+    assert_eq!((poses[0].placement, poses[1].placement), (DAffine3::IDENTITY, DAffine3::IDENTITY));
+    assert!(poses[0].positions.is_empty());
+    // Both joints have turned by a quarter at 2, by a half at 3, when the target counts in full.
+    let quarter = pose(&part, 2.0)[1].positions[1];
+    assert!(quarter.abs_diff_eq(DVec3::Y, 1e-12), "{quarter}");
+    for time in [3.0, 1e9] {
+        let half = pose(&part, time)[1].positions[1];
+        assert!(half.abs_diff_eq(DVec3::new(-1.0, 0.0, 1.0), 1e-7), "{half}");
+    }
+}
+
+#[test]
+fn without_an_animation_the_form_stays() {
+    let part = everything().parse_animation(Some("1")).unwrap();
+    assert_eq!(part.duration, 0.0);
+    let poses = pose(&part, 0.0);
+    assert!(poses[1].positions.is_empty());
+    // The mesh's own weight, and the joints on the root, which is at 1 2 3.
+    assert_eq!(part.objects[1].shape.vertices().unwrap()[0], DVec3::new(1.0, 2.0, 3.5));
+    assert_eq!(poses[0].placement.translation, DVec3::new(1.0, 2.0, 3.0));
+}
+
+#[test]
+fn names_come_from_the_node_then_the_mesh() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    file.0["nodes"] = json!([{"mesh": mesh, "name": "a"}, {"mesh": mesh}, {"mesh": mesh, "name": ""}]);
+    let part = file.parse().unwrap();
+    assert_eq!(part.objects.iter().map(|o| &o.name[..]).collect::<Vec<_>>(), ["a", "tri", "tri"]);
+    file.0["meshes"][mesh]["name"] = Value::Null;
+    assert_eq!(file.parse().unwrap().objects[1].name, "node1");
+}
+
+#[test]
+fn nodes_scale_then_rotate_then_translate() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    let half = FRAC_1_SQRT_2;
+    file.0["nodes"] = json!([
+        {"children": [1], "translation": [0, 0, 1]},
+        {"mesh": mesh, "translation": [1, 0, 0], "rotation": [0, 0, half, half], "scale": [2, 3, 0]},
+    ]);
+    let part = file.parse().unwrap();
+    assert_eq!(part.warnings, ["`tri` is flat at time 0: its placement is singular"]);
+    let placement = pose(&part, 0.0)[0].placement;
+    let x = DMat3::from_cols(DVec3::new(0.0, 2.0, 0.0), DVec3::new(-3.0, 0.0, 0.0), DVec3::ZERO);
+    let expected = DAffine3::from_mat3_translation(x, DVec3::new(1.0, 0.0, 1.0));
+    assert!(placement.abs_diff_eq(expected, 1e-7), "{placement}");
+}
+
+#[test]
+fn quantized_positions_are_read() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    let bytes = [127u8, 0, 128, 9, 0, 127, 0, 9, 0, 0, 127, 9];
+    let positions = file.accessor("VEC3", BYTE, 3, &bytes);
+    let view = file.0["accessors"][positions]["bufferView"].as_u64().unwrap() as usize;
+    file.0["bufferViews"][view]["byteStride"] = json!(4);
+    file.0["accessors"][positions]["normalized"] = json!(true);
+    file.0["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"] = json!(positions);
+    file.0["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    file.add("nodes", json!({"mesh": mesh}));
+    let part = file.parse().unwrap();
+    assert_eq!(part.objects[0].shape.vertices().unwrap(), [DVec3::new(1.0, 0.0, -1.0), DVec3::Y, DVec3::Z]);
+}
+
+#[test]
+fn primitives_of_a_mesh_are_one_shape_and_share_vertices() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    let position = file.0["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"].clone();
+    let other = file.floats("VEC3", 2, &[5.0, 0.0, 0.0, 6.0, 0.0, 0.0]);
+    let primitives = file.0["meshes"][mesh]["primitives"].as_array_mut().unwrap();
+    primitives.push(json!({"attributes": {"POSITION": other}, "mode": 1}));
+    primitives.push(json!({"attributes": {"POSITION": position}, "mode": 0}));
+    primitives.push(json!({"attributes": {}}));
+    file.add("nodes", json!({"mesh": mesh}));
+    let part = file.parse().unwrap();
+    let shape = &part.objects[0].shape;
+    assert_eq!((shape.kind(), shape.primitive_count()), (ShapeKind::Complex, 5));
+    assert_eq!(shape.vertices().unwrap().len(), 5);
+}
+
+#[test]
+fn a_scene_is_chosen() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    file.0["nodes"] = json!([{"mesh": mesh, "name": "a", "children": [2]}, {"mesh": mesh, "name": "b"},
+        {"mesh": mesh, "name": "c"}]);
+    let names =
+        |file: &File| file.parse().unwrap().objects.iter().map(|o| o.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&file), ["a", "c", "b"]);
+    file.0["scenes"] = json!([{"nodes": [1, 1]}, {"nodes": [2]}]);
+    assert_eq!(names(&file), ["b"]);
+    file.0["scene"] = json!(1);
+    assert_eq!(names(&file), ["c"]);
+    assert_eq!(file.parse().unwrap().objects[0].path, [0, 2]);
+    file.0["scene"] = json!(2);
+    assert_eq!(file.refused(), "scene 2 is named, but there are 2");
+}
+
+#[test]
+fn broken_hierarchies_are_refused() {
+    let mut file = File::new();
+    file.triangle();
+    let hierarchies = [
+        (json!([{"children": [0]}]), "node 0 is its own ancestor"),
+        (json!([{}, {"children": [2]}, {"children": [1]}]), "node 2 is its own ancestor"),
+        (json!([{"children": [2]}, {"children": [2]}, {}]), "node 2 is a child of both node 0 and node 1"),
+        (json!([{"children": [7]}]), "child of node 0: node 7 is named, but there are 1"),
+        (json!([{"mesh": 7}]), "node 0: mesh 7 is named, but there are 1"),
+        (json!([{"mesh": 0, "rotation": [0, 0, 0, 0]}]), "node 0 has a rotation of length 0"),
+        (
+            json!([{"mesh": 0, "scale": [1e39, 1, 1]}]),
+            "not glTF 2.0: number out of range at line 1 column 352",
+        ),
+        (json!([{"mesh": 0, "matrix": vec![1.0; 16]}]), "node 0 has a matrix that is not affine"),
+        (json!([]), "the scene has no geometry: no node with a mesh"),
+    ];
+    for (nodes, message) in hierarchies {
+        file.0["nodes"] = nodes;
+        assert_eq!(file.refused(), message);
+    }
+}
+
+#[test]
+fn depth_has_a_limit() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    let chain = |length: usize| {
+        let node =
+            |i: usize| if i + 1 == length { json!({"mesh": mesh}) } else { json!({"children": [i + 1]}) };
+        (0..length).map(node).collect::<Value>()
+    };
+    file.0["nodes"] = chain(DEPTH_MAX);
+    assert_eq!(file.parse().unwrap().objects[0].path.len(), DEPTH_MAX);
+    file.0["nodes"] = chain(DEPTH_MAX + 1);
+    assert_eq!(file.refused(), "node 256 is deeper than 256 nodes");
+}
+
+#[test]
+fn accessors_stay_in_their_buffers() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    file.add("nodes", json!({"mesh": mesh}));
+    let changes = [
+        ("/accessors/0/count", json!(4), "accessor 0: goes to byte 48 of bufferView 0, which has 36"),
+        (
+            "/accessors/0/count",
+            json!(u64::MAX),
+            "accessor 0: elements: 18446744073709551615 numbers are more",
+        ),
+        ("/accessors/0/byteOffset", json!(1), "accessor 0: goes to byte 37 of bufferView 0, which has 36"),
+        ("/accessors/0/bufferView", json!(9), "accessor 0: bufferView 9 is named, but there are 1"),
+        ("/accessors/0/type", json!("VEC2"), "accessor 0 is of type Vec2; expected Vec3"),
+        ("/accessors/0/type", json!("VEC9"), "accessor 0 is of an unknown type; expected Vec3"),
+        ("/accessors/0/componentType", json!(1), "accessor 0 has an unknown componentType"),
+        ("/bufferViews/0/byteLength", json!(37), "bufferView 0 goes to byte 37 of buffer 0, which has 36"),
+        (
+            "/bufferViews/0/byteOffset",
+            json!(u64::MAX),
+            "bufferView 0 goes to byte 18446744073709551615 of buffer 0",
+        ),
+        (
+            "/bufferViews/0/byteStride",
+            json!(0),
+            "has elements of 12 bytes, but bufferView 0 a byteStride of 0",
+        ),
+        ("/bufferViews/0/buffer", json!(3), "buffer 3 is named, but there are 1"),
+        ("/meshes/0/primitives/0/indices", json!(0), "indices: accessor 0 has no unsigned integers"),
+        ("/meshes/0/primitives/0/mode", json!(7), "mesh 0 (`tri`), primitive 0 is of an unknown mode"),
+        (
+            "/meshes/0/primitives/0/attributes/POSITION",
+            json!(5),
+            "primitive 0: accessor 5 is named, but there are 1",
+        ),
+        ("/meshes/0/primitives/0/attributes/JOINTS_0", json!(0), "has only one of JOINTS_0 and WEIGHTS_0"),
+    ];
+    for (path, value, message) in changes {
+        let mut file = File(file.0.clone());
+        set(&mut file, path, value);
+        let refused = file.refused();
+        assert!(refused.contains(message), "{path}: {refused}");
+    }
+}
+
+/// Zeros need no bytes in the file, and so are counted.
+#[test]
+fn zeros_without_a_buffer_are_limited() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    file.add("nodes", json!({"mesh": mesh}));
+    file.0["accessors"][0] = json!({"type": "VEC3", "componentType": FLOAT, "count": 1000});
+    assert_eq!(file.parse().unwrap().objects[0].degenerate, 333);
+    file.0["accessors"][0]["count"] = json!(1_000_000_000);
+    assert!(file.refused().ends_with("3000000000 numbers are more than a file of this size may hold"));
+    file.0["accessors"][0]["count"] = json!(1000);
+    file.0["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+    assert!(
+        file.refused().contains("the file is compressed (KHR_draco_mesh_compression); decompress it first")
+    );
+}
+
+#[test]
+fn positions_that_are_not_finite_are_refused() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    let positions = file.floats("VEC3", 3, &[0.0, 0.0, 0.0, 1.0, f32::NAN, 0.0, 0.0, 1.0, 0.0]);
+    file.0["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"] = json!(positions);
+    file.add("nodes", json!({"mesh": mesh}));
+    let message =
+        "node 0: mesh 0 (`tri`), primitive 0, POSITION: vertex 1 is [1, NaN, 0]; expected finite numbers";
+    assert_eq!(file.refused(), message);
+}
+
+#[test]
+fn buffers_that_are_not_there_are_named() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    file.add("nodes", json!({"mesh": mesh}));
+    let buffers = [
+        (json!({"byteLength": 36, "uri": "a.bin"}), "buffer 0: `a.bin` can't be read: "),
+        (
+            json!({"byteLength": 36, "uri": "../a.bin", "name": "b"}),
+            "buffer 0 (`b`) is at `../a.bin`; expected a path",
+        ),
+        (json!({"byteLength": 36, "uri": "data:;base64,!"}), "buffer 0 has bad base64: "),
+        (json!({"byteLength": 36, "uri": "data:;base64,AAAA"}), "buffer 0 has 3 bytes; it should have 36"),
+        (json!({"byteLength": 36}), "buffer 0 has no URI and no binary part"),
+    ];
+    for (buffer, message) in buffers {
+        file.0["buffers"] = json!([buffer]);
+        assert!(file.refused().starts_with(message), "{}", file.refused());
+    }
+}
+
+#[test]
+fn extensions_and_versions_are_checked() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    file.add("nodes", json!({"mesh": mesh}));
+    file.0["extensionsRequired"] = json!(["KHR_materials_unlit"]);
+    assert!(file.parse().is_ok());
+    file.0["extensionsRequired"] = json!(["EXT_meshopt_compression"]);
+    assert!(
+        file.refused().starts_with("the file is compressed (EXT_meshopt_compression); decompress it first")
+    );
+    file.0["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+    assert_eq!(
+        file.refused(),
+        "the file requires the extension `EXT_mesh_gpu_instancing`, which is not supported"
+    );
+    file.0["asset"] = json!({"version": "1.0"});
+    assert_eq!(file.refused(), "the file is of glTF 1.0; expected 2.0");
+}
+
+#[test]
+fn skins_and_animations_are_checked() {
+    let changes = [
+        ("/skins/0/joints/1", json!(9), "skin 0: node 9 is named, but there are 4"),
+        ("/skins/0/joints", json!([1]), "a vertex follows joint 1, but there are 1"),
+        ("/skins/0/joints", json!([0, 1, 2]), "skin 0 has 3 joints, but 2 inverseBindMatrices"),
+        ("/nodes/3/skin", json!(2), "skin 2 is named, but there are 1"),
+        ("/animations/0/channels/0/sampler", json!(3), "animation `all`, channel 0: sampler 3 is named"),
+        ("/animations/0/channels/0/target/node", json!(4), "animation `all`, channel 0: node 4 is named"),
+        (
+            "/animations/0/samplers/0/output",
+            json!(4),
+            "channel 0, output: accessor 4 is of type Scalar; expected Vec4",
+        ),
+        ("/animations/0/samplers/0/interpolation", json!("CURVE"), "channel 0 has an unknown interpolation"),
+        ("/animations/0/samplers/1/interpolation", json!("LINEAR"), "channel 1 has 2 keys, but 6 values"),
+    ];
+    for (path, value, message) in changes {
+        let mut file = everything();
+        set(&mut file, path, value);
+        let refused = file.refused();
+        assert!(refused.contains(message), "{path}: {refused}");
+    }
+    let refused = everything().parse_animation(Some("x")).unwrap_err();
+    assert_eq!(refused, "there is no animation `x`; the file has `all`, 1");
+}
+
+#[test]
+fn text_that_is_not_gltf_is_refused() {
+    let deep = "[".repeat(1 << 20);
+    for bytes in [&b""[..], b"{", b"glTF", b"glTF\x02\0\0\0\x0b\0\0\0", b"\xff\xfe", deep.as_bytes()] {
+        assert!(parse(bytes, Path::new(""), None).is_err());
+    }
+}
+
+/// The file as a `.glb`, its first buffer in the binary part.
+fn binary(file: &File) -> Vec<u8> {
+    let mut file = file.0.clone();
+    let uri = file["buffers"][0]["uri"].take();
+    file["buffers"][0].as_object_mut().unwrap().remove("uri");
+    let binary = BASE64_STANDARD.decode(uri.as_str().unwrap().rsplit(',').next().unwrap()).unwrap();
+    let mut chunks = Vec::new();
+    for (kind, mut bytes) in [(b"JSON", file.to_string().into_bytes()), (b"BIN\0", binary)] {
+        bytes.resize(bytes.len().next_multiple_of(4), b' ');
+        chunks.extend((bytes.len() as u32).to_le_bytes());
+        chunks.extend(kind);
+        chunks.extend(bytes);
+    }
+    [&b"glTF\x02\0\0\0"[..], &(chunks.len() as u32 + 12).to_le_bytes(), &chunks].concat()
+}
+
+#[test]
+fn binary_files_are_read() {
+    let part = parse(&binary(&everything()), Path::new(""), None).unwrap();
+    assert_eq!(part.objects.len(), 2);
+    let text = everything().parse().unwrap();
+    assert_eq!(pose(&part, 1.5), pose(&text, 1.5));
+}
+
+/// All numbers of a value, to be changed.
+fn numbers<'a>(value: &'a mut Value, found: &mut Vec<&'a mut Value>) {
+    match value {
+        Value::Number(_) => found.push(value),
+        Value::Array(values) => values.iter_mut().for_each(|value| numbers(value, found)),
+        Value::Object(values) => values.values_mut().for_each(|value| numbers(value, found)),
+        _ => {}
+    }
+}
+
+fn sample_all(part: Result<Part, String>) {
+    if let Ok(part) = part {
+        for time in [-1.0, 0.0, 2.5, 1e300] {
+            pose(&part, time);
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn changed_numbers_never_panic(changes in prop::collection::vec((any::<prop::sample::Index>(), 0usize..10), 1..4)) {
+        let values = [json!(0), json!(1), json!(2), json!(3), json!(5), json!(30), json!(-1), json!(u32::MAX),
+            json!(u64::MAX), json!(1e38)];
+        let mut file = everything();
+        let mut found = Vec::new();
+        numbers(&mut file.0, &mut found);
+        for (index, value) in changes {
+            let index = index.index(found.len());
+            *found[index] = values[value].clone();
+        }
+        sample_all(file.parse());
+        sample_all(file.parse_animation(Some("1")));
+    }
+
+    #[test]
+    fn truncated_binary_files_are_refused(cut in any::<prop::sample::Index>()) {
+        let bytes = binary(&everything());
+        prop_assert!(parse(&bytes[..cut.index(bytes.len())], Path::new(""), None).is_err());
+    }
+
+    #[test]
+    fn changed_bytes_never_panic(at in any::<prop::sample::Index>(), byte: u8) {
+        let mut bytes = binary(&everything());
+        let at = at.index(bytes.len());
+        bytes[at] = byte;
+        sample_all(parse(&bytes, Path::new(""), None).map_err(|fault| fault.message().to_owned()));
+    }
+}

@@ -15,6 +15,7 @@ use crate::fault::Result;
 use crate::file;
 use crate::load::LoadOptions;
 use crate::part::Part;
+use crate::polygon::folded_warning;
 use crate::soup::still_part;
 
 /// Reads an OBJ file: one object, named by the file, or with [`LoadOptions::split`] one for each group or object that
@@ -26,9 +27,11 @@ pub(crate) fn load(path: &Path, options: &LoadOptions) -> std::result::Result<Pa
 
 fn parse(bytes: &[u8], stem: &str, split: bool) -> Result<Part> {
     let statements = reader::read(&String::from_utf8_lossy(bytes), stem)?;
-    let warnings = statements.warnings();
+    let mut warnings = statements.warnings();
     let soups = if split { statements.split()? } else { statements.whole(stem)? };
-    let objects = soups.into_iter().zip(1..).map(|((name, soup), number)| soup.into_object(&name, number));
+    warnings.extend(folded_warning(soups.folded));
+    let named = soups.named.into_iter().zip(1..);
+    let objects = named.map(|((name, soup), number)| soup.into_object(&name, number));
     Ok(still_part(objects.collect::<Result<_>>()?, warnings))
 }
 

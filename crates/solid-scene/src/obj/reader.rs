@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::lines::statements;
 use crate::fault::{Fault, Result};
+use crate::polygon::short_warning;
 use crate::text::{quoted, vertex};
 
 /// What the statements say, in their order.
@@ -140,12 +141,7 @@ impl Reader {
 impl Statements {
     /// What was passed over.
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        match self.short_faces {
-            0 => {}
-            1 => warnings.push("1 face with fewer than 3 corners is passed over".to_owned()),
-            n => warnings.push(format!("{n} faces with fewer than 3 corners are passed over")),
-        }
+        let mut warnings = Vec::from_iter(short_warning(self.short_faces));
         if self.free_forms > 0 {
             warnings.push(format!("{} free-form curves or surfaces are passed over", self.free_forms));
         }

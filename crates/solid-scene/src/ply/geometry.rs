@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::header::{Element, Header, Property};
 use super::payload::Payload;
 use crate::fault::{Fault, Result};
-use crate::polygon::triangulate;
+use crate::polygon::{Cut, folded_warning, short_warning, triangulate};
 use crate::soup::Soup;
 
 /// The names that the list of a face's corners goes by.
@@ -24,26 +24,20 @@ pub(super) fn read(header: &Header, mut payload: Payload) -> Result<(Soup, Vec<S
             _ => skip(element, &mut payload)?,
         }
     }
-    let mut short = 0;
-    for (number, face) in faces.iter() {
-        let corners = corners("face", number, face, soup.vertices.len())?;
+    let (mut short, mut folded) = (0, 0);
+    for (place, face) in faces.iter() {
+        let corners = corners("face", place, face, soup.vertices.len())?;
         short += usize::from(corners.len() < 3);
-        triangulate(&corners, &soup.vertices, &mut soup.triangles);
+        let cut = triangulate(&corners, &soup.vertices, &mut soup.triangles);
+        folded += usize::from(cut == Cut::Folded);
     }
-    for (number, list) in strips.iter() {
+    for (place, list) in strips.iter() {
         for strip in list.split(|&index| index == -1.0) {
-            strip_triangles(&corners("tristrips", number, strip, soup.vertices.len())?, &mut soup.triangles);
+            strip_triangles(&corners("tristrips", place, strip, soup.vertices.len())?, &mut soup.triangles);
         }
     }
-    Ok((soup, warnings(short)))
-}
-
-fn warnings(short: usize) -> Vec<String> {
-    match short {
-        0 => Vec::new(),
-        1 => vec!["1 face with fewer than 3 corners is passed over".to_owned()],
-        n => vec![format!("{n} faces with fewer than 3 corners are passed over")],
-    }
+    let warnings = short_warning(short).into_iter().chain(folded_warning(folded)).collect();
+    Ok((soup, warnings))
 }
 
 /// Every second triangle of a strip is turned round, so that all face the same way.
@@ -58,7 +52,8 @@ fn vertices(element: &Element, payload: &mut Payload) -> Result<Vec<DVec3>> {
     let mut axes = [0; 3];
     for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
         let place = element.properties.iter().position(|p| p.name == name && p.length.is_none());
-        *axis = place.ok_or_else(|| Fault::from(format!("`vertex` has no scalar property `{name}`")))?;
+        *axis = place
+            .ok_or_else(|| Fault::at(element.line, format!("`vertex` has no scalar property `{name}`")))?;
     }
     let mut vertices = Vec::new();
     for number in 0..element.count {
@@ -68,7 +63,7 @@ fn vertices(element: &Element, payload: &mut Payload) -> Result<Vec<DVec3>> {
             axes.iter().enumerate().filter(|&(_, &axis)| axis == place).for_each(|(i, _)| vertex[i] = value);
         }
         if !vertex.is_finite() {
-            return Err(format!("`vertex` {number} is {vertex}; expected finite numbers").into());
+            return Err(payload.fault(format!("`vertex` {number} is {vertex}; expected finite numbers")));
         }
         vertices.push(vertex);
     }
@@ -96,31 +91,39 @@ fn read_property(
         |expected: String| format!("the file ends in `{}` {number}: expected {expected}", element.name);
     let name = &property.name;
     let first = payload.next(property.length.unwrap_or(property.scalar))?;
-    let Some(first) = first else { return Err(ends(format!("`{name}`")).into()) };
+    let Some(first) = first else { return Err(payload.fault(ends(format!("`{name}`")))) };
     if property.length.is_none() {
         return Ok(first);
     }
     if !(first >= 0.0 && first.fract() == 0.0) {
         let message = format!("`{}` {number} has a list `{name}` of length {first}", element.name);
-        return Err(message.into());
+        return Err(payload.fault(message));
     }
     if first > payload.left(property.scalar) as f64 {
-        return Err(ends(format!("{first} numbers of `{name}`")).into());
+        return Err(payload.fault(ends(format!("{first} numbers of `{name}`"))));
     }
     for _ in 0..first as u64 {
         match payload.next(property.scalar)? {
             Some(value) => each(value),
-            None => return Err(ends(format!("{first} numbers of `{name}`")).into()),
+            None => return Err(payload.fault(ends(format!("{first} numbers of `{name}`")))),
         }
     }
     Ok(first)
+}
+
+/// Where an element stands: its number among those of its kind, and its line in a text.
+#[derive(Clone, Copy)]
+struct Place {
+    number: usize,
+    line: Option<usize>,
 }
 
 /// The lists of corners of all elements of a kind, one after the other.
 #[derive(Default)]
 struct Lists {
     values: Vec<f64>,
-    ends: Vec<usize>,
+    /// Where each element's list ends, and its line in a text.
+    ends: Vec<(usize, Option<usize>)>,
 }
 
 impl Lists {
@@ -136,24 +139,25 @@ impl Lists {
                 };
                 read_property(element, number, property, payload, each)?;
             }
-            self.ends.push(self.values.len());
+            self.ends.push((self.values.len(), payload.line()));
         }
         Ok(())
     }
 
-    fn iter(&self) -> impl Iterator<Item = (usize, &[f64])> {
-        let starts = std::iter::once(0).chain(self.ends.iter().copied());
-        starts.zip(&self.ends).map(|(start, &end)| &self.values[start..end]).enumerate()
+    /// Where each element stands, and its list.
+    fn iter(&self) -> impl Iterator<Item = (Place, &[f64])> {
+        let starts = std::iter::once(0).chain(self.ends.iter().map(|&(end, _)| end));
+        let lists = starts.zip(&self.ends).enumerate();
+        lists.map(|(number, (start, &(end, line)))| (Place { number, line }, &self.values[start..end]))
     }
 }
 
 /// The vertices that a list names.
-fn corners(element: &str, number: usize, list: &[f64], vertices: usize) -> Result<Vec<u32>> {
+fn corners(element: &str, place: Place, list: &[f64], vertices: usize) -> Result<Vec<u32>> {
     let corner = |&index: &f64| {
         let named = index.fract() == 0.0 && (0.0..vertices as f64).contains(&index);
-        let unknown =
-            || format!("`{element}` {number} names vertex {index}, but there are {vertices}").into();
-        if named { Ok(index as u32) } else { Err(unknown()) }
+        let wrong = || format!("`{element}` {} names vertex {index}, but there are {vertices}", place.number);
+        if named { Ok(index as u32) } else { Err(Fault::new(place.line, wrong())) }
     };
     list.iter().map(corner).collect()
 }

@@ -13,6 +13,8 @@ pub(super) struct Header {
 #[derive(Debug)]
 pub(super) struct Element {
     pub name: String,
+    /// Where the header tells it.
+    pub line: usize,
     pub count: u64,
     pub properties: Vec<Property>,
 }
@@ -89,7 +91,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Header, Payload<'_>)> {
         }
         match words.as_slice() {
             ["end_header"] => {
-                let encoding = encoding.ok_or("the header has no `format`")?;
+                let encoding = encoding.ok_or_else(|| Fault::at(line, "the header has no `format`"))?;
                 header.check_counts(encoding, rest.len())?;
                 return Ok((header, Payload::new(rest, encoding, line + 1)));
             }
@@ -137,19 +139,17 @@ impl Header {
 
     /// Refuses what can't be in a payload of so many bytes, lists being empty at least.
     fn check_counts(&self, encoding: Encoding, mut bytes: usize) -> Result<()> {
-        for Element { name, count, properties } in &self.elements {
+        for Element { name, line, count, properties } in &self.elements {
             if properties.is_empty() && *count > 0 {
-                return Err(format!("the header tells {count} of `{name}`, which has no property").into());
+                let message = format!("the header tells {count} of `{name}`, which has no property");
+                return Err(Fault::at(*line, message));
             }
             let each: usize = properties.iter().map(|property| encoding.least_size(property.first())).sum();
             let needed = u128::from(*count) * each as u128;
             // The last number of a text needs no space after it.
             if needed > bytes as u128 + 1 {
-                let has = format!("the file has {bytes} for them");
-                return Err(format!(
-                    "the header tells {count} of `{name}`, which take {needed} bytes; {has}"
-                )
-                .into());
+                let message = format!("the header tells {count} of `{name}`, which take {needed} bytes");
+                return Err(Fault::at(*line, format!("{message}; the file has {bytes} for them")));
             }
             bytes = bytes.saturating_sub(needed as usize);
         }
@@ -158,12 +158,10 @@ impl Header {
 }
 
 fn element(words: &[&str], line: usize) -> Result<Element> {
-    if let [name, count] = words {
-        if let Ok(count) = count.parse() {
-            return Ok(Element { name: (*name).to_owned(), count, properties: Vec::new() });
-        }
-    }
-    Err(Fault::at(line, "expected `element`, a name and a count"))
+    let expected = || Fault::at(line, "expected `element`, a name and a count");
+    let [name, count] = words else { return Err(expected()) };
+    let count = count.parse().map_err(|_| expected())?;
+    Ok(Element { name: (*name).to_owned(), line, count, properties: Vec::new() })
 }
 
 fn property(words: &[&str], line: usize) -> Result<Property> {

@@ -99,7 +99,7 @@ mod tests {
                     property float z\nend_header\n1 2 3\n";
         let message =
             "the header tells 1000000000 of `vertex`, which take 6000000000 bytes; the file has 6 for them";
-        assert_eq!(refused(head.as_bytes()), (None, message.to_owned()));
+        assert_eq!(refused(head.as_bytes()), (Some(3), message.to_owned()));
         let idle = "ply\nformat ascii 1.0\nelement idle 99999999999\nend_header\n1 2 3\n";
         assert_eq!(
             refused(idle.as_bytes()).1,
@@ -143,26 +143,30 @@ mod tests {
                 Some(2),
                 "the file ends in its header; expected `end_header`",
             ),
-            ("ply\nend_header\n".to_owned(), None, "the header has no `format`"),
-            (header("property float x\n", "end_header\n0 0\n"), None, "`vertex` has no scalar property `y`"),
+            ("ply\nend_header\n".to_owned(), Some(2), "the header has no `format`"),
+            (
+                header("property float x\n", "end_header\n0 0\n"),
+                Some(3),
+                "`vertex` has no scalar property `y`",
+            ),
             (
                 header(xyz, &format!("{face}0 0 0\n3 0 0 1\n")),
-                None,
+                Some(11),
                 "`face` 0 names vertex 1, but there are 1",
             ),
             (
                 header(xyz, &format!("{face}0 0 0\n3 0 0 -1\n")),
-                None,
+                Some(11),
                 "`face` 0 names vertex -1, but there are 1",
             ),
             (
                 header(xyz, &format!("{face}0 0 0\n-3 0 0\n")),
-                None,
+                Some(11),
                 "`face` 0 has a list `vertex_indices` of length -3",
             ),
             (
                 header(xyz, &format!("{face}0 inf 0\n1 0 0\n")),
-                None,
+                Some(10),
                 "`vertex` 0 is [0, inf, 0]; expected finite numbers",
             ),
             (

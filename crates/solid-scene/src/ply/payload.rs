@@ -32,6 +32,16 @@ impl<'a> Payload<'a> {
         Payload { rest, encoding, line }
     }
 
+    /// A mistake at the last number that was taken.
+    pub fn fault(&self, message: impl Into<String>) -> Fault {
+        Fault::new(self.line(), message)
+    }
+
+    /// The line of the last number that was taken, in a text.
+    pub fn line(&self) -> Option<usize> {
+        (self.encoding == Encoding::Ascii).then_some(self.line)
+    }
+
     /// How many numbers of a type may be left, at most.
     pub fn left(&self, scalar: Scalar) -> usize {
         self.rest.len().div_ceil(self.encoding.least_size(scalar))

@@ -32,6 +32,12 @@ pub(super) fn expand(file: &Path, warnings: &mut Warnings) -> Result<Graph, Scen
     Ok(expansion.graph)
 }
 
+/// A file that a node names, and what follows the `#`.
+struct Opened {
+    document: Rc<Document>,
+    fragment: Option<String>,
+}
+
 struct Expansion<'a> {
     graph: Graph,
     library: Library,
@@ -103,7 +109,7 @@ impl Expansion<'_> {
     }
 
     fn extern_instance(&mut self, node: Node, urls: &[String]) -> Result<(), SceneError> {
-        let Some((document, fragment)) = self.open(node, urls)? else { return Ok(()) };
+        let Some(Opened { document, fragment }) = self.open(node, urls)? else { return Ok(()) };
         match document.find_proto(fragment.as_deref()) {
             Some(proto) => {
                 let defaults =
@@ -122,7 +128,7 @@ impl Expansion<'_> {
 
     fn inline(&mut self, node: Node) -> Result<(), SceneError> {
         let urls = self.graph.strings(node, "url").to_vec();
-        let Some((document, _)) = self.open(node, &urls)? else { return Ok(()) };
+        let Some(Opened { document, .. }) = self.open(node, &urls)? else { return Ok(()) };
         let scope = self.graph.add(Scope { document, context: FILE, call: None });
         self.graph.fill(node, scope);
         self.scope(scope)?;
@@ -131,11 +137,7 @@ impl Expansion<'_> {
     }
 
     /// Opens the file that a node names, if it can be found, until it is popped from `open`.
-    fn open(
-        &mut self,
-        node: Node,
-        urls: &[String],
-    ) -> Result<Option<(Rc<Document>, Option<String>)>, SceneError> {
+    fn open(&mut self, node: Node, urls: &[String]) -> Result<Option<Opened>, SceneError> {
         let target = match library::locate(self.graph.document(node).file(), urls) {
             Ok(target) => target,
             Err(reason) => {
@@ -153,7 +155,7 @@ impl Expansion<'_> {
         }
         let document = self.library.open(&target.file, self.warnings)?;
         self.open.push(key);
-        Ok(Some((document, target.fragment)))
+        Ok(Some(Opened { document, fragment: target.fragment }))
     }
 
     fn warn(&mut self, node: Node, message: String) {

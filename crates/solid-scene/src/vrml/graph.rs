@@ -10,6 +10,7 @@ use glam::{DQuat, DVec2, DVec3};
 
 use super::document::{Context, Document, Kind, Proto, Syntax, Value};
 use crate::error::SceneError;
+use crate::fault::Fault;
 
 /// A node: a scope, and where in the scope's file it is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -121,6 +122,13 @@ impl Graph {
     /// An error about a node.
     pub fn error(&self, node: Node, message: impl std::fmt::Display) -> SceneError {
         self.document(node).error(node.syntax, message)
+    }
+
+    /// A fault of a node as an error.
+    pub fn fault(&self, node: Node, fault: Fault) -> SceneError {
+        let document = self.document(node);
+        let error = fault.of(&self.describe(node)).in_file(document.file());
+        SceneError { line: document.line(node.syntax), ..error }
     }
 
     /// The node as messages name it.

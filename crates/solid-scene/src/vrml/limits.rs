@@ -12,8 +12,16 @@ pub(super) const FILE_NODES_MAX: usize = 200_000;
 /// ROUTEs written in one file: the parser compares each with all before it.
 pub(super) const FILE_ROUTES_MAX: usize = 20_000;
 
-/// Bytes of PROTO interface that the parser copies: once for each instance, and once for each IS.
-pub(super) const COPIED_BYTES_MAX: usize = 1 << 28;
+/// Names that DEF gives again in one file: the parser looks through all names for each.
+pub(super) const FILE_REPEATS_MAX: usize = 20_000;
+
+/// Fields and events declared in the PROTOs and Scripts of one file: the parser compares each with all before it in the
+/// same PROTO or Script.
+pub(super) const FILE_DECLARATIONS_MAX: usize = 20_000;
+
+/// Bytes of PROTO interface that the parser copies: once for each instance, and once for each IS. In its memory they are
+/// up to 15 times as many.
+pub(super) const COPIED_BYTES_MAX: usize = 1 << 26;
 
 /// Names beginning with USE, which the parser may take for a USE of something unknown; it looks through all nodes for
 /// each.
@@ -30,9 +38,6 @@ pub(super) const INLINE_DEPTH_MAX: usize = 32;
 
 /// Vertices, primitives, interpolated values and entries of paths in all of a scene: each is some 10 to 100 bytes.
 pub(super) const ELEMENTS_MAX: usize = 16_000_000;
-
-/// Corners of a face that is not convex: triangulating it takes up to the square of this.
-pub(super) const CONCAVE_CORNERS_MAX: usize = 16_384;
 
 /// How many ROUTEs an event may follow from its sensor.
 pub(super) const CHAIN_MAX: usize = 512;

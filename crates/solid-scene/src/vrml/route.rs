@@ -22,7 +22,7 @@ impl Routes {
             for route in scope.document.routes(scope.context) {
                 let at = |(syntax, field)| (Node { scope: number, syntax }, field);
                 let (from, to) = (ends(graph, at(route.from))?, ends(graph, at(route.to))?);
-                total += 1 + from.len() * to.len();
+                total += 1 + from.len() + to.len() + from.len() * to.len();
                 if total > NODES_MAX {
                     let file = scope.document.file();
                     return Err(SceneError::new(

@@ -85,6 +85,8 @@ struct Scanner<'a> {
     interfaces: HashMap<&'a str, usize>,
     copied: usize,
     routes: usize,
+    declarations: usize,
+    repeats: usize,
     lookalikes: usize,
     expect: Expect,
 }
@@ -105,6 +107,8 @@ impl<'a> Scanner<'a> {
             interfaces: HashMap::new(),
             copied: 0,
             routes: 0,
+            declarations: 0,
+            repeats: 0,
             lookalikes: 0,
             expect: Expect::Anything,
         }
@@ -274,9 +278,9 @@ impl<'a> Scanner<'a> {
         match expect {
             Expect::DefName => {
                 self.def = Some(word);
-                if let Some(names) = self.names.last_mut() {
-                    names.insert(word);
-                }
+                let is_new = self.names.last_mut().is_some_and(|names| names.insert(word));
+                self.repeats += usize::from(!is_new);
+                return self.check_counts();
             }
             Expect::UseName => return self.check_use(word),
             Expect::ProtoName => {
@@ -303,6 +307,8 @@ impl<'a> Scanner<'a> {
                 self.expect = Expect::OtherName;
                 self.copied += self.body_interface();
             }
+            "field" | "eventIn" | "eventOut" | "exposedField" | "initializeOnly" | "inputOnly"
+            | "outputOnly" | "inputOutput" => self.declarations += 1,
             _ => {
                 self.copied += self.interfaces.get(word).copied().unwrap_or(0);
                 self.lookalikes += usize::from(word.starts_with("USE"));
@@ -320,16 +326,17 @@ impl<'a> Scanner<'a> {
     }
 
     fn check_counts(&self) -> Result<(), SceneError> {
-        if self.routes > FILE_ROUTES_MAX {
-            return self.fail(format!("the file has more than {FILE_ROUTES_MAX} ROUTEs"));
+        let counts = [
+            (self.routes, FILE_ROUTES_MAX, "ROUTEs"),
+            (self.declarations, FILE_DECLARATIONS_MAX, "declared fields and events"),
+            (self.repeats, FILE_REPEATS_MAX, "names given again by DEF"),
+            (self.copied, COPIED_BYTES_MAX, "bytes of PROTO interfaces, counted for each instance"),
+            (self.lookalikes, USE_LOOKALIKES_MAX, "names that begin with USE"),
+        ];
+        match counts.iter().find(|(count, most, _)| count > most) {
+            Some((_, most, what)) => self.fail(format!("the file has more than {most} {what}")),
+            None => Ok(()),
         }
-        if self.copied > COPIED_BYTES_MAX {
-            return self.fail(format!("PROTO interfaces add up to more than {COPIED_BYTES_MAX} bytes"));
-        }
-        if self.lookalikes > USE_LOOKALIKES_MAX {
-            return self.fail(format!("more than {USE_LOOKALIKES_MAX} names begin with USE"));
-        }
-        Ok(())
     }
 
     /// The bytes of the interface of the PROTO whose body this is.
@@ -423,6 +430,6 @@ mod tests {
         let interface = format!("field MFFloat a [{}]", " 1".repeat(1 << 16));
         let instances = "P {} ".repeat(1 << 12);
         let text = format!("#\nPROTO P [{interface}] {{}} {instances}");
-        assert!(message(&text).contains("PROTO interfaces add up"));
+        assert!(message(&text).contains("bytes of PROTO interfaces"));
     }
 }

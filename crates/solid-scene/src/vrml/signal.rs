@@ -62,6 +62,8 @@ pub(super) struct SignalBuilder<'a> {
     signals: Signals,
     /// For each signal, how many points its events hold.
     point_counts: Vec<Option<usize>>,
+    /// What the signals send at time 0.
+    start: Vec<Option<Event>>,
     /// The signal of each field asked for; `Pending` while it is being followed.
     known: HashMap<Slot, Known>,
     depth: usize,
@@ -82,6 +84,7 @@ impl<'a> SignalBuilder<'a> {
             routes,
             signals: Signals::default(),
             point_counts: Vec::new(),
+            start: Vec::new(),
             known: HashMap::new(),
             depth: 0,
             elements: 0,
@@ -127,9 +130,9 @@ impl<'a> SignalBuilder<'a> {
         Ok(signal)
     }
 
-    /// What the signals send at a time.
-    pub fn events(&self, time: f64) -> Vec<Option<Event>> {
-        self.signals.at(time)
+    /// What a signal sends at time 0.
+    pub fn start(&self, signal: SignalId) -> Option<&Event> {
+        self.start[signal].as_ref()
     }
 
     /// How many points each event of a signal holds; `None` when that changes.
@@ -205,6 +208,7 @@ impl<'a> SignalBuilder<'a> {
             }
         };
         self.point_counts.push(point_count);
+        self.start.push(signal.at(0.0, &self.start));
         self.signals.signals.push(signal);
         self.signals.signals.len() - 1
     }

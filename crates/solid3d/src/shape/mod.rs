@@ -3,20 +3,19 @@
 mod builder;
 mod complex;
 mod kind;
-mod polytope;
 mod validate;
 
 use std::sync::Arc;
 
 use glam::DVec3;
-use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
+use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 
 pub use builder::ComplexShapeBuilder;
 pub(crate) use complex::Complex;
 pub use kind::ShapeKind;
-use polytope::Polytope;
 
 use crate::error::{Error, Result};
+use crate::hull::Hull;
 
 /// Geometry in its own space. Cheap to clone: clones share the geometry.
 ///
@@ -93,7 +92,12 @@ impl Shape {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn convex_hull(points: &[DVec3]) -> Result<Shape> {
-        Ok(Geometry::Polytope(Arc::new(Polytope::new(points)?)).into())
+        validate::vertex_count("points", points.len())?;
+        validate::vertices(points)?;
+        let extreme =
+            Hull::of(points).map(|hull| hull.vertices().iter().map(|&i| points[i as usize]).collect());
+        let polytope = extreme.and_then(Polytope::new).ok_or(Error::NoVertices { argument: "points" })?;
+        Ok(Geometry::Polytope(Arc::new(polytope)).into())
     }
 
     /// A triangle mesh: a surface, closed or not. Triangles may be degenerate. Cost: O(n log n), for the tree.
@@ -136,7 +140,7 @@ impl Shape {
     /// The vertices of a convex hull (those on its surface), a mesh or a complex shape; `None` for the other kinds.
     pub fn vertices(&self) -> Option<&[DVec3]> {
         match &self.geometry {
-            Geometry::Polytope(polytope) => Some(polytope.vertices()),
+            Geometry::Polytope(polytope) => Some(polytope.points()),
             Geometry::Complex(complex) => Some(complex.vertices()),
             _ => None,
         }

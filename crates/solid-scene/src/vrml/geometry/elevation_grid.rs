@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{Builder, Geometry};
 use crate::error::SceneError;
+use crate::soup::Soup;
 use crate::vrml::graph::Node;
 
 /// How many points a grid has along x and z, and how far they are apart.
@@ -22,7 +23,8 @@ impl Builder<'_> {
         }
         let heights = self.graph.numbers(node, "height")?;
         self.count(node, heights.len())?;
-        self.mesh(node, grid.points(&heights), grid.triangles(), None)
+        let soup = Soup { vertices: grid.points(&heights), triangles: grid.triangles(), ..Soup::default() };
+        self.soup(node, soup, None)
     }
 
     fn grid(&self, node: Node) -> Result<Grid, SceneError> {

@@ -2,11 +2,10 @@
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
-use super::polygon::{Face, Splitter};
 use super::{Builder, Geometry};
 use crate::error::SceneError;
+use crate::soup::Soup;
 use crate::vrml::graph::Node;
-use crate::vrml::limits::CONCAVE_CORNERS_MAX;
 
 impl Builder<'_> {
     pub(super) fn extrusion(&mut self, node: Node) -> Result<Option<Geometry>, SceneError> {
@@ -24,9 +23,10 @@ impl Builder<'_> {
             let flat = section.iter().map(|&p| p * scale[i]).map(|p| DVec3::new(p.x, 0.0, p.y));
             points.extend(flat.map(|p| spine[i] + plane * (turn[i] * p)));
         }
-        let mut triangles = sides(section.len(), spine.len());
-        self.caps(node, &section, &points, &mut triangles)?;
-        self.mesh(node, points, triangles, None)
+        let triangles = sides(section.len(), spine.len());
+        let mut soup = Soup { vertices: points, triangles, ..Soup::default() };
+        self.caps(node, &section, &mut soup);
+        self.soup(node, soup, None)
     }
 
     /// A value for each point of the spine: one is for all of them, too many are cut, too few (which the standard
@@ -47,35 +47,23 @@ impl Builder<'_> {
         values
     }
 
-    fn caps(
-        &self,
-        node: Node,
-        section: &[DVec2],
-        points: &[DVec3],
-        triangles: &mut Vec<[u32; 3]>,
-    ) -> Result<(), SceneError> {
+    fn caps(&mut self, node: Node, section: &[DVec2], soup: &mut Soup) {
         let mut corners: Vec<u32> = (0..section.len() as u32).collect();
         // A closed cross-section ends where it begins, an open one is closed by its cap.
         corners.dedup_by_key(|corner| section[*corner as usize].to_array());
-        if corners.len() > 1 && section.first() == section.last() {
+        if section.first() == section.last() {
             corners.pop();
         }
         if corners.len() < 3 {
-            return Ok(());
+            return;
         }
-        if corners.len() > CONCAVE_CORNERS_MAX {
-            let message =
-                format!("crossSection has {} points; the limit is {CONCAVE_CORNERS_MAX}", corners.len());
-            return Err(self.graph.error(node, message));
-        }
-        let last = (points.len() - section.len()) as u32;
+        let last = (soup.vertices.len() - section.len()) as u32;
         for (flag, first) in [("beginCap", 0), ("endCap", last)] {
             if self.graph.flag(node, flag) {
                 let corners: Vec<u32> = corners.iter().map(|corner| first + corner).collect();
-                Splitter::default().split(Face { points, corners: &corners }, triangles);
+                self.face(node, &corners, soup);
             }
         }
-        Ok(())
     }
 }
 

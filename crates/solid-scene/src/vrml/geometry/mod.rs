@@ -4,9 +4,7 @@ mod elevation_grid;
 mod extrusion;
 mod face_set;
 mod line_set;
-mod measure;
 mod point_set;
-mod polygon;
 mod primitive;
 
 use std::sync::Arc;
@@ -21,6 +19,8 @@ use super::limits::ELEMENTS_MAX;
 use super::signal::SignalBuilder;
 use super::warnings::Warnings;
 use crate::error::SceneError;
+use crate::polygon::{EARCUT_CORNERS_MAX, triangulate};
+use crate::soup::Soup;
 
 /// The shape of a geometry node.
 #[derive(Clone, Debug)]
@@ -109,39 +109,47 @@ impl<'a> Builder<'a> {
             return Err(self.graph.error(coord, message));
         }
         let deformation = Deformation { signal, rest: Arc::from(points.as_slice()) };
-        let points = match self.signals.events(0.0).swap_remove(signal) {
-            Some(Event::Points(points)) => points,
+        let points = match self.signals.start(signal) {
+            Some(Event::Points(points)) => points.clone(),
             _ => points,
         };
         Ok(Coordinates { points, deformation: Some(deformation) })
     }
 
-    /// A mesh.
-    fn mesh(
+    /// The geometry of vertices and primitives; `None`, with a warning, without a primitive.
+    fn soup(
         &mut self,
         node: Node,
-        points: Vec<DVec3>,
-        triangles: Vec<[u32; 3]>,
+        soup: Soup,
         deformation: Option<Deformation>,
     ) -> Result<Option<Geometry>, SceneError> {
-        if triangles.is_empty() {
+        if soup.is_empty() {
             return self.empty(node);
         }
-        self.count(node, triangles.len())?;
-        let degenerate = triangles.iter().filter(|t| measure::is_flat(t.map(|i| points[i as usize]))).count();
-        let shape = Shape::mesh(points, triangles).map_err(|error| self.graph.error(node, error))?;
+        self.count(node, soup.triangles.len() + soup.segments.len() + soup.points.len())?;
+        let degenerate = soup.degenerate();
+        let shape = soup.into_shape().map_err(|fault| self.graph.fault(node, fault))?;
         Ok(Some(Geometry { shape, degenerate, deformation }))
     }
 
-    /// Index `index` as a vertex, checked.
-    fn vertex(&self, node: Node, index: i32, count: usize) -> Result<u32, SceneError> {
-        match u32::try_from(index) {
+    /// Adds the triangles of a face.
+    fn face(&mut self, node: Node, corners: &[u32], soup: &mut Soup) {
+        if corners.len() > EARCUT_CORNERS_MAX {
+            self.warn(node, format!("a face of more than {EARCUT_CORNERS_MAX} corners is taken as convex"));
+        }
+        triangulate(corners, &soup.vertices, &mut soup.triangles);
+    }
+
+    /// Indices of `count` points, checked.
+    fn vertices(&self, node: Node, indices: &[i32], count: usize) -> Result<Vec<u32>, SceneError> {
+        let vertex = |&index: &i32| match u32::try_from(index) {
             Ok(vertex) if (vertex as usize) < count => Ok(vertex),
             _ => {
                 let message =
                     format!("coordIndex holds {index}; expected -1 or less than the {count} points");
                 Err(self.graph.error(node, message))
             }
-        }
+        };
+        indices.iter().map(vertex).collect()
     }
 }

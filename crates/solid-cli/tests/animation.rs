@@ -1,0 +1,128 @@
+//! Animated scenes, from the outside.
+
+#![allow(clippy::unwrap_used, reason = "a test that can't go on shall stop")]
+
+mod harness;
+
+use harness::{BOX, Desk, Run, data};
+
+const VRML: &str = "#VRML V2.0 utf8\n";
+
+/// A box of size 2 under a transform, which is named and placed by a field.
+fn block(name: &str, field: &str) -> String {
+    format!("DEF {name} Transform {{ {field} children Shape {{ geometry Box {{ size 2 2 2 }} }} }}\n")
+}
+
+/// Drives a field of a node with an interpolator over 2 seconds.
+fn drive(interpolator: &str, values: &str, target: &str) -> String {
+    format!(
+        "DEF clock TimeSensor {{ cycleInterval 2 loop TRUE }}\n\
+         DEF path {interpolator} {{ key [0 1] keyValue [{values}] }}\n\
+         ROUTE clock.fraction_changed TO path.set_fraction\nROUTE path.value_changed TO {target}\n"
+    )
+}
+
+/// A box that moves from 10 to 2 in 2 seconds, with respect to one at the origin.
+fn approach() -> String {
+    let blocks = block("mover", "") + &block("goal", "");
+    format!("{VRML}{blocks}{}", drive("PositionInterpolator", "10 0 0, 2 0 0", "mover.set_translation"))
+}
+
+/// The frames with collisions.
+fn colliding(run: &Run) -> Vec<usize> {
+    let json = run.json();
+    let frames = json["frames"].as_array().unwrap();
+    (0..frames.len()).filter(|&frame| !frames[frame]["collisions"].as_array().unwrap().is_empty()).collect()
+}
+
+#[test]
+fn the_animation_plays_from_start_to_end() {
+    let desk = Desk::new().file("s.wrl", approach());
+    let run = desk.run("check s.wrl --fps 4 --json -");
+    // They touch at the very end, which is included.
+    assert_eq!((colliding(&run), run.json()["frames"].as_array().unwrap().len()), (vec![8], 9));
+    let run = desk.run("check s.wrl --fps 4 --to 1.75 --json -");
+    run.assert_status(0);
+    assert_eq!(run.json()["frames"].as_array().unwrap().len(), 8);
+    let info = desk.run("info s.wrl").stdout;
+    assert!(info.contains("animation of 2.000 s") && info.contains("solid"), "{info}");
+}
+
+#[test]
+fn smart_response_sees_the_previous_frame() {
+    let run = Desk::new().file("s.wrl", approach()).run("check s.wrl --fps 4 --response smart --json -");
+    let collision = run.json()["frames"][8]["collisions"][0].clone();
+    let normal: Vec<f64> =
+        collision["normal"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    assert!((normal[0] - 1.0).abs() < 1e-9, "from the goal, the second, to the mover: {collision}");
+}
+
+#[test]
+fn placements_replace_the_animation() {
+    let placements = format!("{}0,goal,0,50,0,0,0,0,1\n9,goal,10,0,0,0,0,0,1\n", harness::HEADER);
+    let desk = Desk::new().file("s.wrl", approach()).file("p.csv", placements);
+    let run = desk.run("check s.wrl --placements p.csv --json -");
+    assert_eq!(colliding(&run), [9], "the mover stays where it is at time 0");
+}
+
+#[test]
+fn a_deformation_is_seen() {
+    let sheet = "Shape { geometry IndexedFaceSet { coord DEF points Coordinate { point [9 0 0, 9 1 0, 9 0 1] } \
+                 coordIndex [0 1 2 -1] } }\n";
+    let moved =
+        drive("CoordinateInterpolator", "9 0 0, 9 1 0, 9 0 1, 0 0 0, 9 1 0, 9 0 1", "points.set_point");
+    let text = format!("{VRML}{}DEF sheet Transform {{ children {sheet} }}\n{moved}", block("goal", ""));
+    let run = Desk::new().file("s.wrl", text).run("check s.wrl --fps 4 --json -");
+    assert_eq!(run.status, 1, "{run:?}");
+    // The corner is at 9 - 4.5 t, so it reaches 1 after 1.78 s.
+    assert_eq!(colliding(&run), [8]);
+}
+
+/// A triangle under a node, which holds a node with the same triangle.
+const NESTED: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"name":"hull","mesh":0,"children":[1]},{"name":"turret","mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+#[test]
+fn nodes_on_one_root_path_are_not_tested_unless_a_rule_says_so() {
+    let pair = |a: &str, b: &str| format!("[[pair]]\na = \"{a}\"\nb = \"{b}\"\nresponse = \"simple\"\n");
+    let object = "[[object]]\nname = \"*\"\nresponse = \"simple\"\n";
+    let desk = Desk::new().file("s.gltf", NESTED).file("object.toml", object);
+    let desk = desk.file("pair.toml", pair("tur*", "hull")).file("all.toml", pair("*", "*"));
+    let run = desk.run("check s.gltf --json -");
+    run.assert_status(0);
+    assert_eq!(run.json()["objects"].as_array().unwrap().len(), 2);
+    desk.run("check s.gltf --rules object.toml").assert_status(0);
+    desk.run("check s.gltf --rules pair.toml").assert_status(1);
+    desk.run("check s.gltf --rules all.toml").assert_status(1);
+    let twice = desk.run("check s.gltf s.gltf --json -").json();
+    assert_eq!(twice["summary"]["pairs"], 4, "files are apart");
+}
+
+#[test]
+fn a_placement_that_becomes_singular_stops_the_check() {
+    let scale = drive("PositionInterpolator", "1 1 1, 1 0 1", "mover.set_scale");
+    let text = format!("{VRML}{}{}{scale}", block("mover", "translation 9 0 0"), block("goal", ""));
+    let desk = Desk::new().file("s.wrl", text).file("a.obj", BOX);
+    desk.run("check a.obj s.wrl --fps 4").assert_fails(&["s.wrl: ", "\"mover\"", "2.000 s", "singular"]);
+    desk.run("check a.obj s.wrl --fps 4 --to 1.75").assert_status(1);
+}
+
+#[test]
+fn an_animation_can_be_chosen() {
+    let Some(data) = data() else {
+        return;
+    };
+    let fox = data.join("gltf").join("Fox.glb");
+    let run = |animation: &str| {
+        let desk = Desk::new();
+        let mut command = desk.command("info");
+        Run::of(command.args(["--animation", animation]).arg(&fox).output().unwrap())
+    };
+    assert_eq!(run("Walk").assert_status(0).stdout, run("1").stdout);
+    assert_ne!(run("Walk").stdout, run("0").stdout);
+    run("Fly").assert_fails(&["Fox.glb", "Fly"]);
+}

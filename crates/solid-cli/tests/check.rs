@@ -1,0 +1,257 @@
+//! `solid check`, from the outside.
+
+#![allow(clippy::unwrap_used, reason = "a test that can't go on shall stop")]
+
+mod harness;
+
+use harness::{Desk, HEADER};
+use serde_json::json;
+
+/// Two boxes, of which `b` comes from the right, enters `a` in frames 2 and 3, and leaves.
+fn passing() -> Desk {
+    let rows: String = [5.0, 3.0, 1.5, -1.5, -3.0]
+        .iter()
+        .enumerate()
+        .map(|(frame, x)| format!("{frame},b,{x},0,0,0,0,0,1\n"))
+        .collect();
+    Desk::with_boxes().file("p.csv", format!("{HEADER}{rows}"))
+}
+
+#[test]
+fn objects_apart_make_status_0() {
+    let desk = Desk::with_boxes().file("p.csv", format!("{HEADER}0,b,9,0,0,0,0,0,1\n"));
+    let run = desk.run("check a.obj b.obj --placements p.csv");
+    run.assert_status(0);
+    assert!(
+        run.stdout.starts_with("no collisions\n2 objects, 24 triangles, 1 frame, 0 tests, "),
+        "{}",
+        run.stdout
+    );
+    assert_eq!(run.stderr, "");
+}
+
+#[test]
+fn collisions_make_status_1_and_a_table() {
+    let run = passing().run("check a.obj b.obj --placements p.csv --fps 10");
+    run.assert_status(1);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(words(lines[0]), ["a", "b", "first", "[s]", "last", "[s]", "frames", "where"]);
+    assert_eq!(words(lines[1])[..5], ["a", "b", "0.200", "0.300", "2"]);
+    assert!(lines[1].contains('('), "{}", lines[1]);
+    assert_eq!(lines[2..4], ["", "1 pair collides, in 2 of 5 frames"]);
+    assert!(lines[4].starts_with("2 objects, 24 triangles, 5 frames, 2 tests, "), "{}", lines[4]);
+    assert!(run.stdout.is_ascii(), "no rules are drawn into a pipe");
+}
+
+#[test]
+fn json_is_the_documented_format() {
+    let run = passing().run("check a.obj b.obj --placements p.csv --fps 10 --json - --response simple");
+    run.assert_status(1);
+    assert_eq!(run.stderr, "");
+    let clash = json!([{"a": "a", "b": "b", "point": null, "normal": null}]);
+    let expected = json!({
+        "scene": ["a.obj", "b.obj"],
+        "objects": [
+            {"id": 0, "name": "a", "kind": "mesh", "primitives": 12},
+            {"id": 1, "name": "b", "kind": "mesh", "primitives": 12},
+        ],
+        "frames": [
+            {"frame": 0, "time": 0.0, "collisions": []},
+            {"frame": 1, "time": 0.1, "collisions": []},
+            {"frame": 2, "time": 0.2, "collisions": clash},
+            {"frame": 3, "time": 0.3, "collisions": clash},
+            {"frame": 4, "time": 0.4, "collisions": []},
+        ],
+        "summary": {"frames": 5, "colliding_frames": 2, "collisions": 2, "pairs": 1},
+    });
+    assert_eq!(run.json(), expected);
+}
+
+#[test]
+fn witness_has_a_point_and_smart_a_normal_too() {
+    let desk = passing();
+    let collision = |response: &str, frame: usize| {
+        let run = desk.run(&format!("check a.obj b.obj --placements p.csv --json - --response {response}"));
+        run.json()["frames"][frame]["collisions"][0].clone()
+    };
+    let witness = collision("witness", 2);
+    assert!(witness["point"].is_array() && witness["normal"].is_null(), "{witness}");
+    // b was at the right of a, a gap of 1 between them.
+    let smart = collision("smart", 2);
+    assert_eq!(smart["normal"], json!([-1.0, 0.0, 0.0]), "{smart}");
+    assert!((smart["point"][0].as_f64().unwrap() - 1.5).abs() < 1e-9, "{smart}");
+    // They collided in the frame before.
+    assert!(collision("smart", 3)["normal"].is_null());
+}
+
+#[test]
+fn csv_has_a_row_per_collision() {
+    let desk = passing();
+    let run = desk.run("check a.obj b.obj --placements p.csv --fps 10 --csv - --response simple");
+    run.assert_status(1);
+    let expected = "frame,time,a,b,px,py,pz,nx,ny,nz\n2,0.2,a,b,,,,,,\n3,0.3,a,b,,,,,,\n";
+    assert_eq!(run.stdout, expected);
+    desk.run("check a.obj b.obj --placements p.csv --csv out.csv").assert_status(1);
+    let row = desk.read("out.csv").lines().nth(1).unwrap().to_owned();
+    let fields: Vec<&str> = row.split(',').collect();
+    assert!(fields.len() == 10 && fields[4].parse::<f64>().is_ok() && fields[7].is_empty(), "{row}");
+}
+
+#[test]
+fn a_table_and_files_can_be_had_together() {
+    let desk = passing();
+    let run = desk.run("check a.obj b.obj --placements p.csv --json out.json --csv out.csv --stats");
+    run.assert_status(1);
+    assert!(run.stdout.contains("1 pair collides") && run.stdout.contains("\nbox tests"), "{}", run.stdout);
+    serde_json::from_str::<serde_json::Value>(&desk.read("out.json")).unwrap();
+    let piped = desk.run("check a.obj b.obj --placements p.csv --json - --stats");
+    piped.json();
+    assert!(piped.stderr.contains("candidates"), "{}", piped.stderr);
+}
+
+#[test]
+fn output_is_the_same_every_time() {
+    let desk = passing();
+    let run = || desk.run("check a.obj b.obj --placements p.csv --json - --response smart").stdout;
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn a_static_scene_has_one_frame() {
+    let run = Desk::with_boxes().run("check a.obj b.obj --json -");
+    run.assert_status(1);
+    assert_eq!(
+        run.json()["summary"],
+        json!({"frames": 1, "colliding_frames": 1, "collisions": 1, "pairs": 1})
+    );
+}
+
+#[test]
+fn from_and_to_choose_the_frames() {
+    let desk = Desk::with_boxes();
+    let run = desk.run("check a.obj b.obj --from 1 --to 2 --fps 4 --json -");
+    let times: Vec<_> = run.json()["frames"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|frame| frame["time"].as_f64().unwrap())
+        .collect();
+    assert_eq!(times, [1.0, 1.25, 1.5, 1.75, 2.0]);
+    desk.run("check a.obj --from 2 --to 1").assert_fails(&["--from is 2", "at 1"]);
+}
+
+#[test]
+fn split_makes_each_group_an_object() {
+    let desk = Desk::new().file("two.obj", "g left\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng right\nf 3 2 1\n");
+    let names = |run: harness::Run| -> Vec<String> {
+        let objects = run.json()["objects"].as_array().unwrap().clone();
+        objects.iter().map(|object| object["name"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(names(desk.run("check two.obj --json -")).len(), 1);
+    assert_eq!(names(desk.run("check two.obj --split --json -")), ["left", "right"]);
+}
+
+#[test]
+fn one_file_twice_makes_two_objects() {
+    let run = Desk::with_boxes().run("check a.obj a.obj --json -");
+    run.assert_status(1);
+    let json = run.json();
+    assert_eq!((&json["objects"][0]["name"], &json["objects"][1]["name"]), (&json!("a"), &json!("a#2")));
+}
+
+#[test]
+fn usage_errors_make_status_2() {
+    let desk = Desk::with_boxes();
+    for arguments in [
+        "",
+        "check",
+        "chekc a.obj",
+        "check a.obj --fps 0",
+        "check a.obj --fps -3",
+        "check a.obj --fps nan",
+        "check a.obj --fps 1e999",
+        "check a.obj --from -1",
+        "check a.obj --to inf",
+        "check a.obj --response ignore",
+        "check a.obj --placements p.csv --from 1",
+        "check a.obj --json - --csv -",
+        "check a.obj --to 1e9",
+        "check a.obj --to 1e308 --fps 1e308",
+        "info",
+    ] {
+        let run = desk.run(arguments);
+        assert_eq!((run.status, run.stdout.as_str()), (2, ""), "{arguments}: {run:?}");
+        assert!(!run.stderr.is_empty(), "{arguments}");
+    }
+}
+
+#[test]
+fn help_and_version_make_status_0() {
+    let desk = Desk::new();
+    for arguments in ["--help", "--version", "check --help", "info --help", "help check"] {
+        let run = desk.run(arguments);
+        assert_eq!((run.status, run.stderr.as_str()), (0, ""), "{arguments}");
+    }
+    let help = desk.run("check --help").stdout;
+    assert!(help.contains("[[pair]]") && help.contains("frame,object,tx,ty,tz,qx,qy,qz,qw"), "{help}");
+    assert!(help.contains("[default: 30]"), "{help}");
+}
+
+#[test]
+fn bad_scenes_are_named() {
+    let desk = Desk::with_boxes()
+        .file("bad.obj", "v 0 0 0\nv 1 0 x\n")
+        .file("none.xyz", "")
+        .file("binary.obj", [0xff, 0xfe, 0x00, 0x80]);
+    desk.run("check a.obj missing.obj").assert_fails(&["missing.obj"]);
+    desk.run("check bad.obj").assert_fails(&["bad.obj:2", "x"]);
+    desk.run("check none.xyz").assert_fails(&["none.xyz", "expected"]);
+    desk.run("check .").assert_fails(&["."]);
+    let run = desk.run("check binary.obj");
+    assert!(matches!(run.status, 0 | 2), "{run:?}");
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_an_error() {
+    let desk = Desk::with_boxes();
+    desk.run("check a.obj b.obj --json nowhere/out.json").assert_fails(&["nowhere/out.json"]);
+    desk.run("check a.obj b.obj --csv .").assert_fails(&[".: can't be written"]);
+}
+
+#[test]
+fn what_is_read_is_not_overwritten() {
+    let desk = Desk::with_boxes();
+    desk.run("check a.obj b.obj --json b.obj").assert_fails(&["b.obj", "overwritten"]);
+    desk.run("check a.obj b.obj --csv ./a.obj").assert_fails(&["a.obj", "overwritten"]);
+    desk.run("check a.obj --json same --csv same").assert_fails(&["same", "different"]);
+    desk.run("check a.obj b.obj").assert_status(1);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error() {
+    let desk = Desk::with_boxes();
+    desk.run("check a.obj b.obj --json /dev/full").assert_fails(&["/dev/full: "]);
+    desk.run("check a.obj b.obj --csv /dev/full").assert_fails(&["/dev/full: "]);
+    let full = std::fs::File::create("/dev/full").unwrap();
+    let output = desk.command("check a.obj b.obj").stdout(full).output().unwrap();
+    harness::Run::of(output).assert_fails(&["standard output: "]);
+}
+
+#[test]
+fn a_reader_that_leaves_is_no_error() {
+    let desk = Desk::with_boxes();
+    for format in ["--json", "--csv"] {
+        let mut child = desk.command(&format!("check a.obj b.obj --to 200 {format} -")).spawn().unwrap();
+        drop(child.stdout.take());
+        let run = harness::Run::of(child.wait_with_output().unwrap());
+        assert_eq!((run.status, run.stderr.as_str()), (1, ""), "{format}");
+    }
+    for arguments in ["check a.obj b.obj", "info a.obj", "--help"] {
+        let mut child = desk.command(arguments).spawn().unwrap();
+        drop(child.stdout.take());
+        drop(child.stderr.take());
+        assert!(child.wait().unwrap().code().is_some_and(|status| status < 2), "{arguments}");
+    }
+}

@@ -1,0 +1,30 @@
+//! `solid info`, from the outside.
+
+mod harness;
+
+use harness::{BOX, Desk};
+
+fn row(stdout: &str, name: &str) -> String {
+    let line = stdout.lines().find(|line| line.split_whitespace().next() == Some(name));
+    let words: Vec<_> = line.unwrap_or_else(|| panic!("no {name} in {stdout}")).split_whitespace().collect();
+    words.join(" ")
+}
+
+#[test]
+fn objects_are_listed_with_what_they_are() {
+    let open: String = BOX.lines().take(13).map(|line| format!("{line}\n")).collect();
+    let desk =
+        Desk::with_boxes().file("open.obj", open).file("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    let run = desk.run("info a.obj open.obj flat.obj");
+    run.assert_status(0);
+    assert_eq!(row(&run.stdout, "a"), "a mesh 12 yes 0 a.obj");
+    assert_eq!(row(&run.stdout, "open"), "open mesh 10 no, 4 open edges 0 open.obj");
+    assert_eq!(row(&run.stdout, "flat"), "flat mesh 1 no, 3 open edges 1 flat.obj");
+    assert_eq!(row(&run.stdout, "a.obj"), "a.obj unspecified 1");
+    assert!(run.stdout.contains("3 objects, 23 triangles, no animation\n"), "{}", run.stdout);
+}
+
+#[test]
+fn bad_files_make_status_2() {
+    Desk::new().run("info missing.obj").assert_fails(&["missing.obj"]);
+}

@@ -1,0 +1,183 @@
+//! Files that mean harm: an error or a scene, never a panic or a hang.
+
+use std::time::{Duration, Instant};
+
+use proptest::prelude::*;
+
+use crate::files::{Folder, error, load, load_file, scene, warnings};
+
+/// A file with some of everything.
+const EVERYTHING: &str = r#"#VRML V2.0 utf8
+# A comment with { brackets [ and "quotes".
+PROTO P [ field SFVec3f size 1 1 1 exposedField MFNode children [] eventIn SFFloat in ] {
+  DEF T Transform { children [ Shape { geometry Box { size IS size } } Group { children IS children } ] }
+  DEF I PositionInterpolator { set_fraction IS in key [ 0, 1 ] keyValue [ 0 0 0, 1 2 3 ] }
+  ROUTE I.value_changed TO T.set_translation
+}
+DEF A P { size 1 2 3 children DEF S Shape { appearance Appearance { texture PixelTexture { image 1 1 3 0xFF00FF } }
+  geometry IndexedFaceSet { convex FALSE coord DEF C Coordinate { point [ 0 0 0, 2 0 0, .5 .5 0, 0 2 0 ] }
+    coordIndex [ 0 1 2 3 -1 0 1 2 ] } } }
+Transform { rotation 0 1 0 1e-1 scale 1 -2 3 children [ USE S, Switch { whichChoice 0 choice USE S } ] }
+DEF Clock TimeSensor { cycleInterval 2.5 loop TRUE }
+DEF D CoordinateInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 2 0 0, .5 .5 0, 0 2 0, 0 0 1, 2 0 1, .5 .5 1, 0 2 1 ] }
+ROUTE Clock.fraction_changed TO D.set_fraction ROUTE D.value_changed TO C.set_point
+ROUTE Clock.fraction_changed TO A.in
+Shape { geometry Extrusion { spine [ 0 0 0, 1 0 0, 1 1 0, 0 0 0 ] scale [ 1 1, 2 2, 1 1, 1 1 ] } }
+Shape { geometry ElevationGrid { xDimension 2 zDimension 2 height [ 0 1 2 -3e-1 ] } }
+Inline { url [ "gone.wrl" "\"\\" ] } WorldInfo { info [ "é" ] }
+"#;
+
+fn load_bytes(bytes: &[u8]) -> bool {
+    load_file(&Folder::new().write_bytes("a.wrl", bytes)).is_ok()
+}
+
+#[test]
+fn a_file_cut_anywhere_does_not_panic() {
+    let folder = Folder::new();
+    let whole = load_file(&folder.write_bytes("a.wrl", EVERYTHING.as_bytes())).expect("it loads");
+    assert_eq!(whole.objects().len(), 6);
+    let loaded = (0..EVERYTHING.len())
+        .filter(|&end| load_file(&folder.write_bytes("a.wrl", &EVERYTHING.as_bytes()[..end])).is_ok());
+    let loaded = loaded.count();
+    assert!(loaded > 20 && loaded < EVERYTHING.len() / 4, "{loaded} cuts are between statements");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn bytes_that_are_changed_do_not_panic(changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)) {
+        let mut bytes = EVERYTHING.as_bytes().to_vec();
+        for (at, byte) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        load_bytes(&bytes);
+    }
+
+    #[test]
+    fn words_that_are_shuffled_do_not_panic(picks in prop::collection::vec(any::<prop::sample::Index>(), 0..60)) {
+        let words: Vec<&str> = EVERYTHING.split_whitespace().skip(2).collect();
+        let text: Vec<&str> = picks.iter().map(|pick| *pick.get(&words)).collect();
+        let _ = load(&text.join(" "));
+    }
+
+    #[test]
+    fn words_that_are_exchanged_do_not_panic(from in any::<prop::sample::Index>(), to in any::<prop::sample::Index>()) {
+        let mut words: Vec<&str> = EVERYTHING.split(' ').collect();
+        let word = *from.get(&words);
+        let at = to.index(words.len());
+        words[at] = word;
+        load_bytes(words.join(" ").as_bytes());
+    }
+}
+
+#[track_caller]
+fn refused(text: &str, part: &str) {
+    let start = Instant::now();
+    let (_, message) = error(text);
+    assert!(message.contains(part), "{message}");
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+}
+
+#[test]
+fn a_node_inside_of_itself_is_an_error() {
+    refused("DEF A Group { children USE A }", "Group A: holds itself, by way of USE");
+    refused("DEF A Group { children Transform { children [ Group {} USE A ] } }", "holds itself");
+}
+
+#[test]
+fn deep_nesting_is_an_error() {
+    let text = |depth: usize| format!("{}{}", "Group { children [ ".repeat(depth), "] }".repeat(depth));
+    assert!(load(&text(128)).is_ok());
+    refused(&text(129), "brackets nest deeper than 256");
+    refused(&"[".repeat(1_000_000), "brackets nest deeper than 256");
+    let uses = |i: usize| format!("DEF G{} Group {{ children USE G{i} }}\n", i + 1);
+    let chain: String = (0..1000).map(uses).collect();
+    refused(&format!("DEF G0 Group {{}} {chain}"), "nodes nest deeper than 512");
+}
+
+#[test]
+fn use_by_the_billion_is_an_error() {
+    let level =
+        |i: usize| format!("DEF G{} Group {{ children [ {} ] }}\n", i + 1, format!("USE G{i} ").repeat(10));
+    let levels: String = (0..12).map(level).collect();
+    refused(&format!("DEF G0 Shape {{ geometry Box {{}} }} {levels}"), "more than 1000000 nodes");
+}
+
+#[test]
+fn protos_by_the_billion_are_an_error() {
+    let level = |i: usize| {
+        format!("PROTO P{} [] {{ Group {{ children [ {} ] }} }}\n", i + 1, format!("P{i} {{}} ").repeat(10))
+    };
+    let levels: String = (0..12).map(level).collect();
+    refused(&format!("PROTO P0 [] {{ Group {{}} }} {levels} P12 {{}}"), "more than 1000000 nodes");
+}
+
+#[test]
+fn routes_by_the_billion_are_an_error() {
+    let level = |i: usize| {
+        let inner = format!("P{i} {{ at IS at }} ").repeat(10);
+        format!("PROTO P{} [ eventIn SFVec3f at ] {{ Group {{ children [ {inner} ] }} }}\n", i + 1)
+    };
+    let levels: String = (0..5).map(level).collect();
+    let base = "PROTO P0 [ eventIn SFVec3f at ] { Transform { translation IS at } }";
+    refused(
+        &format!(
+            "{base} {levels} DEF P P5 {{}} DEF I PositionInterpolator {{}} ROUTE I.value_changed TO P.at"
+        ),
+        "stands for more than",
+    );
+}
+
+#[test]
+fn an_extrusion_of_too_many_points_is_an_error() {
+    let section = "0 0 1 0 1 1 ".repeat(2_000);
+    let spine = "0 0 0 1 0 0 1 1 0 ".repeat(2_000);
+    refused(
+        &format!("Shape {{ geometry Extrusion {{ crossSection [ {section} ] spine [ {spine} ] }} }}"),
+        "more than 16000000 vertices",
+    );
+}
+
+#[test]
+fn a_face_of_too_many_corners_is_a_fan_with_a_warning() {
+    let corners = "0 1 2 3 ".repeat(10_000);
+    let points = "coord Coordinate { point [ 0 0 0, 2 0 0, .5 .5 0, 0 2 0 ] }";
+    let scene =
+        scene(&format!("Shape {{ geometry IndexedFaceSet {{ {points} coordIndex [ {corners} ] }} }}"));
+    assert_eq!(scene.objects()[0].shape().primitive_count(), 39_998);
+    assert_eq!(warnings(&scene), ["IndexedFaceSet: a face of more than 10000 corners is taken as convex"]);
+}
+
+#[test]
+fn what_would_be_slow_to_parse_is_an_error() {
+    refused(&"ROUTE a.b TO c.d\n".repeat(30_000), "more than 20000 ROUTEs");
+    refused(&"Group{}".repeat(300_000), "more than 200000 nodes");
+    refused(&"DEF A Group{}".repeat(30_000), "more than 20000 names given again by DEF");
+    refused(&format!("Script {{ {} }}", "field SFBool a TRUE ".repeat(30_000)), "more than 20000 declared");
+    let lookalikes: String = (0..2_000).map(|i| format!("USEa{i} ")).collect();
+    refused(&lookalikes, "names that begin with USE");
+    assert!(load(&"#/* \n".repeat(300_000)).is_ok());
+}
+
+/// What the limits let through at most.
+#[test]
+fn what_is_just_within_the_limits_is_read_in_time() {
+    let worst = [
+        "DEF A Group{}".repeat(20_000) + &"Group{}".repeat(179_000),
+        format!("DEF A Transform{{}} {}", "ROUTE A.scale TO A.scale ".repeat(19_000)),
+        format!(
+            "Script {{ {} }}",
+            (0..19_000).map(|i| format!("field SFBool a{i} TRUE ")).collect::<String>()
+        ),
+        (0..19_000).map(|i| format!("DEF A{i} Transform {{}} ")).collect::<String>()
+            + &(1..19_000).map(|i| format!("ROUTE A0.scale TO A{i}.scale ")).collect::<String>(),
+    ];
+    for text in worst {
+        let start = Instant::now();
+        assert!(load(&text).is_ok());
+        println!("{:?} for {}...", start.elapsed(), &text[..30]);
+        assert!(start.elapsed() < Duration::from_secs(30));
+    }
+}
