@@ -54,13 +54,27 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
+    descend_within(difference, goal, ITERATIONS_MAX)
+}
+
+/// Runs a descent of at most so many iterations. One that has to stop is undecided, whatever the objects do: it claims
+/// neither separation nor intersection without the evidence.
+pub(super) fn descend_within<A, B>(
+    difference: &Difference<A, B>,
+    goal: Goal,
+    iterations_max: usize,
+) -> Descent
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
     // v: the point of conv(W) closest to the origin; w: a support point of A - B against v; W: `simplex`;
     // mu: the greatest lower bound of the distance so far.
     let mut simplex = Simplex::new();
     let mut v = difference.initial_direction();
     let mut mu = 0.0;
     let mut refinements = 0;
-    for _ in 0..ITERATIONS_MAX {
+    for _ in 0..iterations_max {
         let p = difference.support_against(v);
         if goal.reached(v, &p, &mut mu, !simplex.points().is_empty()) {
             return Descent { end: End::Separated, v, simplex: first_or(simplex, p) };

@@ -14,6 +14,8 @@
 mod descent;
 mod distance;
 mod intersection;
+#[cfg(test)]
+mod tests;
 
 pub use distance::{Closest, closest_points};
 pub use intersection::{Outcome, Witness, intersection, separates};
