@@ -13,7 +13,7 @@ pub const BALL_CENTRE: DVec3 = DVec3::new(0.0, 0.52, 0.0);
 pub const TABLE_RADIUS: f64 = 1.5;
 
 /// Where the middle of the cloth is at first: off the axis, so that it does not fall like a flower.
-const START: DVec3 = DVec3::new(0.09, 1.2, -0.06);
+const START: DVec3 = DVec3::new(0.025, 1.2, -0.015);
 
 /// How deep the vertices sink into ball and table: the solver of this scene is a little off.
 const SINK: f64 = 0.004;
@@ -24,13 +24,17 @@ const GRAVITY: f64 = 9.81;
 /// What is left of a velocity after a step.
 const DRAG: f64 = 0.992;
 /// What is left of the movement along a surface that a vertex touches.
-const SLIP: f64 = 0.6;
+const SLIP: f64 = 0.25;
+/// Strengths of the links across the cells, and of those against folding.
+const SHEAR: f64 = 0.1;
+const BEND: f64 = 0.003;
 
-/// Two vertices, and how far apart they want to be.
+/// Two vertices, how far apart they want to be, and how much: from 0 to 1.
 struct Link {
     a: usize,
     b: usize,
     length: f64,
+    strength: f64,
 }
 
 /// The vertices of the cloth at given times, in seconds, ascending.
@@ -54,11 +58,13 @@ fn links(vertices: &[DVec3]) -> Vec<Link> {
     let side = usize::from(CELLS) + 1;
     let mut links = Vec::new();
     for (i, j) in (0..side * side).map(|v| (v % side, v / side)) {
-        for (di, dj) in [(1, 0), (0, 1), (1, 1), (-1, 1), (2, 0), (0, 2)] {
+        for (di, dj, strength) in
+            [(1, 0, 1.0), (0, 1, 1.0), (1, 1, SHEAR), (-1, 1, SHEAR), (2, 0, BEND), (0, 2, BEND)]
+        {
             let (Some(k), l) = (i.checked_add_signed(di), j + dj) else { continue };
             if k < side && l < side {
                 let (a, b) = (i + j * side, k + l * side);
-                links.push(Link { a, b, length: (vertices[a] - vertices[b]).length() });
+                links.push(Link { a, b, length: (vertices[a] - vertices[b]).length(), strength });
             }
         }
     }
@@ -73,11 +79,11 @@ fn advance(now: &mut [DVec3], before: &mut [DVec3], links: &[Link]) {
         *now += velocity * dt;
     }
     for _ in 0..ITERATIONS {
-        for &Link { a, b, length } in links {
+        for &Link { a, b, length, strength } in links {
             let between = now[b] - now[a];
             let apart = between.length();
             // Two cells may come closer, one may not.
-            let shift = 0.5 * between * (1.0 - length / apart);
+            let shift = 0.5 * strength * between * (1.0 - length / apart);
             now[a] += shift;
             now[b] -= shift;
         }

@@ -52,7 +52,7 @@ fn beam(file: &mut Gltf) {
     for (joint, &node) in joints.iter().enumerate() {
         let curve = if joint % 2 == 0 { Curve::Linear } else { Curve::Eased };
         let bend = |angle: f64| DQuat::from_rotation_z(angle.to_radians()).to_array();
-        let values = &[0.0, -10.0, -4.0, 0.0].map(bend);
+        let values = &[0.0, -5.5, -2.0, 0.0].map(bend);
         file.animate(node, "rotation", &Keys { curve, times: &[0.0, 1.5, 3.0, 4.0], values });
     }
 }
@@ -112,8 +112,11 @@ fn drum(file: &mut Gltf) {
     };
     let mesh = Some(file.mesh(&spike, dark));
     file.root(Node { name: "spike", translation: [0.6, 0.52, 1.2], mesh, ..Node::default() });
-    let frame = [([1.1, 0.04, 0.04], [0.0, 0.0, 0.54]), ([1.1, 0.04, 0.04], [0.0, 0.0, -0.54])].into_iter();
-    let frame = frame.map(|(size, at)| Mesh::cuboid(size, at)).reduce(Mesh::and).unwrap_or_default();
+    let mut frame = Mesh::default();
+    for side in [-0.54, 0.54] {
+        frame = frame.and(Mesh::cuboid([1.12, 0.04, 0.04], [0.0, 0.0, side]));
+        frame = frame.and(Mesh::cuboid([0.04, 0.04, 1.04], [side, 0.0, 0.0]));
+    }
     let mesh = Some(file.mesh(&frame, dark));
     file.root(Node { name: "frame", translation: [0.6, 0.3, 1.2], mesh, ..Node::default() });
 }

@@ -213,7 +213,8 @@ impl Gltf {
     }
 
     fn floats<const N: usize>(&mut self, values: &[[f64; N]], kind: &str, rest: &str) -> usize {
-        let bytes = values.iter().flatten().flat_map(|&x| (round(x, DECIMALS) as f32).to_le_bytes()).collect();
+        let bytes =
+            values.iter().flatten().flat_map(|&x| (round(x, DECIMALS) as f32).to_le_bytes()).collect();
         self.accessor(bytes, FLOAT, kind, values.len(), rest)
     }
 

@@ -13,11 +13,7 @@ use std::path::Path;
 
 /// The files, by name.
 pub fn all() -> [(&'static str, String); 3] {
-    [
-        ("cloth.wrl", cloth::text()),
-        ("deform.gltf", deform::text()),
-        ("robot_cell.gltf", robot_cell::text()),
-    ]
+    [("cloth.wrl", cloth::text()), ("deform.gltf", deform::text()), ("robot_cell.gltf", robot_cell::text())]
 }
 
 /// Writes the files into a folder.
