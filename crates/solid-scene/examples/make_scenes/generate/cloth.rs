@@ -1,6 +1,6 @@
 //! A cloth that falls over a ball, in VRML97: a CoordinateInterpolator deforms it.
 
-use super::cloth_fall::{BALL_CENTRE, BALL_RADIUS, CELLS, TABLE_RADIUS, fall};
+use super::cloth_fall::{BALL_CENTRE, BALL_RADIUS, CELLS, TABLE_RADIUS, TABLE_TOP, fall};
 use super::decimal;
 use super::mesh::Mesh;
 
@@ -21,7 +21,7 @@ const HEAD: &str = r#"#VRML V2.0 utf8
 WorldInfo { title "Cloth" }
 
 Viewpoint {
-  position 0 1.6 4.2
+  position 0 2.3 4.2
   orientation 1 0 0 -0.27
 }
 "#;
@@ -43,7 +43,7 @@ pub fn text() -> String {
     format!(
         r#"{HEAD}
 DEF table Transform {{
-  translation 0 -0.05 0
+  translation 0 {table} 0
   children Shape {{
     appearance Appearance {{ material Material {{ diffuseColor 0.5 0.35 0.2 }} }}
     geometry Cylinder {{ radius {TABLE_RADIUS} height 0.1 }}
@@ -89,6 +89,7 @@ ROUTE CLOCK.fraction_changed TO THERE_AND_BACK.set_fraction
 ROUTE THERE_AND_BACK.value_changed TO FALL.set_fraction
 ROUTE FALL.value_changed TO WEAVE.set_point
 "#,
+        table = decimal::text(TABLE_TOP - 0.05, 3),
         centre = point(&BALL_CENTRE),
         start = rows(&keys[0]),
         faces = faces.collect::<String>(),

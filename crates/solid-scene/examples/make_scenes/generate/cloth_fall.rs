@@ -9,11 +9,12 @@ use super::mesh::Mesh;
 pub const CELLS: u16 = 12;
 
 pub const BALL_RADIUS: f64 = 0.5;
-pub const BALL_CENTRE: DVec3 = DVec3::new(0.0, 0.52, 0.0);
+pub const BALL_CENTRE: DVec3 = DVec3::new(0.0, TABLE_TOP + 0.52, 0.0);
 pub const TABLE_RADIUS: f64 = 1.5;
+pub const TABLE_TOP: f64 = 0.7;
 
 /// Where the middle of the cloth is at first: off the axis, so that it does not fall like a flower.
-const START: DVec3 = DVec3::new(0.025, 1.2, -0.015);
+const START: DVec3 = DVec3::new(0.025, TABLE_TOP + 1.2, -0.015);
 
 /// How deep the vertices sink into ball and table: the solver of this scene is a little off.
 const SINK: f64 = 0.004;
@@ -101,8 +102,9 @@ fn outside(point: DVec3, before: DVec3) -> DVec3 {
     if distance < BALL_RADIUS - SINK {
         point = slowed(BALL_CENTRE + from_centre / distance * (BALL_RADIUS - SINK), before);
     }
-    if point.y < -SINK && point.x * point.x + point.z * point.z < TABLE_RADIUS * TABLE_RADIUS {
-        point = slowed(DVec3::new(point.x, -SINK, point.z), before);
+    let over_table = point.x * point.x + point.z * point.z < TABLE_RADIUS * TABLE_RADIUS;
+    if over_table && point.y < TABLE_TOP - SINK {
+        point = slowed(DVec3::new(point.x, TABLE_TOP - SINK, point.z), before);
     }
     point
 }
