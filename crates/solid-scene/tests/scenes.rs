@@ -1,5 +1,7 @@
 //! The example scenes of the project: they are as generated, and collide as `scenes/README.md` says.
 
+#![allow(clippy::unwrap_used, reason = "a test that can't go on shall stop")]
+
 #[path = "../examples/make_scenes/generate/mod.rs"]
 mod generate;
 
@@ -80,6 +82,14 @@ fn generated_scenes_are_as_generated() {
     for (name, text) in generate::all() {
         let [written, shipped] = [&fresh, &folder()].map(|folder| std::fs::read(folder.join(name)).unwrap());
         assert!(written == text.as_bytes() && written == shipped, "{name} differs; run make_scenes");
+    }
+}
+
+#[test]
+fn gltf_scenes_are_valid() {
+    for name in ["robot_cell.gltf", "deform.gltf"] {
+        // Opening validates.
+        gltf::Gltf::open(folder().join(name)).unwrap();
     }
 }
 

@@ -24,8 +24,8 @@ const ITERATIONS: usize = 24;
 const GRAVITY: f64 = 9.81;
 /// What is left of a velocity after a step.
 const DRAG: f64 = 0.992;
-/// What is left of the movement along a surface that a vertex touches.
-const SLIP: f64 = 0.25;
+/// What each iteration leaves of the movement of a vertex that touches something.
+const SLIP: f64 = 0.97;
 /// Strengths of the links across the cells, and of those against folding.
 const SHEAR: f64 = 0.1;
 const BEND: f64 = 0.003;
@@ -100,17 +100,11 @@ fn outside(point: DVec3, before: DVec3) -> DVec3 {
     let from_centre = point - BALL_CENTRE;
     let distance = from_centre.length();
     if distance < BALL_RADIUS - SINK {
-        point = slowed(BALL_CENTRE + from_centre / distance * (BALL_RADIUS - SINK), before);
+        point = before.lerp(BALL_CENTRE + from_centre / distance * (BALL_RADIUS - SINK), SLIP);
     }
     let over_table = point.x * point.x + point.z * point.z < TABLE_RADIUS * TABLE_RADIUS;
     if over_table && point.y < TABLE_TOP - SINK {
-        point = slowed(DVec3::new(point.x, TABLE_TOP - SINK, point.z), before);
+        point = before.lerp(DVec3::new(point.x, TABLE_TOP - SINK, point.z), SLIP);
     }
     point
-}
-
-/// With less of its movement in this iteration.
-fn slowed(point: DVec3, before: DVec3) -> DVec3 {
-    let slip = SLIP + (1.0 - SLIP) * (1.0 - 1.0 / ITERATIONS as f64);
-    before + slip * (point - before)
 }

@@ -1,9 +1,9 @@
 //! What deforms in glTF: a beam with a skin, which bends down onto a block, and a drumskin with morph targets, which
 //! bulges up to a spike.
 
-use glam::{DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 
-use super::gltf::{Curve, Gltf, Keys, Node};
+use super::gltf::{Curve, Gltf, Influence, Keys, Node};
 use super::mesh::Mesh;
 
 /// Joints of the beam, and how far apart they are.
@@ -58,7 +58,7 @@ fn beam(file: &mut Gltf) {
 }
 
 /// A beam along x in 12 sections, of which each vertex follows the two joints that it is between.
-fn beam_mesh() -> (Mesh, Vec<([u8; 4], [f64; 4])>) {
+fn beam_mesh() -> (Mesh, Vec<Influence>) {
     const SECTIONS: u16 = 12;
     let length = JOINT_LENGTH * f64::from(JOINTS);
     let (mut mesh, mut influences) = (Mesh::default(), Vec::new());
@@ -85,7 +85,7 @@ fn beam_mesh() -> (Mesh, Vec<([u8; 4], [f64; 4])>) {
 
 fn drum(file: &mut Gltf) {
     let (red, dark) = (file.material([0.8, 0.25, 0.2]), file.material([0.25, 0.25, 0.3]));
-    let skin = Mesh::grid(CELLS).placed(glam::DAffine3::from_scale(DVec3::new(0.5, 1.0, 0.5)));
+    let skin = Mesh::grid(CELLS).placed(DAffine3::from_scale(DVec3::new(0.5, 1.0, 0.5)));
     let form = |height: fn(f64, f64) -> f64| {
         skin.vertices.iter().map(|v| DVec3::new(0.0, height(2.0 * v.x, 2.0 * v.z), 0.0)).collect()
     };

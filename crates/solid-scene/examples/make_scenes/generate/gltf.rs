@@ -29,6 +29,9 @@ pub struct Gltf {
     channels: Vec<String>,
 }
 
+/// The joints of a skin that a vertex follows, and how much each.
+pub type Influence = ([u8; 4], [f64; 4]);
+
 /// A node; what is left out is not written.
 #[derive(Default)]
 pub struct Node<'a> {
@@ -83,12 +86,7 @@ impl Gltf {
     }
 
     /// A mesh whose vertices follow joints of a skin, each up to four.
-    pub fn skinned_mesh(
-        &mut self,
-        mesh: &Mesh,
-        material: usize,
-        influences: &[([u8; 4], [f64; 4])],
-    ) -> usize {
+    pub fn skinned_mesh(&mut self, mesh: &Mesh, material: usize, influences: &[Influence]) -> usize {
         let joints = influences.iter().flat_map(|(joints, _)| *joints).collect();
         let joints = self.accessor(joints, UNSIGNED_BYTE, "VEC4", influences.len(), "");
         let weights: Vec<[f64; 4]> = influences.iter().map(|(_, weights)| *weights).collect();
