@@ -115,7 +115,7 @@ fn drum(file: &mut Gltf) {
     let mut frame = Mesh::default();
     for side in [-0.54, 0.54] {
         frame = frame.and(Mesh::cuboid([1.12, 0.04, 0.04], [0.0, 0.0, side]));
-        frame = frame.and(Mesh::cuboid([0.04, 0.04, 1.04], [side, 0.0, 0.0]));
+        frame = frame.and(Mesh::cuboid([0.04, 0.04, 1.06], [side, 0.0, 0.0]));
     }
     let mesh = Some(file.mesh(&frame, dark));
     file.root(Node { name: "frame", translation: [0.6, 0.3, 1.2], mesh, ..Node::default() });
