@@ -1,7 +1,7 @@
 //! What can be wrong with what the caller gave.
 
 use glam::DVec3;
-use solid_convex::{MAGNITUDE_MAX, SizeError};
+use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError};
 
 use crate::world::ObjectId;
 
@@ -86,7 +86,8 @@ pub enum Error {
     },
     /// A placement flattens space.
     #[error(
-        "placement is singular (its axes {x}, {y}, {z} lie in a plane); every axis needs a direction of its own"
+        "placement is singular: its axes are {x}, {y}, {z}; each needs a direction of its own, out of the plane of the \
+         others, and a length of at least {MAGNITUDE_MIN:e}"
     )]
     SingularPlacement {
         /// The image of the axis x.
