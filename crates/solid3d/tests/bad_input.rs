@@ -245,6 +245,24 @@ fn a_refused_call_leaves_the_world_as_an_untouched_twin() {
     }
 }
 
+/// Distances whose squares overflow, of shapes under placements as wild as they come.
+#[test]
+fn distances_near_the_limits_are_finite() {
+    let spot = Shape::mesh([DVec3::ZERO], [[0; 3]]).unwrap();
+    let far = Shape::convex_hull(&[DVec3::Z * -1e60]).unwrap();
+    let far_mesh = Shape::mesh([DVec3::Z * -1e60], [[0; 3]]).unwrap();
+    let wild = DAffine3 {
+        matrix3: DMat3::from_cols(DVec3::Z * -0.6, DVec3::new(0.0, 3e-14, 3e-309), DVec3::X * 1e100),
+        translation: DVec3::ZERO,
+    };
+    for far in [far, far_mesh] {
+        let found = query::distance(&spot, &DAffine3::IDENTITY, &far, &wild).unwrap();
+        assert!((found.distance / 1e160 - 1.0).abs() < 1e-12, "{found:?}");
+        let found = query::distance(&far, &wild, &spot, &DAffine3::IDENTITY).unwrap();
+        assert!((found.distance / 1e160 - 1.0).abs() < 1e-12, "{found:?}");
+    }
+}
+
 /// Any bits, any number that a coordinate may be, or one that tests like.
 fn wild() -> impl Strategy<Value = f64> {
     let in_range = |bits: u64| {
@@ -313,7 +331,7 @@ fn size_of(shape: &Shape, at: &DAffine3) -> f64 {
 const TIME_MAX: Duration = Duration::from_secs(5);
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 30_000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 60_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn wild_shapes_and_placements_neither_panic_nor_hang(
