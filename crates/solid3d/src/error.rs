@@ -54,13 +54,15 @@ pub enum Error {
         /// How many it needs.
         least: usize,
     },
-    /// More vertices, primitives or indices than 32-bit numbers can name.
-    #[error("{argument} has {count} elements; the limit is {}", u32::MAX)]
+    /// More vertices, primitives, indices or objects than there are numbers for.
+    #[error("{argument} has {count} elements; the limit is {limit}")]
     TooMany {
         /// The argument's name.
         argument: &'static str,
         /// How many it has.
         count: usize,
+        /// How many it may have.
+        limit: usize,
     },
     /// A deformation with another number of vertices than the shape has.
     #[error("positions has {count} elements, but the shape has {expected} vertices")]

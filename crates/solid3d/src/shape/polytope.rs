@@ -7,6 +7,9 @@ use super::validate;
 use crate::error::{Error, Result};
 use crate::hull::Hull;
 
+/// What [`Hull::of`] takes.
+const POINTS_MAX: usize = (u32::MAX / 8) as usize;
+
 /// A polytope by its vertices. Invariant: at least one, all of them extreme points of the hull.
 #[derive(Debug)]
 pub(crate) struct Polytope {
@@ -18,6 +21,7 @@ pub(crate) struct Polytope {
 impl Polytope {
     pub fn new(points: &[DVec3]) -> Result<Self> {
         validate::vertex_count("points", points.len())?;
+        validate::at_most(POINTS_MAX, "points", points.len())?;
         validate::vertices(points)?;
         let hull = Hull::of(points).ok_or(Error::NoVertices { argument: "points" })?;
         let vertices: Vec<DVec3> = hull.vertices().iter().map(|&index| points[index as usize]).collect();
