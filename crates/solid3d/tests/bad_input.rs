@@ -268,7 +268,11 @@ fn wild() -> impl Strategy<Value = f64> {
     let in_range = |bits: u64| {
         let x = f64::from_bits(bits);
         // The exponents beyond the limit, which are those from 2^332 on, are taken back below it.
-        if x.abs() <= 1e100 { x } else { f64::from_bits(bits & !(0x7ff << 52) | (bits >> 52) % 1355 << 52) }
+        if x.abs() <= 1e100 {
+            x
+        } else {
+            f64::from_bits(bits & !(0x7ff << 52) | (((bits >> 52) % 1355) << 52))
+        }
     };
     let usual = [0.0, -0.0, 1.0, -1.0, 0.5, 1e100, -1e100, 1e-100, 5e-324, 1e-310, f64::MIN_POSITIVE];
     prop_oneof![

@@ -1,5 +1,9 @@
 //! Long animations: worlds in lock step agree to the bit, and with a model that tests every pair.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and prints its seed"
+)]
 
 mod common;
 
@@ -115,8 +119,11 @@ impl Model {
     }
 }
 
+/// The objects, the kind of contact, the numbers.
+type Bits = (ObjectId, ObjectId, u8, Vec<u64>);
+
 /// A collision as bits.
-fn bits(collision: &Collision) -> (ObjectId, ObjectId, u8, Vec<u64>) {
+fn bits(collision: &Collision) -> Bits {
     let of = |points: &[DVec3]| points.iter().flat_map(|p| p.to_array()).map(f64::to_bits).collect();
     let (kind, numbers) = match collision.contact {
         Contact::Simple => (0, Vec::new()),
@@ -129,7 +136,7 @@ fn bits(collision: &Collision) -> (ObjectId, ObjectId, u8, Vec<u64>) {
     (collision.a, collision.b, kind, numbers)
 }
 
-fn all_bits(collisions: &[Collision]) -> Vec<(ObjectId, ObjectId, u8, Vec<u64>)> {
+fn all_bits(collisions: &[Collision]) -> Vec<Bits> {
     collisions.iter().map(bits).collect()
 }
 
@@ -404,7 +411,7 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
 }
 
 /// Runs an animation in one world, as bits of all that it found and the work it did.
-fn animation(seed: u64, frames: usize) -> (Vec<Vec<(ObjectId, ObjectId, u8, Vec<u64>)>>, Statistics) {
+fn animation(seed: u64, frames: usize) -> (Vec<Vec<Bits>>, Statistics) {
     let mut stage = Stage::new(vec![world(BroadPhaseKind::DynamicTree, true)], seed, 9.0);
     for _ in 0..50 {
         stage.add();

@@ -1,9 +1,6 @@
 //! What the integration tests share: random meshes, complex shapes and placements, and the oracle's view of them.
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    reason = "every test file uses a part of it; helpers of tests may panic"
-)]
+#![allow(dead_code, reason = "every test file uses a part of it")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests may panic and print")]
 
 use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
