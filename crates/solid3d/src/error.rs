@@ -1,7 +1,7 @@
 //! What can be wrong with what the caller gave.
 
 use glam::DVec3;
-use solid_convex::{MAGNITUDE_MAX, SizeError};
+use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError};
 
 use crate::world::ObjectId;
 
@@ -54,13 +54,15 @@ pub enum Error {
         /// How many it needs.
         least: usize,
     },
-    /// More vertices, primitives or indices than 32-bit numbers can name.
-    #[error("{argument} has {count} elements; the limit is {}", u32::MAX)]
+    /// More vertices, primitives, indices or objects than there are numbers for.
+    #[error("{argument} has {count} elements; the limit is {limit}")]
     TooMany {
         /// The argument's name.
         argument: &'static str,
         /// How many it has.
         count: usize,
+        /// How many it may have.
+        limit: usize,
     },
     /// A deformation with another number of vertices than the shape has.
     #[error("positions has {count} elements, but the shape has {expected} vertices")]
@@ -86,7 +88,8 @@ pub enum Error {
     },
     /// A placement flattens space.
     #[error(
-        "placement is singular (its axes {x}, {y}, {z} lie in a plane); every axis needs a direction of its own"
+        "placement is singular: its axes are {x}, {y}, {z}; each needs a direction of its own, out of the plane of the \
+         others, and a length of at least {MAGNITUDE_MIN:e}"
     )]
     SingularPlacement {
         /// The image of the axis x.

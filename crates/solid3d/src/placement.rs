@@ -1,13 +1,14 @@
 //! Placements: affine maps from an object's space to the world.
 
 use glam::{DAffine3, DMat3, DVec3};
-use solid_convex::MAGNITUDE_MAX;
+use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN};
 
 use crate::bounds::abs;
 use crate::error::{Error, Result};
 
 /// A placement whose axes, brought to unit length, span less than this volume is singular: the inverse would have no
-/// correct digits left. A uniform or non-uniform scale alone has volume 1, however small it is.
+/// correct digits left. A uniform or non-uniform scale alone has volume 1, however small it is, down to the least size:
+/// the inverse of what is shorter overflows.
 const VOLUME_MIN: f64 = 1e-12;
 
 /// The placement itself when it can be used: finite, in range, and not singular.
@@ -24,10 +25,10 @@ pub(crate) fn checked(placement: &DAffine3) -> Result<&DAffine3> {
     if flat { Err(Error::SingularPlacement { x, y, z }) } else { Ok(placement) }
 }
 
-/// The unit vector along an axis, without overflow or underflow on the way; `None` for the zero vector.
+/// The unit vector along an axis, without overflow or underflow on the way; `None` for one that is too short.
 fn direction(axis: DVec3) -> Option<DVec3> {
     let largest = axis.abs().max_element();
-    (largest > 0.0).then(|| (axis / largest).normalize())
+    (largest >= MAGNITUDE_MIN).then(|| (axis / largest).normalize())
 }
 
 /// The inverse of a checked placement's linear part. Axes of very different length do it no harm.
@@ -63,7 +64,10 @@ mod tests {
     fn flat_and_wild_placements_are_refused() {
         let flat = DAffine3::from_cols(DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0), DVec3::ZERO);
         assert!(matches!(checked(&flat), Err(Error::SingularPlacement { .. })));
-        assert!(matches!(checked(&DAffine3::from_scale(DVec3::ZERO)), Err(Error::SingularPlacement { .. })));
+        for short in [0.0, 5e-324, 9e-101] {
+            let placement = DAffine3::from_scale(DVec3::new(1.0, short, 1.0));
+            assert!(matches!(checked(&placement), Err(Error::SingularPlacement { .. })), "{short}");
+        }
         for bad in [f64::NAN, f64::INFINITY, 1e101] {
             let placement = DAffine3::from_translation(DVec3::new(0.0, bad, 0.0));
             assert!(matches!(checked(&placement), Err(Error::PlacementEntry { .. })));

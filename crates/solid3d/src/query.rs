@@ -6,7 +6,8 @@
 //!
 //! **How exact.** Relative to the size of the data (the sum of the two shapes' extents and of the distance between
 //! their local origins), answers are right beyond 1e-12, at any size: scaling everything by a power of two changes no
-//! answer. Within it, shapes count as touching, and touching shapes intersect. See
+//! answer. Within it, shapes may count as touching, and touching shapes intersect; [`distance`] may then be 0 for shapes
+//! that [`intersects`] keeps apart. See
 //! [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR).
 
 use glam::{DAffine3, DVec3};

@@ -45,6 +45,10 @@ pub(super) const ITERATIONS_MAX: usize = 512;
 /// A step that shortens `v` squared by less than this part of it makes no progress: it is within the rounding error.
 const PROGRESS_MIN: f64 = 4.0 * f64::EPSILON;
 
+/// No step lengthens `v`, but one on slivers may by the rounding error. Beyond this much, squared, rounding hid which part of
+/// the simplex is the closest, and the step is taken back.
+const GROWTH_MAX: f64 = 4.0;
+
 /// How often a descent may restart from a recomputed normal: each time it must find a new support point.
 const REFINEMENTS_MAX: usize = 8;
 
@@ -79,10 +83,9 @@ where
         if goal.reached(v, &p, &mut mu, !simplex.points().is_empty()) {
             return Descent { end: End::Separated, v, simplex: first_or(simplex, p) };
         }
-        let before = matches!(goal, Goal::Distance { .. }).then(|| (simplex.clone(), v));
+        let before = (simplex.clone(), v);
         let mut stalled = simplex.contains(&p);
         if !stalled {
-            let length_squared = if simplex.points().is_empty() { f64::INFINITY } else { v.length_squared() };
             simplex.push(p);
             match simplex.reduce() {
                 Reduced::ContainsOrigin => return Descent { end: End::Inside, v: DVec3::ZERO, simplex },
@@ -91,7 +94,13 @@ where
             if v.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
                 return Descent { end: End::Undecided, v, simplex };
             }
-            stalled = v.length_squared() > length_squared * (1.0 - PROGRESS_MIN);
+            if !before.0.points().is_empty() {
+                let shrunk = v.length_squared() / before.1.length_squared();
+                stalled = shrunk > 1.0 - PROGRESS_MIN;
+                if shrunk > GROWTH_MAX {
+                    (simplex, v) = before.clone();
+                }
+            }
         }
         if stalled {
             match refined(difference, &simplex) {
@@ -100,7 +109,7 @@ where
             }
             refinements += 1;
         }
-        if let Some(before) = before.filter(|_| v.length() < mu - SUPPORT_ERROR) {
+        if v.length() < mu - SUPPORT_ERROR {
             // Nothing of A - B is that near: the simplex is too thin a sliver for its closest point to be computed.
             (simplex, v) = before;
             break;

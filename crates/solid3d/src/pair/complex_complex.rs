@@ -46,6 +46,7 @@ pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch)
     }
     let Frame { relative, common: [from_a, from_b], scale, stretch: [of_a, of_b] } = frame(a, b);
     let Scratch { traversal, leaves: [in_a, in_b], primitive_tests } = scratch;
+    // The best distance so far is kept in the common frame, as the bounds are.
     let (mut best, mut answer) = (f64::INFINITY, None);
     let metric = metric(&of_a, &of_b);
     nearest_pairs(
@@ -60,11 +61,12 @@ pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch)
             place(b.0, leaf_b, &from_b, in_b);
             for x in &*in_a {
                 for y in &*in_b {
-                    if x.bounds.gap(&y.bounds).length() < *best * scale {
+                    if x.bounds.gap(&y.bounds).length() < *best {
                         *primitive_tests += 1;
                         let closest = closest_of(a, x.primitive, b, y.primitive);
-                        if closest.distance < *best {
-                            *best = closest.distance;
+                        let distance = closest.distance * scale;
+                        if distance < *best {
+                            *best = distance;
                             answer = Some(closest);
                         }
                     }

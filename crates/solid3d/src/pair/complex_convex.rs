@@ -40,6 +40,7 @@ pub(super) fn closest(
     let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
     let bound = |node: &Aabb| frame.stretch[0].at_least(node.gap(&query));
     let Scratch { traversal, primitive_tests, .. } = scratch;
+    // The best distance so far is kept in the common frame, as the bounds are.
     let (mut best, mut answer) = (f64::INFINITY, None);
     complex.tree().nearest(bound, &mut best, traversal, |leaf, best| {
         for &primitive in leaf {
@@ -47,8 +48,9 @@ pub(super) fn closest(
                 *primitive_tests += 1;
                 let points = complex.primitive_hull(primitive);
                 let closest = gjk::closest_points(&points, at_complex, convex, at_convex);
-                if closest.distance < *best {
-                    *best = closest.distance;
+                let distance = closest.distance * frame.scale;
+                if distance < *best {
+                    *best = distance;
                     answer = Some(closest);
                 }
             }

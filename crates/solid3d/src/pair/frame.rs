@@ -11,6 +11,9 @@ use crate::tree::Relative;
 /// space: two products with matrices, three translations, and the products that made the matrices.
 const ROUNDINGS: f64 = 64.0 / (1u64 << 53) as f64;
 
+/// Beyond what any shape that matters to the size of the data has; less is as valid a bound, and never infinite.
+const STRETCH_MAX: f64 = 1e200;
+
 /// Two placed spaces `A` and `B`, and how far the shapes in them reach from their origins.
 pub(super) struct Frame {
     /// Takes points of either space to the other.
@@ -20,16 +23,16 @@ pub(super) struct Frame {
     pub common: [DAffine3; 2],
     /// World lengths times this are lengths of the common frame.
     pub scale: f64,
-    /// Bounds on how local distances show in the world, for `A` and `B`.
+    /// Bounds on how local distances show in the common frame, for `A` and `B`.
     pub stretch: [Stretch; 2],
 }
 
-/// How a placement's linear part changes lengths.
+/// How lengths change from a local space to the common frame.
 #[derive(Clone, Copy)]
 pub(super) struct Stretch {
-    /// A slab one local unit thick along each local axis is this thick in the world.
+    /// A slab one local unit thick along each local axis is this thick in the common frame.
     pub facets: DVec3,
-    /// A local distance of one is at least this in the world.
+    /// A local distance of one is at least this in the common frame.
     pub least: f64,
 }
 
@@ -51,7 +54,12 @@ impl Frame {
             DAffine3 { matrix3: at_a.matrix3 * scale, translation: DVec3::ZERO },
             DAffine3 { matrix3: at_b.matrix3 * scale, translation: -a_to_b * scale },
         ];
-        Frame { relative, common, scale, stretch: [Stretch::new(&inverse_a), Stretch::new(&inverse_b)] }
+        Frame {
+            relative,
+            common,
+            scale,
+            stretch: [Stretch::new(&inverse_a, scale), Stretch::new(&inverse_b, scale)],
+        }
     }
 }
 
@@ -62,16 +70,22 @@ fn slack(linear: &DMat3, inverse: &DMat3, size: f64) -> f64 {
 }
 
 impl Stretch {
-    fn new(inverse: &DMat3) -> Stretch {
+    fn new(inverse: &DMat3, scale: f64) -> Stretch {
         // Rows of the inverse are the facet normals; those of its Gram matrix bound its largest singular value.
         let rows = inverse.transpose();
         let facets = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length()).recip();
         let gram = *inverse * rows;
-        Stretch { facets, least: row_norm(&gram).sqrt().recip() }
+        let least = row_norm(&gram).sqrt().recip();
+        Stretch {
+            facets: (facets * scale).min(DVec3::splat(STRETCH_MAX)),
+            least: (least * scale).min(STRETCH_MAX),
+        }
     }
 
-    /// A lower bound of the world length of a displacement whose local coordinates are at least `gap` in magnitude.
+    /// A lower bound of the length, in the common frame, of a displacement whose local coordinates are at least `gap` in
+    /// magnitude.
     pub fn at_least(&self, gap: DVec3) -> f64 {
-        (self.least * gap.length()).max((self.facets * gap).max_element())
+        // In this order, for local and world lengths may be so large or small that their squares are not numbers.
+        (self.least * gap).length().max((self.facets * gap).max_element())
     }
 }

@@ -87,7 +87,7 @@ impl ComplexShapeBuilder {
         }
         validate::vertex_count("vertices", self.vertices.len())?;
         validate::primitive_count("primitives", self.first.len() - 1)?;
-        validate::nameable("indices", self.indices.len())?;
+        validate::at_most(validate::NAMEABLE_MAX, "indices", self.indices.len())?;
         let primitives = Primitives::Mixed { first: self.first, indices: self.indices };
         Ok(Geometry::Complex(Arc::new(Complex::new(self.vertices, primitives)?)).into())
     }

@@ -17,6 +17,9 @@ pub use kind::ShapeKind;
 use crate::error::{Error, Result};
 use crate::hull::Hull;
 
+/// The most points that [`Hull::of`] takes.
+const POINTS_MAX: usize = (u32::MAX / 8) as usize;
+
 /// Geometry in its own space. Cheap to clone: clones share the geometry.
 ///
 /// Shapes are closed sets, so objects that touch collide. A mesh and a complex shape are the union of their primitives:
@@ -93,6 +96,7 @@ impl Shape {
     /// ```
     pub fn convex_hull(points: &[DVec3]) -> Result<Shape> {
         validate::vertex_count("points", points.len())?;
+        validate::at_most(POINTS_MAX, "points", points.len())?;
         validate::vertices(points)?;
         let extreme =
             Hull::of(points).map(|hull| hull.vertices().iter().map(|&i| points[i as usize]).collect());

@@ -4,6 +4,10 @@ use glam::DVec3;
 use solid_convex::MAGNITUDE_MAX;
 
 use crate::error::{Error, Result};
+use crate::tree::PRIMITIVES_MAX;
+
+/// What 32-bit indices can name.
+pub(super) const NAMEABLE_MAX: usize = u32::MAX as usize;
 
 /// Every coordinate finite and in range.
 pub(super) fn vertices(vertices: &[DVec3]) -> Result<()> {
@@ -18,21 +22,21 @@ pub(super) fn vertices(vertices: &[DVec3]) -> Result<()> {
 pub(super) fn vertex_count(argument: &'static str, count: usize) -> Result<()> {
     match count {
         0 => Err(Error::NoVertices { argument }),
-        _ => nameable(argument, count),
+        _ => at_most(NAMEABLE_MAX, argument, count),
     }
 }
 
-/// At least one, and no more than 32-bit indices can name.
+/// At least one, and no more than a tree takes.
 pub(super) fn primitive_count(argument: &'static str, count: usize) -> Result<()> {
     match count {
         0 => Err(Error::NoPrimitives { argument }),
-        _ => nameable(argument, count),
+        _ => at_most(PRIMITIVES_MAX, argument, count),
     }
 }
 
-/// No more elements than 32-bit indices can name.
-pub(super) fn nameable(argument: &'static str, count: usize) -> Result<()> {
-    if count > u32::MAX as usize { Err(Error::TooMany { argument, count }) } else { Ok(()) }
+/// No more elements than that.
+pub(super) fn at_most(limit: usize, argument: &'static str, count: usize) -> Result<()> {
+    if count > limit { Err(Error::TooMany { argument, count, limit }) } else { Ok(()) }
 }
 
 /// Every index of a primitive names a vertex.
@@ -40,5 +44,19 @@ pub(super) fn indices(primitive: usize, indices: &[u32], vertices: usize) -> Res
     match indices.iter().find(|&&index| index as usize >= vertices) {
         Some(&index) => Err(Error::VertexIndex { primitive, index, vertices }),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Too large to be made in a test, so the counts alone are tested.
+    #[test]
+    fn what_a_tree_does_not_take_is_refused() {
+        assert!(primitive_count("triangles", PRIMITIVES_MAX).is_ok());
+        let error = primitive_count("triangles", PRIMITIVES_MAX + 1).unwrap_err();
+        assert_eq!(error.to_string(), "triangles has 268435456 elements; the limit is 268435455");
+        assert!(vertex_count("vertices", NAMEABLE_MAX + 1).is_err());
     }
 }

@@ -107,7 +107,8 @@ impl World {
     pub fn add(&mut self, shape: &Shape, placement: DAffine3) -> Result<ObjectId> {
         placement::checked(&placement)?;
         if self.objects.capacity() > PROXY_MAX as usize && self.objects.len() + 1 >= PROXY_MAX as usize {
-            return Err(Error::TooMany { argument: "objects", count: self.objects.len() + 1 });
+            let (count, limit) = (self.objects.len() + 1, PROXY_MAX as usize - 1);
+            return Err(Error::TooMany { argument: "objects", count, limit });
         }
         let object = Object::new(self.added, shape.clone(), placement);
         let bounds = world_bounds(object.placed());
@@ -126,7 +127,10 @@ impl World {
     /// Removes an object, with the responses set for it and for its pairs.
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         let object = self.objects.remove(id).ok_or(Error::UnknownObject { argument: "object", id })?;
-        self.responses.forget(id, object.pair_partners);
+        self.responses.forget(id, &object.pair_partners);
+        for partner in object.pair_partners {
+            self.objects[partner].pair_partners.retain(|&other| other != id);
+        }
         self.broad.remove(proxy(id));
         self.stale = true;
         Ok(())
@@ -244,4 +248,24 @@ impl World {
 fn proxy(id: ObjectId) -> Proxy {
     // The low half of the bits is the slot, the high half the generation.
     id.data().as_ffi() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Objects that come and go must not leave something behind in those that stay.
+    #[test]
+    fn a_removed_object_leaves_no_partner() -> Result<()> {
+        let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        let stays = world.add(&ball, DAffine3::IDENTITY)?;
+        for _ in 0..10 {
+            let goes = world.add(&ball, DAffine3::IDENTITY)?;
+            world.set_pair_response(stays, goes, Response::Simple)?;
+            assert_eq!(world.objects[stays].pair_partners, [goes]);
+            world.remove(goes)?;
+            assert!(world.objects[stays].pair_partners.is_empty());
+        }
+        Ok(())
+    }
 }

@@ -26,7 +26,7 @@ pub(super) struct Object {
     pub moved: bool,
     /// Whether the previous frame is another.
     pub displaced: bool,
-    /// The objects with which it has a pair response.
+    /// The objects with which it has a pair response; all are in the world.
     pub pair_partners: Vec<ObjectId>,
 }
 

@@ -43,9 +43,9 @@ impl ResponseTable {
     }
 
     /// Drops what was set for an object and for its pairs.
-    pub fn forget(&mut self, id: ObjectId, partners: Vec<ObjectId>) {
+    pub fn forget(&mut self, id: ObjectId, partners: &[ObjectId]) {
         self.objects.remove(id);
-        for partner in partners {
+        for &partner in partners {
             self.pairs.remove(&ordered(id, partner));
         }
     }

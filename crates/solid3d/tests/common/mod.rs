@@ -1,9 +1,6 @@
 //! What the integration tests share: random meshes, complex shapes and placements, and the oracle's view of them.
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    reason = "every test file uses a part of it; helpers of tests may panic"
-)]
+#![allow(dead_code, reason = "every test file uses a part of it")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests may panic and print")]
 
 use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
@@ -184,6 +181,11 @@ pub fn random_complex(rng: &mut StdRng, count: u32) -> Soup {
 
 /// The library's shape for one of the oracle's.
 pub fn shape_of(convex: &Convex) -> Shape {
+    try_shape_of(convex).unwrap()
+}
+
+/// The same; an error where the oracle's has no thickness.
+pub fn try_shape_of(convex: &Convex) -> solid3d::Result<Shape> {
     match convex {
         Convex::Sphere { radius } => Shape::sphere(*radius),
         Convex::Cuboid { half } => Shape::cuboid(2.0 * *half),
@@ -192,7 +194,6 @@ pub fn shape_of(convex: &Convex) -> Shape {
         Convex::Capsule { radius, half_height } => Shape::capsule(*radius, 2.0 * half_height),
         Convex::Hull { points } => Shape::convex_hull(points),
     }
-    .unwrap()
 }
 
 /// Both factors of a placement times a power of two: the world in another unit of length.
