@@ -35,7 +35,7 @@ impl ResponseTable {
         ResponseTable { default, objects: SecondaryMap::new(), pairs: HashMap::new() }
     }
 
-    /// The response for a pair, of which `first` was created first.
+    /// The response for a pair, of which `first` comes first.
     pub fn of(&self, first: ObjectId, second: ObjectId) -> Response {
         let pair = if self.pairs.is_empty() { None } else { self.pairs.get(&ordered(first, second)) };
         let object = || self.objects.get(first).or_else(|| self.objects.get(second));
@@ -138,7 +138,7 @@ impl World {
     /// The response that holds for a pair.
     pub fn response(&self, a: ObjectId, b: ObjectId) -> Result<Response> {
         self.check_pair(a, b)?;
-        let a_first = self.objects[a].serial < self.objects[b].serial;
+        let a_first = self.objects[a].order < self.objects[b].order;
         Ok(if a_first { self.responses.of(a, b) } else { self.responses.of(b, a) })
     }
 
