@@ -26,7 +26,8 @@ pub enum Error {
     },
     /// A vertex is not finite, or too far out.
     #[error(
-        "vertex {index} is {value}; each coordinate must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
+        "vertex {index} is {}; each coordinate must be finite and at most {MAGNITUDE_MAX:e} in magnitude",
+        coordinates(value)
     )]
     Vertex {
         /// Its place in the buffer.
@@ -88,8 +89,11 @@ pub enum Error {
     },
     /// A placement flattens space.
     #[error(
-        "placement is singular: its axes are {x}, {y}, {z}; each needs a direction of its own, out of the plane of the \
-         others, and a length of at least {MAGNITUDE_MIN:e}"
+        "placement is singular: its axes are {}, {}, {}; each needs a direction of its own, out of the plane of the \
+         others, and a length of at least {MAGNITUDE_MIN:e}",
+        coordinates(x),
+        coordinates(y),
+        coordinates(z)
     )]
     SingularPlacement {
         /// The image of the axis x.

@@ -47,7 +47,7 @@ fn bad_sizes_are_refused_by_name() {
     ];
     for (name, make) in makers {
         for bad in BAD_SIZES {
-            refused(make(bad), &[name, &bad.to_string(), "1e-100", "1e100"]);
+            refused(make(bad), &[name, &format!("{bad:?}"), "1e-100", "1e100"]);
         }
         for good in [1e-100, 1e-30, 1e30, 1e100] {
             make(good).unwrap();
@@ -62,7 +62,7 @@ fn bad_vertices_and_indices_are_refused_by_place() {
         for axis in 0..3 {
             let mut vertices = triangle;
             vertices[1][axis] = bad;
-            let words = ["vertex 1", "finite", "1e100", &bad.to_string()];
+            let words = ["vertex 1", "finite", "1e100", &format!("{bad:?}")];
             refused(Shape::mesh(vertices, [[0, 1, 2]]), &words);
             // Also where no triangle uses it.
             refused(Shape::mesh(vertices, [[0, 2, 2]]), &words);
@@ -99,7 +99,7 @@ fn bad_placements() -> Vec<(DAffine3, Vec<String>)> {
         for value in BAD_COORDINATES {
             let mut entries = DAffine3::IDENTITY.to_cols_array();
             entries[entry] = value;
-            let words = ["placement", &value.to_string(), "1e100"].map(str::to_string).to_vec();
+            let words = ["placement", &format!("{value:?}"), "1e100"].map(str::to_string).to_vec();
             bad.push((DAffine3::from_cols_array(&entries), words));
         }
     }
@@ -237,7 +237,7 @@ fn a_refused_call_leaves_the_world_as_an_untouched_twin() {
             for bad in BAD_COORDINATES {
                 let mut positions = [DVec3::ZERO; 4];
                 positions[3].z = bad;
-                refused(world.deform(id, &positions), &["vertex 3", &bad.to_string()]);
+                refused(world.deform(id, &positions), &["vertex 3", &format!("{bad:?}")]);
             }
         }
         assert_eq!(world.len(), twin.len());

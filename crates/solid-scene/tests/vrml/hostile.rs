@@ -147,7 +147,7 @@ fn a_face_of_too_many_corners_is_a_fan_with_a_warning() {
     let scene =
         scene(&format!("Shape {{ geometry IndexedFaceSet {{ {points} coordIndex [ {corners} ] }} }}"));
     assert_eq!(scene.objects()[0].shape().primitive_count(), 39_998);
-    assert_eq!(warnings(&scene), ["IndexedFaceSet: a face of more than 10000 corners is taken as convex"]);
+    assert_eq!(warnings(&scene), ["IndexedFaceSet: a face of more than 2000 corners is taken as convex"]);
 }
 
 #[test]
