@@ -48,6 +48,14 @@ impl ResponseTable {
         for &partner in partners {
             self.pairs.remove(&ordered(id, partner));
         }
+        self.give_back();
+    }
+
+    /// Gives memory back when nothing is left in it.
+    fn give_back(&mut self) {
+        if self.pairs.is_empty() {
+            self.pairs.shrink_to_fit();
+        }
     }
 }
 
@@ -130,6 +138,7 @@ impl World {
         if self.responses.pairs.remove(&ordered(a, b)).is_some() {
             self.objects[a].pair_partners.retain(|&partner| partner != b);
             self.objects[b].pair_partners.retain(|&partner| partner != a);
+            self.responses.give_back();
         }
         self.stale = true;
         Ok(())
