@@ -3,6 +3,7 @@
 
 mod common;
 
+use std::path::PathBuf;
 use std::process::Command;
 
 use common::{Linking, compile, crate_folder, has, library_folder, run, succeed, text};
@@ -162,4 +163,25 @@ fn the_environment_variable_prints() {
     let printed = stderr(Some("1"));
     assert!(printed.starts_with("libsolid: dtBox: x is -1.0; it must be from 0 to 1e100\n"), "{printed}");
     assert!(printed.lines().all(|line| line.starts_with("libsolid: dt")), "{printed}");
+}
+
+/// The program of the README prints what the README says.
+#[test]
+fn the_readme_is_right() {
+    if !has("cc") {
+        return;
+    }
+    let readme = std::fs::read_to_string(crate_folder().join("README.md")).unwrap();
+    let block = |fence: &str, word: &str| {
+        let blocks = readme.split("```").filter_map(|block| block.strip_prefix(fence));
+        blocks.into_iter().find(|block| block.contains(word)).unwrap().to_string()
+    };
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    let (source, program) = (folder.join("readme.c"), folder.join("readme"));
+    std::fs::write(&source, block("c\n", "int main")).unwrap();
+    let mut cc = Command::new("cc");
+    cc.arg("-I").arg(crate_folder().join("include")).arg(source).arg("-o").arg(&program);
+    cc.arg("-L").arg(library_folder()).arg("-lsolid");
+    succeed(cc.arg(format!("-Wl,-rpath,{}", library_folder().display())));
+    assert_eq!(text(&run(program).stdout), block("text\n", "ouch"));
 }

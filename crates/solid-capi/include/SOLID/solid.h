@@ -152,7 +152,7 @@ void dtResetPairResponse(DtObjectRef object1, DtObjectRef object2);
  * Witnessed: point1 and point2 are the same point of the world; normal is zero.
  * Smart: point1 and point2 are the closest points in the previous frame, local to the placements of that frame; normal is
  * the world position of point1 less that of point2, so it points away from object2. The previous frame is what was at the
- * last dtProceed; for an object created since, what was at the first dtTest after its creation. When the objects
+ * last dtProceed; for an object created since, what was at the first dtTest or dtTestObjects after its creation. When they
  * collided there already, no direction is known: point1 and point2 are a common point of that frame, and normal is exactly
  * zero.
  *
