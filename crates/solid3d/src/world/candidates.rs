@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{ObjectId, Response, World};
 use crate::pair::world_bounds;
 
-/// Two objects by their places in the creation order, the earlier first: the order of the results.
+/// Two objects by their places in the order of pairs, the earlier first: the order of the results.
 pub(super) type PairKey = (u64, u64);
 
 /// A pair whose boxes overlap and that is not ignored.
@@ -36,7 +36,7 @@ impl World {
         let candidates = &mut self.candidates;
         self.broad.for_each_pair(&mut |p, q| {
             let (mut a, mut b) = (by_proxy[p as usize], by_proxy[q as usize]);
-            let mut key = (objects[a].serial, objects[b].serial);
+            let mut key = (objects[a].order, objects[b].order);
             if key.1 < key.0 {
                 (a, b, key) = (b, a, (key.1, key.0));
             }

@@ -18,6 +18,7 @@ pub use object::ObjectId;
 pub use options::WorldOptions;
 pub use response::Response;
 pub use statistics::Statistics;
+pub use test::TestProgress;
 
 use crate::broad::{BroadPhase, PROXY_MAX, Proxy};
 use crate::error::{Error, Result};
@@ -108,6 +109,22 @@ impl World {
     /// Adds an object: an instance of a shape at a place. For smart response, its previous frame is this one until the
     /// next [`proceed`](World::proceed).
     pub fn add(&mut self, shape: &Shape, placement: DAffine3) -> Result<ObjectId> {
+        self.add_ranked(shape, placement, 0)
+    }
+
+    /// Like [`add`](World::add), with a rank other than 0. Of a pair of objects of different ranks, the one of the lower rank
+    /// counts as the one that was created first: it is `a` of the [`Collision`], and its response goes before the other's.
+    ///
+    /// ```
+    /// use solid3d::{Shape, World, glam::DAffine3};
+    /// let mut world = World::new();
+    /// let ball = Shape::sphere(1.0)?;
+    /// let late = world.add_ranked(&ball, DAffine3::IDENTITY, 1)?;
+    /// let early = world.add(&ball, DAffine3::IDENTITY)?;
+    /// assert_eq!((world.test()[0].a, world.test()[0].b), (early, late));
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn add_ranked(&mut self, shape: &Shape, placement: DAffine3, rank: u8) -> Result<ObjectId> {
         placement::checked(&placement)?;
         if self.objects.len() >= OBJECTS_MAX {
             return Err(Error::TooMany {
@@ -116,7 +133,7 @@ impl World {
                 limit: OBJECTS_MAX,
             });
         }
-        let object = Object::new(self.added, shape.clone(), placement);
+        let object = Object::new(rank, self.added, shape.clone(), placement);
         let bounds = world_bounds(object.placed());
         let id = self.objects.insert(object);
         self.added += 1;
@@ -210,6 +227,13 @@ impl World {
                 object.proceed();
             }
         }
+    }
+
+    /// Ends the frame for one object alone: it is then as if it had just been added, as it is.
+    pub fn proceed_object(&mut self, id: ObjectId) -> Result<()> {
+        // It stays in `displaced`, where a second entry or none to do is harmless.
+        self.object_mut(id)?.proceed();
+        Ok(())
     }
 
     /// Lets tests use what earlier tests found out about a pair: its separating axis. On by default. Answers are the same

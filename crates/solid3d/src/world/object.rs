@@ -11,11 +11,16 @@ slotmap::new_key_type! {
     pub struct ObjectId;
 }
 
+/// The bits of a place in the creation order: more than any machine will count to.
+const RANK_SHIFT: u32 = 56;
+
 /// An object.
 #[derive(Debug)]
 pub(super) struct Object {
     /// Its place in the creation order.
     pub serial: u64,
+    /// Its place in the order of pairs and their results: by rank, then by creation.
+    pub order: u64,
     pub shape: Shape,
     pub placement: DAffine3,
     previous_shape: Shape,
@@ -31,9 +36,10 @@ pub(super) struct Object {
 }
 
 impl Object {
-    pub fn new(serial: u64, shape: Shape, placement: DAffine3) -> Self {
+    pub fn new(rank: u8, serial: u64, shape: Shape, placement: DAffine3) -> Self {
         Object {
             serial,
+            order: (u64::from(rank) << RANK_SHIFT) | serial,
             previous_shape: shape.clone(),
             previous_placement: placement,
             shape,

@@ -3,8 +3,16 @@
 use glam::DVec3;
 
 use super::candidates::{Candidate, PairKey};
-use super::{Collision, Contact, Response, Statistics, World};
+use super::{Collision, Contact, ObjectId, Response, Statistics, World};
+use crate::error::Result;
 use crate::pair::{self, Relation, Scratch};
+
+/// How far a test has come that is made collision by collision: see [`World::test_next`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TestProgress {
+    /// The pair examined last.
+    last: Option<PairKey>,
+}
 
 /// What examining a candidate gave.
 struct Examined {
@@ -69,17 +77,51 @@ impl World {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn test_with(&mut self, mut respond: impl FnMut(&mut World, &Collision)) -> usize {
+        let mut progress = TestProgress::default();
         let mut count = 0;
-        let mut last: Option<PairKey> = None;
-        loop {
-            self.refresh();
-            let next = self.candidates.partition_point(|candidate| Some(candidate.key) <= last);
-            let Some(collision) = self.next_collision(next, &mut last) else {
-                return count;
-            };
+        while let Some(collision) = self.test_next(&mut progress) {
             count += 1;
             respond(self, &collision);
         }
+        count
+    }
+
+    /// The next collision of a test that pauses after each, for callers that cannot lend the world to a closure as
+    /// [`test_with`](World::test_with) does, and otherwise the same. `None` at the end.
+    ///
+    /// ```
+    /// use solid3d::{Shape, TestProgress, World, glam::DAffine3};
+    /// let mut world = World::new();
+    /// let ball = Shape::sphere(1.0)?;
+    /// let (a, b) = (world.add(&ball, DAffine3::IDENTITY)?, world.add(&ball, DAffine3::IDENTITY)?);
+    /// let mut progress = TestProgress::default();
+    /// let collision = world.test_next(&mut progress).unwrap();
+    /// assert_eq!((collision.a, collision.b), (a, b));
+    /// assert_eq!(world.test_next(&mut progress), None);
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn test_next(&mut self, progress: &mut TestProgress) -> Option<Collision> {
+        self.refresh();
+        let next = self.candidates.partition_point(|candidate| Some(candidate.key) <= progress.last);
+        self.next_collision(next, &mut progress.last)
+    }
+
+    /// Whether two objects collide, and how, as [`test`](World::test) would report them; `None` also when their response is
+    /// [`Response::Ignore`]. Nothing is cached.
+    pub fn test_pair(&mut self, a: ObjectId, b: ObjectId) -> Result<Option<Collision>> {
+        if self.response(a, b)? == Response::Ignore {
+            return Ok(None);
+        }
+        let (mut a, mut b) = (a, b);
+        let mut key = (self.objects[a].order, self.objects[b].order);
+        if key.1 < key.0 {
+            (a, b, key) = (b, a, (key.1, key.0));
+        }
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let examined = self.examine(&Candidate { key, a, b, axis: None }, &mut scratch);
+        self.scratch = scratch;
+        self.statistics += examined.work;
+        Ok(examined.contact.map(|contact| Collision { a, b, contact }))
     }
 
     /// Examines candidates from the `next` on until one collides; `last` becomes the key of the last examined.
