@@ -8,7 +8,7 @@ use super::assert_rate;
 use super::cases;
 use crate::polygon::{
     Counters, Intersection, Polygon, exact, intersect_sorted, intersect_straightforward,
-    intersect_triangulated,
+    intersect_triangulated, planar, triangulation,
 };
 
 /// By the oracle's exact test of triangles, over our triangulation.

@@ -25,12 +25,15 @@ fn boxes_agree_with_the_oracle() {
     for case in 0..cases {
         let [a, b] = cases::pair(&mut rng, case);
         // On the lattice, so that much touches; sometimes flat, or a point.
-        let size = [1, 2, 4][case % 3] * if case % 5 == 4 { 200 } else { 1 };
-        let min = b.vertices()[0] + if case % 2 == 0 { DVec3::ZERO } else { DVec3::splat(0.5) };
-        let bounds = Aabb::new(
-            min,
-            min + DVec3::from_array(std::array::from_fn(|_| f64::from(rng.random_range(0..=size)))),
-        );
+        let large = if case % 5 == 4 { 150 } else { 1 };
+        let mut whole = |end: i32| {
+            DVec3::from_array(std::array::from_fn(|_| f64::from(rng.random_range(0..=end * large))))
+        };
+        let size = whole([1, 2, 4][case % 3]);
+        let center = 0.5 * (a.vertices()[0] + b.vertices()[0].clamp(a.bounds().min, a.bounds().max));
+        let min =
+            (center - size + whole(2)).round() + if case % 2 == 0 { DVec3::ZERO } else { DVec3::splat(0.5) };
+        let bounds = Aabb::new(min, min + size);
         let corners = box_corners(&bounds);
         let expected = a.triangles().iter().any(|t| {
             let triangle = t.map(|i| a.vertices()[i as usize]);
@@ -63,7 +66,7 @@ fn spheres_agree_with_the_oracle() {
             1 => distance - margin,
             _ => rng.random_range(0.0..=2.0) * distance,
         };
-        if radius >= 0.0 {
+        if radius >= 0.0 && (radius - distance).abs() >= margin * 0.999 {
             let expected = radius >= distance;
             assert_eq!(a.meets_sphere(center, radius).unwrap(), expected, "case {case}: {distance} {radius}");
             hits += usize::from(expected);
