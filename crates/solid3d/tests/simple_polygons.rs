@@ -130,11 +130,11 @@ fn deformed_polygons_are_what_would_be_built_anew() {
         let shape = ComplexShapeBuilder::new(rest.clone()).point(0).simple_polygon(&chain).build().unwrap();
         assert_eq!(shape.primitive_count(), 2);
         let moved: Vec<DVec3> = comb
-            .map(|(x, y)| lift((x + rng.random_range(-0.45..0.45), y + rng.random_range(-0.45..0.45))))
+            .map(|(x, y)| lift((x + rng.random_range(-0.2..0.2), y + rng.random_range(-0.2..0.2))))
             .to_vec();
         let mut world = World::new();
         let id = world.add(&shape, DAffine3::IDENTITY).unwrap();
-        let through = DVec3::new(rng.random_range(0.0..5.0), rng.random_range(0.0..3.0), 0.0);
+        let through = DVec3::new(rng.random_range(-0.5..5.5), rng.random_range(-0.5..3.5), 0.0);
         let needle =
             ComplexShapeBuilder::new([DVec3::Z * -30.0, DVec3::Z * 30.0]).segment([0, 1]).build().unwrap();
         let at = DAffine3::from_translation(through);
@@ -163,10 +163,11 @@ fn mistakes_name_the_primitive_as_the_user_counts() {
     vertices.push(DVec3::Z);
     let builder = || ComplexShapeBuilder::new(vertices.clone()).simple_polygon(&[0, 1, 2, 3]);
     assert_eq!(builder().point(0).build().unwrap().primitive_count(), 2);
-    let bow =
-        builder().simple_polygon(&[0, 1, 4, 2, 1, 3]).simple_polygon(&[0, 4, 1, 2]).build().unwrap_err();
-    let Error::Polygon { primitive, .. } = bow else { panic!("{bow}") };
-    assert!((1..=2).contains(&primitive), "{bow}");
+    let bow = builder().simple_polygon(&[0, 1, 2]).simple_polygon(&[0, 4, 1, 2]).build().unwrap_err();
+    assert_eq!(
+        bow.to_string(),
+        "primitive 2: edges 1 and 3 of the polygon cross; a simple polygon's edges may touch but not cross"
+    );
     let tent = builder().simple_polygon(&[0, 1, 5, 2]).build().unwrap_err().to_string();
     assert!(tent.starts_with("primitive 1: vertex ") && tent.contains("off the plane"), "{tent}");
     let short = builder().simple_polygon(&[0, 1]).build().unwrap_err();

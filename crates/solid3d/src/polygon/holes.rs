@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::error::{PolygonError, Result};
-use super::exact::{segments_meet, turn};
+use super::exact::{segment_contains, segments_cross, segments_meet, turn};
 use super::planar;
 
 /// Joins holes to the boundary around them; chains are places in `points`. The result runs as `outer` does.
@@ -14,12 +14,9 @@ use super::planar;
 pub(super) fn join(points: &[DVec2], outer: &[usize], holes: &[Vec<usize>]) -> Result<Vec<usize>> {
     let at = |chain: &[usize]| -> Vec<DVec2> { chain.iter().map(|&i| points[i]).collect() };
     let outer_points = at(outer);
-    for (hole, chain) in holes.iter().enumerate() {
-        let inside = |&i: &usize| planar::contains(&outer_points, points[i]);
-        let in_another = |(k, other): (usize, &Vec<usize>)| {
-            k != hole && planar::contains_strictly(&at(other), points[chain[0]])
-        };
-        if !chain.iter().all(inside) || holes.iter().enumerate().any(in_another) {
+    let hole_points: Vec<Vec<DVec2>> = holes.iter().map(|hole| at(hole)).collect();
+    for (hole, chain) in hole_points.iter().enumerate() {
+        if !is_inside(chain, &outer_points) || hole_points[..hole].iter().any(|other| overlap(chain, other)) {
             return Err(PolygonError::HoleOutside { hole });
         }
     }
@@ -44,6 +41,53 @@ pub(super) fn join(points: &[DVec2], outer: &[usize], holes: &[Vec<usize>]) -> R
         joined = chain;
     }
     Ok(joined)
+}
+
+/// 1 for a chain that runs counter-clockwise, else -1.
+fn sense(chain: &[DVec2]) -> f64 {
+    if planar::doubled_area(chain) < 0.0 { -1.0 } else { 1.0 }
+}
+
+/// Whether a hole lies in the polygon; they may touch.
+fn is_inside(hole: &[DVec2], outer: &[DVec2]) -> bool {
+    let is_outside = |x: DVec2| !planar::contains(outer, x);
+    let inside = |x: DVec2| planar::contains_strictly(hole, x);
+    !invades(hole, outer, -sense(outer), &is_outside)
+        && !invades(outer, hole, sense(hole), &inside)
+        && !run_along(hole, outer, -sense(hole) * sense(outer))
+}
+
+/// Whether two holes have more in common than parts of their boundaries.
+fn overlap(a: &[DVec2], b: &[DVec2]) -> bool {
+    invades(a, b, sense(b), &|x| planar::contains_strictly(b, x))
+        || invades(b, a, sense(a), &|x| planar::contains_strictly(a, x))
+        || run_along(a, b, sense(a) * sense(b))
+}
+
+/// Whether an edge of `chain` enters the open region that lies to the left of `border`, when `sense` is 1.
+fn invades(chain: &[DVec2], border: &[DVec2], sense: f64, region: &dyn Fn(DVec2) -> bool) -> bool {
+    if chain.iter().any(|&x| region(x)) {
+        return true;
+    }
+    planar::edges(chain).any(|(p, q)| {
+        // From either end, when it lies on the border.
+        let enters = |from: DVec2, to: DVec2| {
+            (0..border.len()).any(|k| {
+                let n = border.len();
+                let corner @ [_, v, after] = [(k + n - 1) % n, k, (k + 1) % n].map(|i| border[i]);
+                let on_edge = from != v && from != after && segment_contains(v, after, from);
+                (from == v && from != to && sees(corner, to, sense))
+                    || (on_edge && sense * turn(v, after, to) > 0.0)
+            })
+        };
+        enters(p, q) || enters(q, p) || planar::edges(border).any(|(r, s)| segments_cross(p, q, r, s))
+    })
+}
+
+/// Whether edges of two chains overlap that run the same way, when `same` is 1, or opposite ways.
+fn run_along(a: &[DVec2], b: &[DVec2], same: f64) -> bool {
+    planar::edges(a)
+        .any(|(p, q)| planar::edges(b).any(|(r, s)| overlaps(p, q, r, s) && same * (q - p).dot(s - r) > 0.0))
 }
 
 /// The shortest bridge from the chain to a waiting hole: the hole's place among those waiting, and the places of the ends in

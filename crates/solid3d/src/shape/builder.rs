@@ -92,7 +92,8 @@ impl ComplexShapeBuilder {
     /// [`join_holes`](crate::polygon::join_holes) makes such a chain. It counts as one primitive.
     ///
     /// It is cut into triangles here, once, by the positions that the vertices have now. A deformation moves the triangles with the
-    /// vertices; for them to go on covering the polygon it must stay flat and simple, about. Cost: O(n^2), at worst O(n^3).
+    /// vertices. They go on covering the polygon while it stays about flat and simple, and no triangle is turned over: bend and
+    /// stretch it, but do not drag a corner across the inside. Cost: O(n^2), at worst O(n^3).
     ///
     /// ```
     /// use solid3d::{ComplexShapeBuilder, Shape, query, polygon, glam::{DAffine3, DVec3}};

@@ -136,7 +136,7 @@ pub fn pair(rng: &mut StdRng, case: usize) -> [Polygon; 2] {
     // A small lattice makes everything touch; a large one is general position.
     let side = [2, 3, 5, 9, 1000][case % 5];
     let (reach, steepness) =
-        if side == 1000 { (800, 1) } else { (side / 2 + 1, 1 + i32::from(case % 3 == 0)) };
+        if side == 1000 { (800, 1) } else { (side / 2 + 1, 1 + i32::from(case.is_multiple_of(3))) };
     let frame = Frame::random(rng, 0, steepness);
     let (first, second) = (chain(rng, side), chain(rng, side));
     let other = if case.is_multiple_of(4) {

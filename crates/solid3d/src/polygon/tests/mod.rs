@@ -2,6 +2,8 @@
 
 mod agreement;
 mod cases;
+mod holes;
+mod timing;
 mod uneven;
 mod volumes;
 
