@@ -121,9 +121,13 @@ fn bridge(
     candidates.into_iter().find_map(|(_, next, i, j)| {
         let hole = &waiting[next].1;
         let (p, q) = (points[joined[i]], points[hole[j]]);
+        // Bridges of no length repeat vertices: the neighbours are the nearest that differ.
         let corner = |chain: &[usize], k: usize| {
-            let n = chain.len();
-            [chain[(k + n - 1) % n], chain[k], chain[(k + 1) % n]].map(|place| points[place])
+            let (n, v) = (chain.len(), points[chain[k]]);
+            let other = |mut places: Box<dyn Iterator<Item = usize>>| {
+                places.find_map(|i| Some(points[chain[i % n]]).filter(|&x| x != v)).unwrap_or(v)
+            };
+            [other(Box::new((k + 1..k + n).rev())), v, other(Box::new(k + 1..k + n))]
         };
         let clear = if p == q {
             // The hole touches the boundary there: it must do so from inside this corner.

@@ -93,8 +93,19 @@ impl Rest<'_> {
                 let enters = |y: usize| self.turn([a, v, y]) > 0.0 && self.turn([v, b, y]) > 0.0;
                 return !enters(before) && !enters(after);
             }
-            let outside = [[a, v, w], [v, b, w], [b, a, w]].iter().any(|&corner| self.turn(corner) < 0.0);
-            x == at_a || x == at_b || outside
+            if x == at_a || x == at_b {
+                return true;
+            }
+            let sides = [[a, v], [v, b], [b, a]];
+            let turns = sides.map(|[from, to]| self.turn([from, to, w]));
+            // On a side of the triangle the chain may touch it from outside.
+            let on_side = turns.iter().position(|&turned| turned == 0.0);
+            let outside = turns.iter().any(|&turned| turned < 0.0);
+            outside
+                || on_side.is_some_and(|k| {
+                    let [from, to] = sides[k];
+                    self.turn([from, to, before]) <= 0.0 && self.turn([from, to, after]) <= 0.0
+                })
         })
     }
 }

@@ -19,7 +19,7 @@ fn a_polygon_with_holes_is_the_difference() {
     println!("seed {seed}");
     let mut rng = seeded(seed);
     let (mut polygons, mut hits, mut points, mut touching) = (0, 0, 0, 0);
-    while polygons < 2000 {
+    while polygons < 120 {
         let side = 12;
         let mut convex = |low: i32, high: i32, n: usize| -> Vec<DVec2> {
             let mut point = || f64::from(rng.random_range(low..=high));
