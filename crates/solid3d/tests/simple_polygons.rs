@@ -166,7 +166,7 @@ fn mistakes_name_the_primitive_as_the_user_counts() {
     let bow = builder().simple_polygon(&[0, 1, 2]).simple_polygon(&[0, 4, 1, 2]).build().unwrap_err();
     assert_eq!(
         bow.to_string(),
-        "primitive 2: edges 1 and 3 of the polygon cross; a simple polygon's edges may touch but not cross"
+        "primitive 2: edges 0 and 2 of the polygon cross; a simple polygon's edges may touch but not cross"
     );
     let tent = builder().simple_polygon(&[0, 1, 5, 2]).build().unwrap_err().to_string();
     assert!(tent.starts_with("primitive 1: vertex ") && tent.contains("off the plane"), "{tent}");
