@@ -7,9 +7,11 @@ mod error;
 pub mod hull;
 mod pair;
 mod placement;
+pub mod polygon;
 pub mod query;
 mod shape;
 pub mod tree;
+mod triangle_triangle;
 mod world;
 
 pub use bounds::Aabb;

@@ -13,7 +13,6 @@ mod frame;
 mod reach;
 mod scratch;
 mod table;
-mod triangle_triangle;
 
 use glam::{DAffine3, DVec3};
 
@@ -23,6 +22,7 @@ use solid_convex::{Closest, Witness, gjk};
 pub(crate) use table::{axis, closest, intersection};
 
 use crate::shape::{Class, Shape};
+use crate::triangle_triangle;
 
 /// A shape at a place.
 #[derive(Clone, Copy)]
