@@ -1,7 +1,8 @@
 //! Working memory of the algorithms, and what they count.
 
-use super::triangle_triangle::Triangle;
+use glam::DVec3;
 
+use super::triangle_triangle::Triangle;
 use crate::bounds::Aabb;
 use crate::tree::Traversal;
 
@@ -14,6 +15,16 @@ pub(crate) struct PlacedPrimitive {
     pub bounds: Aabb,
     /// Its corners, when it has up to three vertices.
     pub triangle: Option<Triangle>,
+}
+
+impl PlacedPrimitive {
+    /// The least coordinate along an axis, or a bound below it.
+    pub fn least_along(&self, axis: DVec3) -> f64 {
+        match &self.triangle {
+            Some([p, q, r]) => p.dot(axis).min(q.dot(axis)).min(r.dot(axis)),
+            None => self.bounds.center().dot(axis) - self.bounds.half_extents().dot(axis.abs()),
+        }
+    }
 }
 
 /// Working memory: kept from pair to pair, so that nothing is allocated once it has grown. One for each thread.

@@ -29,6 +29,9 @@ use candidates::Candidate;
 use object::Object;
 use response::ResponseTable;
 
+/// How many objects there may be: the slot of each is a proxy, and slot 0 is not used.
+const OBJECTS_MAX: usize = PROXY_MAX as usize;
+
 /// Objects in one space, and what is wanted of their collisions.
 ///
 /// A time step, or *frame*, is: place and deform objects, [`test`](World::test) as often as needed, then
@@ -123,9 +126,12 @@ impl World {
     /// ```
     pub fn add_ranked(&mut self, shape: &Shape, placement: DAffine3, rank: u8) -> Result<ObjectId> {
         placement::checked(&placement)?;
-        if self.objects.capacity() > PROXY_MAX as usize && self.objects.len() + 1 >= PROXY_MAX as usize {
-            let (count, limit) = (self.objects.len() + 1, PROXY_MAX as usize - 1);
-            return Err(Error::TooMany { argument: "objects", count, limit });
+        if self.objects.len() >= OBJECTS_MAX {
+            return Err(Error::TooMany {
+                argument: "objects",
+                count: self.objects.len() + 1,
+                limit: OBJECTS_MAX,
+            });
         }
         let object = Object::new(rank, self.added, shape.clone(), placement);
         let bounds = world_bounds(object.placed());
