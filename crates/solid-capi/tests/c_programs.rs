@@ -1,5 +1,6 @@
 //! Programs in C and C++ against the shared and the static library: every function, appendix B of the thesis, the headers in
 //! every dialect, what is exported, and valgrind's opinion.
+#![allow(clippy::unwrap_used, reason = "a test that can't go on shall stop")]
 
 mod common;
 

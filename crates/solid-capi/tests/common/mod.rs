@@ -1,5 +1,5 @@
 //! Compiling and running C and C++ programs against the library that these tests were built with.
-#![allow(dead_code)] // Not every test uses all of it.
+#![allow(dead_code, reason = "not every test uses all of it")]
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
