@@ -16,7 +16,7 @@ pub use bounds::Aabb;
 pub use broad::BroadPhaseKind;
 pub use error::{Error, Result};
 pub use glam;
-pub use shape::{ComplexShapeBuilder, Shape, ShapeKind};
+pub use shape::{ComplexShapeBuilder, OpenEdge, Shape, ShapeKind};
 pub use solid_convex as convex;
 pub use world::{Collision, Contact, ObjectId, Response, Statistics, World, WorldOptions};
 
