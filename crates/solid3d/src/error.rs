@@ -3,6 +3,7 @@
 use glam::DVec3;
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError};
 
+use crate::polygon::PolygonError;
 use crate::world::ObjectId;
 
 /// Bad input. The message names the argument, its value and its limit; nothing was changed.
@@ -12,6 +13,14 @@ pub enum Error {
     /// A radius, height or size is out of range.
     #[error(transparent)]
     Size(#[from] SizeError),
+    /// A polygon that is not flat or not simple.
+    #[error("primitive {primitive}: {error}")]
+    Polygon {
+        /// The primitive's place, in the order in which they were given.
+        primitive: usize,
+        /// What is wrong with it.
+        error: PolygonError,
+    },
     /// A shape without any vertex.
     #[error("{argument} is empty; a shape needs at least one vertex")]
     NoVertices {

@@ -14,7 +14,7 @@ use crate::shape::Complex;
 use crate::tree::{PairMetric, nearest_pairs, pairs};
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
-    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests } = scratch;
+    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
     let Frame { relative, common: [from_a, from_b], .. } = frame(a, b);
     let found = pairs(a.0.tree(), b.0.tree(), &relative, traversal, |leaf_a, leaf_b| {
         place(a.0, leaf_a, &from_a, in_a);
@@ -45,7 +45,7 @@ pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch)
         return Closest { distance: 0.0, points };
     }
     let Frame { relative, common: [from_a, from_b], scale, stretch: [of_a, of_b] } = frame(a, b);
-    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests } = scratch;
+    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
     // The best distance so far is kept in the common frame, as the bounds are.
     let (mut best, mut answer) = (f64::INFINITY, None);
     let metric = metric(&of_a, &of_b);

@@ -34,6 +34,8 @@ pub(crate) struct Scratch {
     pub traversal: Traversal,
     /// The primitives of two leaves, in a common frame.
     pub leaves: [Vec<PlacedPrimitive>; 2],
+    /// The primitives of one complex shape that the other may meet on its way.
+    pub on_the_way: Vec<u32>,
     /// Tests of one primitive against another.
     pub primitive_tests: u64,
 }

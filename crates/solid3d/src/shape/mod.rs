@@ -3,6 +3,7 @@
 mod builder;
 mod complex;
 mod kind;
+mod radius;
 mod validate;
 
 use std::sync::Arc;

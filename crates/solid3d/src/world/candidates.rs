@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::{ObjectId, Response, World};
-use crate::pair::world_bounds;
 
 /// Two objects by their places in the order of pairs, the earlier first: the order of the results.
 pub(super) type PairKey = (u64, u64);
@@ -27,7 +26,7 @@ impl World {
         for id in self.moved.drain(..) {
             if let Some(object) = self.objects.get_mut(id) {
                 object.moved = false;
-                self.broad.update(super::proxy(id), world_bounds(object.placed()));
+                self.broad.update(super::proxy(id), object.update_bounds());
             }
         }
         self.broad.flush();

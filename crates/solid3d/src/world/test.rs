@@ -3,8 +3,10 @@
 use glam::DVec3;
 
 use super::candidates::{Candidate, PairKey};
-use super::{Collision, Contact, ObjectId, Response, Statistics, World};
+use super::object::Object;
+use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
 use crate::error::Result;
+use crate::pair::swept::{self, Encounter, Moving};
 use crate::pair::{self, Relation, Scratch};
 
 /// How far a test has come that is made collision by collision: see [`World::test_next`].
@@ -16,14 +18,15 @@ pub struct TestProgress {
 
 /// What examining a candidate gave.
 struct Examined {
-    contact: Option<Contact>,
+    found: Option<(When, Contact)>,
     axis: Option<DVec3>,
     work: Statistics,
 }
 
 /// # Tests
 impl World {
-    /// Finds every collision, at the current placements. In the order in which the objects were created: by the first object
+    /// Finds every collision, at the current placements, and of objects with [`Motion::Swept`](super::Motion::Swept) also on the
+    /// way from the previous ones. In the order in which the objects were created: by the first object
     /// of a pair, then by the second.
     ///
     /// Pairs are examined when their response is not [`Response::Ignore`] and their boxes overlap. With the feature `rayon` on
@@ -48,9 +51,7 @@ impl World {
         for (candidate, examined) in self.candidates.iter_mut().zip(examined) {
             candidate.axis = examined.axis;
             self.statistics += examined.work;
-            if let Some(contact) = examined.contact {
-                collisions.push(Collision { a: candidate.a, b: candidate.b, contact });
-            }
+            collisions.extend(candidate.collision(examined.found));
         }
         collisions
     }
@@ -118,10 +119,11 @@ impl World {
             (a, b, key) = (b, a, (key.1, key.0));
         }
         let mut scratch = std::mem::take(&mut self.scratch);
-        let examined = self.examine(&Candidate { key, a, b, axis: None }, &mut scratch);
+        let candidate = Candidate { key, a, b, axis: None };
+        let examined = self.examine(&candidate, &mut scratch);
         self.scratch = scratch;
         self.statistics += examined.work;
-        Ok(examined.contact.map(|contact| Collision { a, b, contact }))
+        Ok(candidate.collision(examined.found))
     }
 
     /// Examines candidates from the `next` on until one collides; `last` becomes the key of the last examined.
@@ -134,8 +136,8 @@ impl World {
             self.candidates[i].axis = examined.axis;
             self.statistics += examined.work;
             *last = Some(candidate.key);
-            if let Some(contact) = examined.contact {
-                collision = Some(Collision { a: candidate.a, b: candidate.b, contact });
+            collision = candidate.collision(examined.found);
+            if collision.is_some() {
                 break;
             }
         }
@@ -165,26 +167,61 @@ impl World {
     fn examine(&self, candidate: &Candidate, scratch: &mut Scratch) -> Examined {
         let mut work = Statistics { candidates: 1, ..Statistics::default() };
         let (a, b) = (&self.objects[candidate.a], &self.objects[candidate.b]);
+        let way = (a.has_way() || b.has_way()).then(|| [a.moving(), b.moving()]);
+        let still_separated = |&axis: &DVec3| match &way {
+            None => pair::still_separated(axis, a.placed(), b.placed()),
+            Some([a, b]) => swept::still_separated(axis, a, b),
+        };
         let cached = candidate.axis.filter(|_| self.caching);
-        if let Some(axis) = cached.filter(|&axis| pair::still_separated(axis, a.placed(), b.placed())) {
+        if let Some(axis) = cached.filter(still_separated) {
             work.cache_hits = 1;
-            return Examined { contact: None, axis: Some(axis), work };
+            return Examined { found: None, axis: Some(axis), work };
         }
         let before = scratch.work();
-        let (contact, axis) = match pair::intersection(a.placed(), b.placed(), scratch) {
-            Relation::Separated { axis } => (None, axis.filter(|_| self.caching)),
-            Relation::Common(witness) => {
-                work.collisions = 1;
-                let contact = match self.responses.of(candidate.a, candidate.b) {
+        let response = self.responses.of(candidate.a, candidate.b);
+        let (found, axis) = match (pair::intersection(a.placed(), b.placed(), scratch), &way) {
+            (Relation::Common(witness), _) => {
+                let contact = match response {
                     Response::Ignore | Response::Simple => Contact::Simple,
                     Response::Witness => Contact::witness(a.placed(), b.placed(), &witness),
                     Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
                 };
-                (Some(contact), None)
+                (Some((When::Now, contact)), None)
+            }
+            (Relation::Separated { axis }, None) => (None, axis),
+            (Relation::Separated { .. }, Some(way)) => {
+                work.sweeps = 1;
+                on_the_way([a, b], way, response, scratch)
             }
         };
+        work.collisions = u64::from(found.is_some());
         let after = scratch.work();
         (work.box_tests, work.primitive_tests) = (after.0 - before.0, after.1 - before.1);
-        Examined { contact, axis, work }
+        Examined { found, axis: axis.filter(|_| self.caching), work }
+    }
+}
+
+/// Whether two objects that are apart now collided on the way; else an axis, when one separates them all the way.
+fn on_the_way(
+    [a, b]: [&Object; 2],
+    [way_a, way_b]: &[Moving; 2],
+    response: Response,
+    scratch: &mut Scratch,
+) -> (Option<(When, Contact)>, Option<DVec3>) {
+    let point = match swept::encounter(way_a, way_b, scratch) {
+        Encounter::None { axis } => return (None, axis),
+        Encounter::At(point) => point,
+    };
+    let contact = match response {
+        Response::Ignore | Response::Simple => Contact::Simple,
+        Response::Witness => Contact::witness_on_the_way(a.placed(), b.placed(), point),
+        Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
+    };
+    (Some((When::OnTheWay, contact)), None)
+}
+
+impl Candidate {
+    fn collision(&self, found: Option<(When, Contact)>) -> Option<Collision> {
+        found.map(|(when, contact)| Collision { a: self.a, b: self.b, when, contact })
     }
 }
