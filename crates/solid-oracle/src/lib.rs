@@ -30,7 +30,7 @@ mod verdict;
 
 pub use distance::{contains_within, distance_bounds};
 pub use exact::hulls_intersect_exact;
-pub use mesh::{mesh_distance, mesh_pairs, triangle_distance, triangles_intersect};
+pub use mesh::{mesh_distance, mesh_pairs, triangle_distance, triangles_intersect, winding_number};
 pub use penetration::penetration_bounds;
 pub use placed::verify_axis;
 pub use shape::Convex;

@@ -4,6 +4,7 @@ use glam::DVec3;
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError};
 
 use crate::polygon::PolygonError;
+use crate::shape::OpenEdge;
 use crate::world::ObjectId;
 
 /// Bad input. The message names the argument, its value and its limit; nothing was changed.
@@ -88,6 +89,36 @@ pub enum Error {
         /// The shape's kind.
         kind: crate::ShapeKind,
     },
+    /// A mesh that is not closed was to be solid.
+    #[error(
+        "mesh is not closed: of its edges, {} must be run through by as many triangles one way as the other: {}",
+        edges.len(),
+        listed(edges)
+    )]
+    OpenMesh {
+        /// The edges where it is not, all of them, in ascending order.
+        edges: Vec<OpenEdge>,
+    },
+    /// A complex shape was to be solid.
+    #[error("a {kind} cannot be made solid; only meshes can")]
+    NotAMesh {
+        /// The shape's kind.
+        kind: crate::ShapeKind,
+    },
+    /// A deformation would open a solid.
+    #[error(
+        "vertices {} and {} of a solid are one place and must stay so; positions puts them at {} and {}",
+        vertices[0],
+        vertices[1],
+        coordinates(&positions[0]),
+        coordinates(&positions[1])
+    )]
+    TornSolid {
+        /// Two vertices that had the same position when the mesh was made solid.
+        vertices: [u32; 2],
+        /// Their new positions.
+        positions: [DVec3; 2],
+    },
     /// A placement has an entry that is not finite, or too large.
     #[error(
         "placement has the entry {value:?}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
@@ -131,6 +162,18 @@ pub enum Error {
 /// Three coordinates, short also when they are huge.
 fn coordinates(v: &DVec3) -> String {
     format!("({:?}, {:?}, {:?})", v.x, v.y, v.z)
+}
+
+/// As many edges as fit a message.
+fn listed(edges: &[OpenEdge]) -> String {
+    const LISTED_MAX: usize = 8;
+    let first = edges.iter().take(LISTED_MAX).map(|edge| {
+        let OpenEdge { vertices: [i, j], forward, backward } = edge;
+        format!("{i}-{j} ({forward} and {backward})")
+    });
+    let rest = edges.len().saturating_sub(LISTED_MAX);
+    let more = (rest > 0).then(|| format!("and {rest} more"));
+    first.chain(more).collect::<Vec<_>>().join(", ")
 }
 
 /// A result whose error names what was wrong with the input.

@@ -18,7 +18,7 @@ pub use bounds::Aabb;
 pub use broad::BroadPhaseKind;
 pub use error::{Error, Result};
 pub use glam;
-pub use shape::{ComplexShapeBuilder, Shape, ShapeKind};
+pub use shape::{ComplexShapeBuilder, OpenEdge, Shape, ShapeKind};
 pub use solid_convex as convex;
 pub use world::{
     Boxes, Collision, Contact, Motion, ObjectId, Response, Statistics, TestProgress, When, World,

@@ -2,9 +2,11 @@
 
 mod distance;
 mod intersection;
+mod winding;
 
 pub use distance::{mesh_distance, triangle_distance};
 pub use intersection::{mesh_pairs, triangles_intersect};
+pub use winding::winding_number;
 
 use glam::DVec3;
 

@@ -2,7 +2,7 @@
 //! before the hit and one that ends just after it.
 
 use glam::{DAffine3, DVec3};
-use solid3d::{ComplexShapeBuilder, Shape, query};
+use solid3d::{ComplexShapeBuilder, Error, Shape, query};
 
 use crate::data::{folder, for_each_row, json, model};
 use crate::tally::Tally;
@@ -37,6 +37,11 @@ fn check(name: &str) {
     let mesh = model(facts["mesh"].as_str().unwrap()).unwrap();
     let size = mesh.vertices().unwrap().iter().map(|v| v.length()).fold(0.0, f64::max);
     check_points(&mesh, size, name, &folder.join(format!("{name}_points.csv")));
+    if facts["watertight_inside_given"] == true {
+        check_inside(&mesh.clone().into_solid().unwrap(), name, &folder.join(format!("{name}_points.csv")));
+    } else {
+        assert!(matches!(mesh.clone().into_solid(), Err(Error::OpenMesh { .. })), "{name} is open");
+    }
     check_rays(&mesh, size, name, &folder.join(format!("{name}_rays.csv")));
 }
 
@@ -57,6 +62,24 @@ fn check_points(mesh: &Shape, size: f64, name: &str, path: &std::path::Path) {
         }
         let met = query::intersects(mesh, &here, &Shape::convex_hull(&[point]).unwrap(), &here).unwrap();
         tally.hit(&label, distance == 0.0, met);
+    });
+    tally.finish();
+}
+
+/// A point that is inside the solid, by its winding number, is at distance 0 of it.
+fn check_inside(solid: &Shape, name: &str, path: &std::path::Path) {
+    let mut tally = Tally::new(format!("{name} inside"));
+    for_each_row(path, |row| {
+        let (label, here) = (format!("point {}", row.text("id")), DAffine3::IDENTITY);
+        let inside = row.flag("inside") || row.real("distance") == 0.0;
+        let point = row.vector("", "");
+        let hull = Shape::convex_hull(&[point]).unwrap();
+        let complex = ComplexShapeBuilder::new([point]).point(0).build().unwrap();
+        for shape in [hull, complex] {
+            tally.hit(&label, inside, query::intersects(&shape, &here, solid, &here).unwrap());
+            let distance = query::distance(solid, &here, &shape, &here).unwrap().distance;
+            tally.check((distance == 0.0) == inside, || format!("{label}: a distance of {distance}"));
+        }
     });
     tally.finish();
 }

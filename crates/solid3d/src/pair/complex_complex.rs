@@ -3,8 +3,9 @@
 use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
-use solid_convex::{Closest, gjk};
+use solid_convex::{Closest, Witness, gjk};
 
+use super::containment::{PlacedSolid, part_inside};
 use super::frame::{Frame, Stretch};
 use super::scratch::PlacedPrimitive;
 use super::table::PlacedComplex;
@@ -35,8 +36,22 @@ pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scr
     });
     match found.break_value() {
         Some((i, j)) => Relation::Common(closest_of(a, i, b, j).points),
-        None => Relation::Separated { axis: None },
+        None => contained(a, b, scratch).map_or(Relation::Separated { axis: None }, Relation::Common),
     }
+}
+
+/// A point of a part of one that is inside the other, a solid; for surfaces that do not meet.
+fn contained(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Option<Witness> {
+    if !a.0.is_solid() && !b.0.is_solid() {
+        return None;
+    }
+    let Frame { relative, common: [from_a, from_b], .. } = frame(a, b);
+    let b_in_a = PlacedSolid::new(a.0, &from_a).and_then(|a| part_inside(&a, b.0, &from_b, scratch));
+    if let Some(on_b) = b_in_a {
+        return Some(Witness { on_a: relative.b_to_a.transform_point3(on_b), on_b });
+    }
+    let on_a = PlacedSolid::new(b.0, &from_b).and_then(|b| part_inside(&b, a.0, &from_a, scratch))?;
+    Some(Witness { on_a, on_b: relative.a_to_b.transform_point3(on_a) })
 }
 
 pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Closest {

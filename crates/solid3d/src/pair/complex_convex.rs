@@ -2,20 +2,22 @@
 
 use std::ops::ControlFlow;
 
-use solid_convex::{Closest, gjk};
+use solid_convex::{Closest, Support, Witness, gjk};
 
+use super::containment::PlacedSolid;
 use super::frame::Frame;
 use super::reach::convex_bounds;
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
+use crate::shape::Complex;
 
 pub(super) fn intersection(
     (complex, at_complex): PlacedComplex,
     (convex, at_convex): PlacedConvex,
     scratch: &mut Scratch,
 ) -> Relation {
-    let (query, _) = convex_in_complex((complex, at_complex), (convex, at_convex));
+    let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let found = complex.tree().overlapping(&query, traversal, |leaf| {
         for &primitive in leaf {
@@ -29,7 +31,8 @@ pub(super) fn intersection(
         }
         ControlFlow::Continue(())
     });
-    found.break_value().map_or(Relation::Separated { axis: None }, Relation::Common)
+    let common = found.break_value().or_else(|| contained(complex, convex, &frame, scratch));
+    common.map_or(Relation::Separated { axis: None }, Relation::Common)
 }
 
 pub(super) fn closest(
@@ -38,6 +41,9 @@ pub(super) fn closest(
     scratch: &mut Scratch,
 ) -> Closest {
     let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
+    if let Some(points) = contained(complex, convex, &frame, scratch) {
+        return Closest { distance: 0.0, points };
+    }
     let bound = |node: &Aabb| frame.stretch[0].at_least(node.gap(&query));
     let Scratch { traversal, primitive_tests, .. } = scratch;
     // The best distance so far is kept in the common frame, as the bounds are.
@@ -57,6 +63,19 @@ pub(super) fn closest(
         }
     });
     answer.expect("a complex shape has a primitive, and every distance is finite")
+}
+
+/// The centre of the convex shape, when it is in a solid. (A part of the solid inside the convex shape meets it.)
+fn contained(
+    complex: &Complex,
+    convex: &dyn Support,
+    frame: &Frame,
+    scratch: &mut Scratch,
+) -> Option<Witness> {
+    let [from_complex, from_convex] = &frame.common;
+    let (solid, center) = (PlacedSolid::new(complex, from_complex)?, convex.center());
+    let inside = solid.contains(from_convex.transform_point3(center), scratch);
+    inside.then(|| Witness { on_a: frame.relative.b_to_a.transform_point3(center), on_b: center })
 }
 
 /// A box around the convex shape in the space of the complex one, grown by the error of the map.

@@ -2,13 +2,16 @@
 //!
 //! As in the thesis the table has two classes: convex shapes, which are known by their support mapping, and complex
 //! shapes, which are soups of convex primitives under a tree. [`table`] picks the algorithm; each file named after a pair
-//! holds the algorithms for it. The entry (convex, complex) is made from (complex, convex) by swapping.
+//! holds the algorithms for it. The entry (convex, complex) is made from (complex, convex) by swapping. A solid mesh is a
+//! complex shape whose surface is tested first, then what it contains ([`containment`]).
 //!
 //! Placements were checked by the caller.
 
 mod complex_complex;
 mod complex_convex;
+mod containment;
 mod convex_convex;
+mod crossing;
 mod fixed_box;
 mod frame;
 mod reach;

@@ -1,10 +1,12 @@
 //! The complex shape: a soup of convex primitives over one vertex buffer, under a tree (thesis, section 6.3.1).
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use solid_convex::IndexedPoints;
 
+use super::parts::parts;
+use super::solid::Solid;
 use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
@@ -16,6 +18,11 @@ pub(crate) struct Complex {
     primitives: Arc<Primitives>,
     vertices: Vec<DVec3>,
     tree: Tree,
+    /// What keeps a mesh closed, when it bounds a solid.
+    solid: Option<Arc<Solid>>,
+    /// A vertex of each connected part, found when first asked for. Shared by the deformations of one soup, and by nothing
+    /// else.
+    parts: Arc<OnceLock<Vec<u32>>>,
 }
 
 /// Which vertices make up each primitive: its hull is the primitive. Invariant: there is at least one, each names at
@@ -84,7 +91,7 @@ impl Complex {
     pub(super) fn new(vertices: Vec<DVec3>, primitives: Primitives) -> Result<Self> {
         validate::vertices(&vertices)?;
         let tree = build(&primitives, &vertices);
-        Ok(Complex { primitives: Arc::new(primitives), vertices, tree })
+        Ok(Complex { primitives: Arc::new(primitives), vertices, tree, solid: None, parts: Arc::default() })
     }
 
     pub fn is_mesh(&self) -> bool {
@@ -102,9 +109,32 @@ impl Complex {
         }
     }
 
-    /// Whether both are soups of the same primitives: one is a deformation of the other.
+    /// Makes a mesh solid; other soups stay as they are.
+    pub fn solidify(&mut self) -> Result<()> {
+        if let (Primitives::Triangles(triangles), None) = (&*self.primitives, &self.solid) {
+            self.solid = Some(Arc::new(Solid::of(&self.vertices, triangles)?));
+            self.parts = Arc::default();
+        }
+        Ok(())
+    }
+
+    /// Whether it is a mesh that stands for the region which it bounds.
+    pub fn is_solid(&self) -> bool {
+        self.solid.is_some()
+    }
+
+    /// A vertex of each connected part. Cost: nearly linear at the first call for a soup and its deformations.
+    pub fn parts(&self) -> &[u32] {
+        self.parts.get_or_init(|| {
+            let primitives = (0..self.primitives.len() as u32).map(|i| self.primitives.get(i));
+            let twins = self.solid.as_ref().map_or(&[][..], |solid| solid.twins());
+            parts(self.vertices.len(), primitives, twins)
+        })
+    }
+
+    /// Whether both are soups of the same primitives, both solid or both not: one is a deformation of the other.
     pub fn same_primitives(&self, other: &Complex) -> bool {
-        Arc::ptr_eq(&self.primitives, &other.primitives)
+        Arc::ptr_eq(&self.parts, &other.parts)
     }
 
     /// How many primitives the user gave: those of one owner count as one.
@@ -155,7 +185,8 @@ impl Complex {
         if positions.len() != self.vertices.len() {
             return Err(Error::PositionCount { count: positions.len(), expected: self.vertices.len() });
         }
-        validate::vertices(positions)
+        validate::vertices(positions)?;
+        self.solid.as_ref().map_or(Ok(()), |solid| solid.check(positions))
     }
 
     /// Takes new positions, which were checked.

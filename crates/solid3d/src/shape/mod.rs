@@ -3,7 +3,9 @@
 mod builder;
 mod complex;
 mod kind;
+mod parts;
 mod radius;
+mod solid;
 mod validate;
 
 use std::sync::Arc;
@@ -14,6 +16,7 @@ use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 pub use builder::ComplexShapeBuilder;
 pub(crate) use complex::Complex;
 pub use kind::ShapeKind;
+pub use solid::OpenEdge;
 
 use crate::error::{Error, Result};
 use crate::hull::Hull;
@@ -24,7 +27,8 @@ const POINTS_MAX: usize = (u32::MAX / 8) as usize;
 /// Geometry in its own space. Cheap to clone: clones share the geometry.
 ///
 /// Shapes are closed sets, so objects that touch collide. A mesh and a complex shape are the union of their primitives:
-/// a mesh is a surface, and what lies wholly inside it does not collide with it.
+/// a mesh is a surface, and what lies wholly inside it does not collide with it, unless it is made
+/// [solid](Shape::into_solid).
 ///
 /// ```
 /// use solid3d::{Shape, ShapeKind};
@@ -120,6 +124,60 @@ impl Shape {
         Ok(Geometry::Complex(Arc::new(Complex::mesh(vertices.into(), triangles.into())?)).into())
     }
 
+    /// A mesh as the solid that it bounds: what lies wholly inside it then collides with it (thesis, section 3.1.2). Convex
+    /// shapes are solid already.
+    ///
+    /// The solid is the surface with all points around which it winds (the winding number is not 0): inside out is as well
+    /// as outside out, a part inside another is a cavity when it is turned the other way, and parts that overlap are joined
+    /// when they are turned the same way.
+    ///
+    /// The mesh must be closed: every edge must be run through by as many triangles in one direction as in the other, as
+    /// two triangles side by side do that both show their front. Vertices at exactly the same position count as one here;
+    /// triangles may be degenerate. [`Error::OpenMesh`] lists the edges where that is not so, and
+    /// [`Error::NotAMesh`] refuses complex shapes. Cost: O(n log n).
+    ///
+    /// A deformation of a solid is solid. It may not part vertices that were at the same position when the mesh was made
+    /// solid: that is [`Error::TornSolid`].
+    ///
+    /// ```
+    /// use solid3d::{Error, Shape, query, glam::{DAffine3, DVec3}};
+    /// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let surface = Shape::mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+    /// let solid = surface.clone().into_solid()?;
+    /// let (here, inside) = (DAffine3::IDENTITY, DAffine3::from_translation(DVec3::splat(0.2)));
+    /// let ball = Shape::sphere(0.01)?;
+    /// assert!(!query::intersects(&surface, &here, &ball, &inside)?);
+    /// assert!(query::intersects(&solid, &here, &ball, &inside)?);
+    ///
+    /// let open = Shape::mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2]])?;
+    /// let Err(Error::OpenMesh { edges }) = open.into_solid() else { panic!() };
+    /// assert_eq!(edges.iter().map(|edge| edge.vertices).collect::<Vec<_>>(), [[1, 2], [1, 3], [2, 3]]);
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn into_solid(mut self) -> Result<Shape> {
+        match &mut self.geometry {
+            Geometry::Complex(complex) if complex.is_mesh() => Arc::make_mut(complex).solidify()?,
+            Geometry::Complex(_) => return Err(Error::NotAMesh { kind: self.kind() }),
+            _ => {}
+        }
+        Ok(self)
+    }
+
+    /// Whether the shape contains what it bounds: convex shapes, and meshes made [solid](Shape::into_solid).
+    ///
+    /// ```
+    /// # use solid3d::{Shape, glam::DVec3};
+    /// assert!(Shape::sphere(1.0)?.is_solid());
+    /// assert!(!Shape::mesh([DVec3::ZERO, DVec3::X, DVec3::Y], [[0, 1, 2]])?.is_solid());
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn is_solid(&self) -> bool {
+        match &self.geometry {
+            Geometry::Complex(complex) => complex.is_solid(),
+            _ => true,
+        }
+    }
+
     /// The kind of the shape.
     pub fn kind(&self) -> ShapeKind {
         match &self.geometry {
@@ -162,7 +220,8 @@ impl Shape {
     /// Deforms a mesh or a complex shape: gives its vertices new positions. Its tree is refitted, and rebuilt when
     /// refitting has let its cost (by the surface-area heuristic) grow by more than 30 % since it was built.
     ///
-    /// Clones made before keep the old positions. Cost: O(n). On an error nothing has changed.
+    /// Clones made before keep the old positions. A solid stays closed; see [`into_solid`](Shape::into_solid). Cost: O(n).
+    /// On an error nothing has changed.
     ///
     /// ```
     /// use solid3d::{Shape, glam::DVec3};
