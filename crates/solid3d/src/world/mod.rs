@@ -325,4 +325,38 @@ mod tests {
         }
         Ok(())
     }
+
+    /// One pair alone is reported as the test of all would.
+    #[test]
+    fn a_pair_alone_is_as_in_a_test() -> Result<()> {
+        let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        let late = world.add_ranked(&ball, DAffine3::IDENTITY, 1)?;
+        let early = world.add(&ball, DAffine3::from_translation(DVec3::X))?;
+        let far = world.add(&ball, DAffine3::from_translation(DVec3::Y * 9.0))?;
+        let all = world.test();
+        assert_eq!(all.len(), 1);
+        assert_eq!(world.test_pair(late, early)?, Some(all[0]));
+        assert_eq!(world.test_pair(early, late)?, Some(all[0]));
+        assert_eq!(world.test_pair(early, far)?, None);
+        world.clear_pair_response(early, late)?;
+        assert_eq!(world.test_pair(early, late)?, None);
+        Ok(())
+    }
+
+    /// Ending the frame for one object leaves the previous frame of the other.
+    #[test]
+    fn a_frame_ends_for_one_object_alone() -> Result<()> {
+        let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        world.set_default_response(Response::Smart);
+        let a = world.add(&ball, DAffine3::IDENTITY)?;
+        let b = world.add(&ball, DAffine3::IDENTITY)?;
+        world.set_placement(b, DAffine3::from_translation(DVec3::Y * 3.0))?;
+        world.proceed_object(b)?;
+        world.set_placement(a, DAffine3::from_translation(DVec3::Y * 2.0))?;
+        let normal = world.test()[0].normal();
+        assert!(normal.is_some_and(|normal| (normal + DVec3::Y).length() < 1e-9), "{normal:?}");
+        world.proceed();
+        assert_eq!(world.test()[0].normal(), None);
+        Ok(())
+    }
 }
