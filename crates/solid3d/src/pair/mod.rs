@@ -9,6 +9,7 @@
 mod complex_complex;
 mod complex_convex;
 mod convex_convex;
+mod curve;
 mod frame;
 mod reach;
 mod scratch;
@@ -17,6 +18,8 @@ mod triangle_triangle;
 
 use glam::{DAffine3, DVec3};
 
+pub(crate) use curve::intersection_curve;
+pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};

@@ -3,6 +3,7 @@
 mod builder;
 mod complex;
 mod kind;
+mod surface;
 mod validate;
 
 use std::sync::Arc;
@@ -13,6 +14,7 @@ use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 pub use builder::ComplexShapeBuilder;
 pub(crate) use complex::Complex;
 pub use kind::ShapeKind;
+pub(crate) use surface::{Surface, boundary};
 
 use crate::error::{Error, Result};
 use crate::hull::Hull;
