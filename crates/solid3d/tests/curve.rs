@@ -217,13 +217,14 @@ struct Case {
 }
 
 impl Case {
-    fn new(rng: &mut StdRng, a: Soup, b: Soup) -> Case {
+    /// B's origin is put near a vertex of A, up to `away` sizes of B off.
+    fn new(rng: &mut StdRng, a: Soup, b: Soup, away: f64) -> Case {
         let size = log_uniform(rng, 1e-6, 1e6);
         let ratio = if rng.random_range(0..3) == 0 { log_uniform(rng, 0.1, 10.0) } else { 1.0 };
         let (a, b) = (a.scaled(size), b.scaled(size * ratio));
         let (at_a, mut at_b) = (placement(rng, 3.0 * size), placement(rng, size));
         let vertex = at_a.transform_point3(a.vertices[rng.random_range(0..a.vertices.len())]);
-        at_b.translation = vertex + 1.2 * size * ratio * rng.random_range(0.0..=1.0) * direction(rng);
+        at_b.translation = vertex + away * size * ratio * rng.random_range(0.0..=1.0) * direction(rng);
         let apart = at_a.translation.distance(at_b.translation);
         Case { size: size * (stretch(&at_a) + ratio * stretch(&at_b)) + apart, a, at_a, b, at_b }
     }
@@ -232,7 +233,7 @@ impl Case {
         let count = |rng: &mut StdRng| log_uniform(rng, 20.0, 800.0) as u32;
         let (n, m) = (count(rng), count(rng));
         let (a, b) = (random_mesh(rng, n), random_mesh(rng, m));
-        Case::new(rng, a, b)
+        Case::new(rng, a, b, 1.8)
     }
 
     fn closed_meshes(rng: &mut StdRng) -> Case {
@@ -247,7 +248,7 @@ impl Case {
             }
         };
         let (a, b) = (closed(), closed());
-        Case::new(rng, a, b)
+        Case::new(rng, a, b, 2.1)
     }
 
     fn curve(&self) -> IntersectionCurve {
@@ -382,7 +383,7 @@ fn complex_shapes_meet_where_their_boundaries_do() {
         let (n, m) = (count(&mut rng), count(&mut rng));
         let a = random_complex(&mut rng, n);
         let b = if rng.random() { random_complex(&mut rng, m) } else { random_mesh(&mut rng, m.max(20)) };
-        let mut case = Case::new(&mut rng, a, b);
+        let mut case = Case::new(&mut rng, a, b, 1.0);
         // Without solid primitives the curve is empty if and only if nothing intersects.
         let surfaces = rng.random();
         if surfaces {

@@ -53,7 +53,7 @@ impl Segment {
 
     /// Not when it is only an edge inside a region, with the region on both sides.
     fn counts(&self) -> bool {
-        self.crossing || self.rim_left != self.rim_right
+        self.crossing || !(self.rim_left && self.rim_right)
     }
 }
 
@@ -215,6 +215,8 @@ mod tests {
             chains(origins.iter().map(|&origin| (Piece::Segment(ends, origin), [0, 0])).collect()).len()
         };
         assert_eq!(of(&[Origin::RimLeft, Origin::RimRight]), 0);
+        assert_eq!(of(&[Origin::RimLeft, Origin::Touching, Origin::RimRight]), 0);
+        assert_eq!(of(&[Origin::Touching]), 1);
         assert_eq!(of(&[Origin::RimLeft, Origin::RimLeft]), 1);
         assert_eq!(of(&[Origin::RimLeft, Origin::RimRight, Origin::Crossing]), 1);
     }

@@ -24,8 +24,10 @@ impl Node {
 /// How a segment came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
-    /// It is all that two facets have in common.
+    /// It is all that two facets have in common, which are not coplanar, or not both triangles.
     Crossing,
+    /// It is all that two coplanar triangles have in common.
+    Touching,
     /// It bounds the region of two coplanar facets, which lies to the left of it, seen with an axis of the plane's left out,
     /// from the lesser to the greater point.
     RimLeft,

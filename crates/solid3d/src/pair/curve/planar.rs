@@ -38,7 +38,10 @@ pub(super) fn meet(x: &Facet, y: &Facet, sites: &Sites, nodes: &mut Vec<Node>, m
     match nodes[..] {
         [] => {}
         [node] => found(Piece::Point(node)),
-        [one, other] => found(Piece::Segment([one, other], Origin::Crossing)),
+        [one, other] => {
+            let regions = x_count == 3 && y_count == 3;
+            found(Piece::Segment([one, other], if regions { Origin::Touching } else { Origin::Crossing }));
+        }
         _ => rim(axis, [x, y], nodes, sites, found),
     }
 }
