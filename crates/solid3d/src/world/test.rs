@@ -137,6 +137,7 @@ impl World {
                     Response::Ignore | Response::Simple => Contact::Simple,
                     Response::Witness => Contact::witness(a.placed(), b.placed(), &witness),
                     Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
+                    Response::Curve => Contact::curve(a.placed(), b.placed(), &witness, scratch),
                 };
                 (Some(contact), None)
             }
