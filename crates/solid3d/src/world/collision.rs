@@ -102,7 +102,7 @@ impl Collision {
         }
     }
 
-    /// Where the surfaces meet, if the response asked for it.
+    /// Where the surfaces meet, if the response asked for it. Shared, to keep without copying.
     ///
     /// ```
     /// use solid3d::{Response, Shape, World, glam::{DAffine3, DVec3}};
@@ -115,7 +115,7 @@ impl Collision {
     /// assert_eq!(collisions[0].curve().unwrap().length(), 6.0); // around the corner, from face to face
     /// # Ok::<(), solid3d::Error>(())
     /// ```
-    pub fn curve(&self) -> Option<&IntersectionCurve> {
+    pub fn curve(&self) -> Option<&Arc<IntersectionCurve>> {
         match &self.contact {
             Contact::Curve { curve, .. } => Some(curve),
             Contact::Simple | Contact::Witness { .. } | Contact::Smart { .. } => None,
