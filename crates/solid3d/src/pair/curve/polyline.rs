@@ -69,7 +69,8 @@ impl IntersectionCurve {
 
     /// The sum of the lengths of all segments.
     pub fn length(&self) -> f64 {
-        self.segments().map(|segment| segment.ends[0].distance(segment.ends[1])).sum()
+        // The sum of nothing is -0 in the standard library.
+        self.segments().map(|segment| segment.ends[0].distance(segment.ends[1])).fold(0.0, |sum, x| sum + x)
     }
 }
 
