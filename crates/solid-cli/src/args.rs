@@ -20,7 +20,7 @@ Objects:
   other. Shapes are closed sets, so touching collides; a mesh is a surface, so a body wholly inside one does not.
 
 Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any characters, `?` for one.
-    default = \"witness\"             # ignore, simple, witness or smart
+    default = \"witness\"             # ignore, simple, witness, smart or curve
 
     [[object]]                      # all pairs with the object
     name = \"mine*\"
@@ -33,6 +33,12 @@ Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any char
   A rule for the pair overrides one for an object, which overrides the default; of two objects with rules the first
   in the scene decides. Of the rules of one level the last that matches holds. A rule for a pair also holds on a root
   path. --response overrides the default.
+
+Curves (--response curve):
+  Where the surfaces of two objects meet: meshes, complex shapes, boxes and convex hulls. The JSON of such a collision
+  has \"curve\", a list of polylines, each a list of points [x,y,z]; of a closed one the last is the first again. The list
+  is empty where a round primitive (sphere, cone, cylinder) takes part. The point of the table and of --csv is the
+  first of the curve.
 
 Placements (--placements FILE.csv): in place of the animation,
     frame,object,tx,ty,tz,qx,qy,qz,qw
@@ -131,6 +137,8 @@ pub enum ResponseArg {
     Witness,
     /// The closest points of the previous frame, and the normal between them
     Smart,
+    /// The lines in which the surfaces meet (in JSON), and their first point
+    Curve,
 }
 
 impl From<ResponseArg> for Response {
@@ -139,6 +147,7 @@ impl From<ResponseArg> for Response {
             ResponseArg::Simple => Response::Simple,
             ResponseArg::Witness => Response::Witness,
             ResponseArg::Smart => Response::Smart,
+            ResponseArg::Curve => Response::Curve,
         }
     }
 }

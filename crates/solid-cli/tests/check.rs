@@ -86,6 +86,33 @@ fn witness_has_a_point_and_smart_a_normal_too() {
 }
 
 #[test]
+fn curve_has_the_lines_in_which_surfaces_meet() {
+    // A corner of b is in the middle of a.
+    let desk = Desk::with_boxes().file("p.csv", format!("{HEADER}0,b,1,1,1,0,0,0,1\n"));
+    let run = desk.run("check a.obj b.obj --placements p.csv --json - --response curve");
+    let collision = run.assert_status(1).json()["frames"][0]["collisions"][0].clone();
+    let polylines: Vec<Vec<[f64; 3]>> = serde_json::from_value(collision["curve"].clone()).unwrap();
+    assert_eq!(polylines.len(), 1, "{collision}");
+    let path = &polylines[0];
+    assert_eq!(path.first(), path.last(), "it is closed");
+    let length: f64 =
+        path.windows(2).map(|p| (0..3).map(|k| (p[1][k] - p[0][k]).powi(2)).sum::<f64>().sqrt()).sum();
+    assert_eq!(length, 6.0);
+    assert_eq!((&collision["point"], &collision["normal"]), (&json!(path[0]), &json!(null)));
+
+    // The same by rules; the point is that of the table and of CSV.
+    let desk = desk.file("r.toml", "default = \"curve\"\n");
+    let run = desk.run("check a.obj b.obj --placements p.csv --rules r.toml --csv -");
+    let row = run.stdout.lines().nth(1).unwrap().to_owned();
+    let point: Vec<f64> = row.split(',').skip(4).take(3).map(|field| field.parse().unwrap()).collect();
+    assert_eq!(point, path[0], "{row}");
+    // Other responses have no curve in JSON.
+    let run = desk.run("check a.obj b.obj --placements p.csv --json -");
+    assert!(run.json()["frames"][0]["collisions"][0].get("curve").is_none());
+    assert!(desk.run("check --help").stdout.contains("--response curve"));
+}
+
+#[test]
 fn csv_has_a_row_per_collision() {
     let desk = passing();
     let run = desk.run("check a.obj b.obj --placements p.csv --fps 10 --csv - --response simple");

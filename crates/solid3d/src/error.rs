@@ -119,6 +119,17 @@ pub enum Error {
         /// Their new positions.
         positions: [DVec3; 2],
     },
+    /// The intersection curve was asked for of a shape that has no flat facets.
+    #[error(
+        "{argument} is a {kind}, whose surface is curved; an intersection curve is between boxes, convex hulls, meshes and \
+         complex shapes"
+    )]
+    NoFacets {
+        /// The argument's name.
+        argument: &'static str,
+        /// The shape's kind.
+        kind: crate::ShapeKind,
+    },
     /// A placement has an entry that is not finite, or too large.
     #[error(
         "placement has the entry {value:?}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"

@@ -15,6 +15,7 @@ use glam::{DAffine3, DVec3};
 use crate::bounds::Aabb;
 use crate::error::Result;
 use crate::pair::{self, Placed, Relation, Scratch};
+pub use crate::pair::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 use crate::placement;
 use crate::shape::Shape;
 
@@ -113,6 +114,48 @@ pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAff
         point_on_a: placement_a.transform_point3(closest.points.on_a),
         point_on_b: placement_b.transform_point3(closest.points.on_b),
     })
+}
+
+/// The curve in which the surfaces of two placed shapes meet: polylines, each segment with the primitives that it comes from
+/// (thesis, section 6.5). Empty when they do not meet, also when one is inside the other.
+///
+/// Between meshes, complex shapes, boxes and convex hulls; the other kinds have no facets and are an
+/// [`Error::NoFacets`](crate::Error::NoFacets). Tetrahedra and polyhedra count by their boundaries, a polygon by its triangles;
+/// one whose vertices are not exactly coplanar is a thin polyhedron, of two sides.
+///
+/// - Which facets meet, and how segments join, is exact for their corners as placed, rounded; no tolerance joins or drops
+///   anything. Facets that share positions, not only indices, are neighbours. Of two closed surfaces in general position all
+///   polylines are closed.
+/// - Points are off by at most 1e-14 of the size of the data.
+/// - Two primitives that touch in a point alone give a polyline of one point.
+/// - Coplanar facets, which SOLID 1.0 ignores, give the outline of what they have in common.
+/// - Where more than two segments meet, polylines end.
+///
+/// For meshes, and complex shapes of points, segments and triangles, the curve is empty if and only if [`intersects`] is
+/// false. Cost: follows the number of pairs of primitives whose boxes overlap, n log n; for a convex hull also of its facets.
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// let (block, plate) = (Shape::cuboid([2.0, 2.0, 2.0])?, Shape::cuboid([4.0, 0.5, 4.0])?);
+/// let low = DAffine3::from_translation(DVec3::new(0.0, -0.9, 0.0));
+/// let curve = query::intersection_curve(&block, &DAffine3::IDENTITY, &plate, &low)?;
+/// // The top of the plate runs around the block; its bottom is below it.
+/// assert_eq!(curve.polylines.len(), 1);
+/// assert!(curve.polylines[0].closed && (curve.length() - 8.0).abs() < 1e-12);
+/// assert!(curve.segments().all(|segment| (segment.ends[0].y + 0.65).abs() < 1e-12));
+///
+/// let ball = Shape::sphere(1.0)?;
+/// let error = query::intersection_curve(&block, &DAffine3::IDENTITY, &ball, &low).unwrap_err();
+/// assert!(error.to_string().starts_with("b is a sphere, whose surface is curved"));
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn intersection_curve(
+    a: &Shape,
+    placement_a: &DAffine3,
+    b: &Shape,
+    placement_b: &DAffine3,
+) -> Result<IntersectionCurve> {
+    pair::intersection_curve(placed(a, placement_a)?, placed(b, placement_b)?, &mut Scratch::default())
 }
 
 /// A box of the world around a placed shape: for a convex shape the smallest, up to a margin for rounding; for a mesh or a

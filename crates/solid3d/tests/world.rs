@@ -19,8 +19,8 @@ use rand::rngs::StdRng;
 use solid_oracle::Convex;
 use solid_oracle::generate::{Regime, random_pair, random_shape, seeded};
 use solid3d::{
-    Boxes, BroadPhaseKind, Collision, Contact, Motion, ObjectId, Response, Shape, Statistics, When, World,
-    WorldOptions, glam, query,
+    Boxes, BroadPhaseKind, Collision, Contact, Error, Motion, ObjectId, Response, Shape, Statistics, When,
+    World, WorldOptions, glam, query,
 };
 
 /// What the model knows of an object: all of it, now and in the previous frame.
@@ -115,6 +115,18 @@ impl Model {
                     }
                 }
             }
+            Contact::Curve { point, ref curve } => {
+                match query::intersection_curve(&a.shape, &a.placement, &b.shape, &b.placement) {
+                    Ok(expected) => assert_eq!(**curve, expected),
+                    Err(error) => assert!(matches!(error, Error::NoFacets { .. }) && curve.is_empty()),
+                }
+                let spot = Shape::convex_hull(&[point]).unwrap();
+                for thing in [a, b] {
+                    let off =
+                        query::distance(&thing.shape, &thing.placement, &spot, &DAffine3::IDENTITY).unwrap();
+                    assert!(off.distance <= 1e-9 * size, "the point is off by {}", off.distance);
+                }
+            }
         }
     }
 }
@@ -131,6 +143,10 @@ fn bits(collision: &Collision) -> Bits {
         Contact::Smart { point_on_a, point_on_b, local_a, local_b, normal } => {
             let points = [point_on_a, point_on_b, local_a, local_b, normal.unwrap_or_default()];
             (2 + u8::from(normal.is_some()), of(&points))
+        }
+        Contact::Curve { point, ref curve } => {
+            let points = curve.polylines.iter().flat_map(|polyline| polyline.path());
+            (4, of(&std::iter::once(point).chain(points).collect::<Vec<_>>()))
         }
     };
     (collision.a, collision.b, kind, numbers)
@@ -151,7 +167,8 @@ struct Stage {
     room: f64,
 }
 
-const RESPONSES: [Response; 4] = [Response::Ignore, Response::Simple, Response::Witness, Response::Smart];
+const RESPONSES: [Response; 5] =
+    [Response::Ignore, Response::Simple, Response::Witness, Response::Smart, Response::Curve];
 
 fn world(broad_phase: BroadPhaseKind, caching: bool) -> World {
     World::with_options(&WorldOptions { broad_phase, caching, ..WorldOptions::default() })

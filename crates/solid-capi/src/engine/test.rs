@@ -112,7 +112,8 @@ impl Engine {
 
 fn points(contact: &Contact) -> Option<Points> {
     match *contact {
-        Contact::Simple => None,
+        // Curves are never asked for.
+        Contact::Simple | Contact::Curve { .. } => None,
         Contact::Witness { local_a, local_b, .. } => {
             Some(Points { point1: local_a, point2: local_b, normal: DVec3::ZERO })
         }

@@ -102,7 +102,8 @@ impl<'a> Stage<'a> {
 
     fn hit(&self, collision: &Collision) -> Hit {
         let [a, b] = [collision.a, collision.b].map(|id| self.places[&id]);
-        Hit { a, b, point: collision.point(), normal: collision.normal() }
+        let curve = collision.curve().cloned();
+        Hit { a, b, point: collision.point(), normal: collision.normal(), curve }
     }
 
     /// In words, that an object can't be as it is wanted.

@@ -6,12 +6,16 @@
 //!  "frames":[{"frame":0,"time":0.0,"collisions":[{"a":"ship","b":"mine","point":[0,0,0],"normal":null}]}],
 //!  "summary":{"frames":1,"colliding_frames":1,"collisions":1,"pairs":1}}
 //! ```
+//!
+//! Of the response `curve` a collision also has `"curve":[[[0,0,0],[1,0,0]]]`: polylines of points; a closed one ends with its
+//! first point.
 
 use std::io::Write;
 
 use anyhow::Result;
 use serde::Serialize;
 use solid_scene::Scene;
+use solid3d::query::IntersectionCurve;
 
 use super::{Frame, Hit, Recorder, Summary};
 
@@ -42,6 +46,8 @@ struct CollisionEntry<'a> {
     b: &'a str,
     point: Option<[f64; 3]>,
     normal: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    curve: Option<Vec<Vec<[f64; 3]>>>,
 }
 
 impl<W: Write> JsonRecorder<W> {
@@ -81,7 +87,11 @@ impl<W: Write> Recorder for JsonRecorder<W> {
 fn collision<'a>(scene: &'a Scene, hit: &Hit) -> CollisionEntry<'a> {
     let [a, b] = [hit.a, hit.b].map(|object| scene.objects()[object].name());
     let [point, normal] = [hit.point, hit.normal].map(|v| v.map(|v| v.to_array()));
-    CollisionEntry { a, b, point, normal }
+    CollisionEntry { a, b, point, normal, curve: hit.curve.as_deref().map(paths) }
+}
+
+fn paths(curve: &IntersectionCurve) -> Vec<Vec<[f64; 3]>> {
+    curve.polylines.iter().map(|polyline| polyline.path().map(|p| p.to_array()).collect()).collect()
 }
 
 /// What goes before an element of a list, which has a line of its own.

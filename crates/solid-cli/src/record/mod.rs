@@ -4,16 +4,19 @@ mod csv;
 mod json;
 mod pairs;
 
+use std::sync::Arc;
+
 use anyhow::Result;
 use solid_scene::Scene;
 use solid3d::glam::DVec3;
+use solid3d::query::IntersectionCurve;
 
 pub use self::csv::CsvRecorder;
 pub use json::JsonRecorder;
 pub use pairs::PairRecorder;
 
 /// A collision, of objects by their place in the scene; `a` comes before `b`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Hit {
     pub a: usize,
     pub b: usize,
@@ -21,6 +24,8 @@ pub struct Hit {
     pub point: Option<DVec3>,
     /// The approximate normal from `b` to `a`, if the response tells. Space: world.
     pub normal: Option<DVec3>,
+    /// Where the surfaces meet, if the response tells. Space: world.
+    pub curve: Option<Arc<IntersectionCurve>>,
 }
 
 /// A tested frame.

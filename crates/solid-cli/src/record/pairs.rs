@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     fn hit(a: usize, b: usize) -> Hit {
-        Hit { a, b, point: Some(DVec3::X), normal: None }
+        Hit { a, b, point: Some(DVec3::X), normal: None, curve: None }
     }
 
     #[test]

@@ -127,6 +127,7 @@ enum WrittenResponse {
     Simple,
     Witness,
     Smart,
+    Curve,
 }
 
 impl From<WrittenResponse> for Response {
@@ -136,6 +137,7 @@ impl From<WrittenResponse> for Response {
             WrittenResponse::Simple => Response::Simple,
             WrittenResponse::Witness => Response::Witness,
             WrittenResponse::Smart => Response::Smart,
+            WrittenResponse::Curve => Response::Curve,
         }
     }
 }

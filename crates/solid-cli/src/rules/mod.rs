@@ -1,7 +1,7 @@
 //! The response table: which pairs matter, and what is wanted of them, by the names of the objects.
 //!
 //! ```toml
-//! default = "witness"        # ignore, simple, witness or smart
+//! default = "witness"        # ignore, simple, witness, smart or curve
 //!
 //! [[object]]                 # all pairs with the object
 //! name = "mine*"

@@ -100,7 +100,7 @@ fn metric(a: &Stretch, b: &Stretch) -> PairMetric {
 }
 
 /// The primitives of a leaf in the common frame.
-fn place(complex: &Complex, leaf: &[u32], map: &DAffine3, placed: &mut Vec<PlacedPrimitive>) {
+pub(super) fn place(complex: &Complex, leaf: &[u32], map: &DAffine3, placed: &mut Vec<PlacedPrimitive>) {
     let vertex = |index: u32| map.transform_point3(complex.vertices()[index as usize]);
     let corners = |indices: &[u32]| -> Option<[DVec3; 3]> {
         match *indices {

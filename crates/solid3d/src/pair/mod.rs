@@ -12,6 +12,7 @@ mod complex_convex;
 mod containment;
 mod convex_convex;
 mod crossing;
+mod curve;
 mod fixed_box;
 mod frame;
 mod reach;
@@ -21,6 +22,8 @@ mod table;
 
 use glam::{DAffine3, DVec3};
 
+pub(crate) use curve::intersection_curve;
+pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;

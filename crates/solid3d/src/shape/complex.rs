@@ -137,6 +137,11 @@ impl Complex {
         Arc::ptr_eq(&self.parts, &other.parts)
     }
 
+    /// The primitive that the user gave, of which this one is a part.
+    pub fn owner(&self, primitive: u32) -> u32 {
+        self.primitives.owner(primitive)
+    }
+
     /// How many primitives the user gave: those of one owner count as one.
     pub fn primitive_count(&self) -> usize {
         // There is at least one.

@@ -6,6 +6,7 @@ mod kind;
 mod parts;
 mod radius;
 mod solid;
+mod surface;
 mod validate;
 
 use std::sync::Arc;
@@ -17,6 +18,7 @@ pub use builder::ComplexShapeBuilder;
 pub(crate) use complex::Complex;
 pub use kind::ShapeKind;
 pub use solid::OpenEdge;
+pub(crate) use surface::{Surface, boundary};
 
 use crate::error::{Error, Result};
 use crate::hull::Hull;

@@ -1,14 +1,15 @@
 //! What a test finds.
 
-use glam::DVec3;
+use std::sync::Arc;
 
+use glam::DVec3;
 use solid_convex::{Closest, Witness};
 
 use super::{ObjectId, Response, When};
-use crate::pair::{self, Placed, Scratch};
+use crate::pair::{self, IntersectionCurve, Placed, Scratch};
 
 /// Two objects that collide.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Collision {
     /// The object that was created first.
     pub a: ObjectId,
@@ -20,8 +21,8 @@ pub struct Collision {
     pub contact: Contact,
 }
 
-/// What is known of a collision, by the response of the pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What is known of a collision, by the response of the pair. Cheap to clone.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Contact {
     /// Nothing more ([`Response::Simple`]).
     Simple,
@@ -52,6 +53,14 @@ pub enum Contact {
         /// then, and the points are a common point.
         normal: Option<DVec3>,
     },
+    /// Where the surfaces meet ([`Response::Curve`]).
+    Curve {
+        /// The first point of the curve; a common point, also of two ways, when the curve is empty. Space: world.
+        point: DVec3,
+        /// The curve, as [`query::intersection_curve`](crate::query::intersection_curve) gives it. Empty when one of the
+        /// shapes is round (sphere, cone, cylinder, capsule), when a solid contains the other object, or on the way.
+        curve: Arc<IntersectionCurve>,
+    },
 }
 
 impl Contact {
@@ -74,14 +83,23 @@ impl Contact {
         let normal = if distance > 0.0 { (point_on_a - point_on_b).try_normalize() } else { None };
         Contact::Smart { point_on_a, point_on_b, local_a: points.on_a, local_b: points.on_b, normal }
     }
+
+    /// Where the surfaces of two objects meet; a common point is known.
+    pub(super) fn curve(a: Placed, b: Placed, witness: &Witness, scratch: &mut Scratch) -> Contact {
+        // What has no facets has no curve.
+        let curve = pair::intersection_curve(a, b, scratch).unwrap_or_default();
+        let point = curve.first_point().unwrap_or_else(|| pair::midpoint(a, b, witness));
+        Contact::Curve { point, curve: Arc::new(curve) }
+    }
 }
 
 impl Collision {
-    /// Where: the common point of a witness, the middle of the closest points of smart response; in the world.
+    /// Where: the common point of a witness, the middle of the closest points of smart response, the first point of a curve;
+    /// in the world.
     pub fn point(&self) -> Option<DVec3> {
         match self.contact {
             Contact::Simple => None,
-            Contact::Witness { point, .. } => Some(point),
+            Contact::Witness { point, .. } | Contact::Curve { point, .. } => Some(point),
             Contact::Smart { point_on_a, point_on_b, .. } => Some(0.5 * point_on_a + 0.5 * point_on_b),
         }
     }
@@ -90,7 +108,27 @@ impl Collision {
     pub fn normal(&self) -> Option<DVec3> {
         match self.contact {
             Contact::Smart { normal, .. } => normal,
-            Contact::Simple | Contact::Witness { .. } => None,
+            Contact::Simple | Contact::Witness { .. } | Contact::Curve { .. } => None,
+        }
+    }
+
+    /// Where the surfaces meet, if the response asked for it. Shared, to keep without copying.
+    ///
+    /// ```
+    /// use solid3d::{Response, Shape, World, glam::{DAffine3, DVec3}};
+    /// let mut world = World::new();
+    /// world.set_default_response(Response::Curve);
+    /// let block = Shape::cuboid([2.0, 2.0, 2.0])?;
+    /// world.add(&block, DAffine3::IDENTITY)?;
+    /// world.add(&block, DAffine3::from_translation(DVec3::ONE))?;
+    /// let collisions = world.test();
+    /// assert_eq!(collisions[0].curve().unwrap().length(), 6.0); // around the corner, from face to face
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn curve(&self) -> Option<&Arc<IntersectionCurve>> {
+        match &self.contact {
+            Contact::Curve { curve, .. } => Some(curve),
+            Contact::Simple | Contact::Witness { .. } | Contact::Smart { .. } => None,
         }
     }
 
@@ -100,6 +138,7 @@ impl Collision {
             Contact::Simple => Response::Simple,
             Contact::Witness { .. } => Response::Witness,
             Contact::Smart { .. } => Response::Smart,
+            Contact::Curve { .. } => Response::Curve,
         }
     }
 }

@@ -335,8 +335,8 @@ mod tests {
         let far = world.add(&ball, DAffine3::from_translation(DVec3::Y * 9.0))?;
         let all = world.test();
         assert_eq!(all.len(), 1);
-        assert_eq!(world.test_pair(late, early)?, Some(all[0]));
-        assert_eq!(world.test_pair(early, late)?, Some(all[0]));
+        assert_eq!(world.test_pair(late, early)?, Some(all[0].clone()));
+        assert_eq!(world.test_pair(early, late)?, Some(all[0].clone()));
         assert_eq!(world.test_pair(early, far)?, None);
         world.clear_pair_response(early, late)?;
         assert_eq!(world.test_pair(early, late)?, None);

@@ -19,6 +19,10 @@ pub enum Response {
     /// The closest points of the previous frame, and their direction: an approximation of the contact (thesis,
     /// section 2.3).
     Smart,
+    /// The line segments in which the surfaces meet, joined into polylines (thesis, section 6.5): of meshes, complex shapes,
+    /// boxes and convex hulls. Other kinds give a common point. Costs more than the others: all pairs of primitives are
+    /// examined, not only up to the first that meets.
+    Curve,
 }
 
 /// Responses by default, per object and per pair.

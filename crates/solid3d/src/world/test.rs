@@ -1,5 +1,7 @@
 //! The test: every candidate pair is examined, in creation order.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::candidates::{Candidate, PairKey};
@@ -180,6 +182,7 @@ impl World {
                     Response::Ignore | Response::Simple => Contact::Simple,
                     Response::Witness => Contact::witness(a.placed(), b.placed(), &witness),
                     Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
+                    Response::Curve => Contact::curve(a.placed(), b.placed(), &witness, scratch),
                 };
                 (Some((When::Now, contact)), None)
             }
@@ -211,6 +214,8 @@ fn on_the_way(
         Response::Ignore | Response::Simple => Contact::Simple,
         Response::Witness => Contact::witness_on_the_way(a.placed(), b.placed(), point),
         Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
+        // As they are now, the surfaces do not meet.
+        Response::Curve => Contact::Curve { point, curve: Arc::default() },
     };
     (Some((When::OnTheWay, contact)), None)
 }

@@ -1,0 +1,116 @@
+//! A shape as a surface of facets.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use solid_convex::Cuboid;
+
+use super::{Complex, Geometry, Shape};
+use crate::error::Result;
+use crate::hull::Hull;
+
+/// A shape's surface: facets under a tree.
+pub(crate) enum Surface<'a> {
+    /// A mesh or complex shape is its own.
+    Own(&'a Complex),
+    /// The facets of a convex shape, which is one primitive.
+    OfConvex(Box<Complex>),
+}
+
+impl Surface<'_> {
+    pub fn complex(&self) -> &Complex {
+        match self {
+            Surface::Own(complex) => complex,
+            Surface::OfConvex(complex) => complex,
+        }
+    }
+
+    /// The shape's primitive that a primitive of the surface belongs to.
+    pub fn primitive(&self, primitive: u32) -> u32 {
+        match self {
+            Surface::Own(complex) => complex.owner(primitive),
+            Surface::OfConvex(_) => 0,
+        }
+    }
+}
+
+impl Shape {
+    /// The surface; `None` for a shape that is round. Cost: nothing for a mesh or complex shape, O(n log n) for a convex hull.
+    pub(crate) fn surface(&self) -> Result<Option<Surface<'_>>> {
+        let corners = match &self.geometry {
+            Geometry::Complex(complex) => return Ok(Some(Surface::Own(complex))),
+            Geometry::Polytope(polytope) => Cow::Borrowed(polytope.points()),
+            Geometry::Cuboid(cuboid) => Cow::Owned(corners_of(cuboid)),
+            Geometry::Sphere(_) | Geometry::Cone(_) | Geometry::Cylinder(_) | Geometry::Capsule(_) => {
+                return Ok(None);
+            }
+        };
+        let facets = hull_facets(&corners);
+        Ok(Some(Surface::OfConvex(Box::new(Complex::mesh(corners.into_owned(), facets)?))))
+    }
+}
+
+/// The facets of a primitive, as indices into the vertices: its own triangle, or the surface of its hull. Segments and points
+/// are degenerate triangles.
+pub(crate) fn boundary(vertices: &[DVec3], primitive: &[u32]) -> Vec<[u32; 3]> {
+    match *primitive {
+        [i, j, k] => vec![[i, j, k]],
+        [i, j] => vec![[i, j, j]],
+        _ => {
+            let points: Vec<DVec3> = primitive.iter().map(|&i| vertices[i as usize]).collect();
+            let named = |facet: [u32; 3]| facet.map(|i| primitive[i as usize]);
+            hull_facets(&points).into_iter().map(named).collect()
+        }
+    }
+}
+
+/// The surface of the hull of points. A flat hull has each triangle once.
+fn hull_facets(points: &[DVec3]) -> Vec<[u32; 3]> {
+    let Some(hull) = Hull::of(points) else {
+        return Vec::new();
+    };
+    let mut facets = match *hull.vertices() {
+        [i] => vec![[i; 3]],
+        [i, j] => vec![[i, j, j]],
+        _ => hull.triangles().to_vec(),
+    };
+    if hull.dimension() == 2 {
+        facets.iter_mut().for_each(|facet| facet.sort_unstable());
+        facets.sort_unstable();
+        facets.dedup();
+    }
+    facets
+}
+
+fn corners_of(cuboid: &Cuboid) -> Vec<DVec3> {
+    let half = 0.5 * cuboid.size();
+    let sign = |i: u32, axis: u32| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
+    (0..8).map(|i| half * DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hulls_of_every_dimension_have_facets() {
+        let [x, y, z] = DVec3::AXES;
+        for (points, count) in [
+            (vec![x], 1),
+            (vec![x, 2.0 * x, 3.0 * x], 1),
+            (vec![DVec3::ZERO, x, y, x + y], 2),
+            (vec![DVec3::ZERO, x, y, z, 0.1 * DVec3::ONE], 4),
+        ] {
+            assert_eq!(hull_facets(&points).len(), count, "{points:?}");
+        }
+    }
+
+    #[test]
+    fn round_shapes_have_no_surface_of_facets() {
+        assert!(Shape::sphere(1.0).unwrap().surface().unwrap().is_none());
+        let cuboid = Shape::cuboid([1.0, 2.0, 3.0]).unwrap();
+        let surface = cuboid.surface().unwrap().unwrap();
+        assert_eq!((surface.complex().primitive_count(), surface.primitive(11)), (12, 0));
+        assert_eq!(surface.complex().bounds().max, DVec3::new(0.5, 1.0, 1.5));
+    }
+}
