@@ -212,6 +212,18 @@ fn bad_scenes_are_named() {
     assert!(matches!(run.status, 0 | 2), "{run:?}");
 }
 
+/// They may have no end, or keep us waiting for ever.
+#[cfg(unix)]
+#[test]
+fn devices_and_pipes_are_no_scenes() {
+    let desk = Desk::new();
+    for extension in ["wrl", "gltf", "glb", "obj", "stl", "ply"] {
+        let name = format!("device.{extension}");
+        std::os::unix::fs::symlink("/dev/null", desk.path(&name)).unwrap();
+        desk.run(&format!("check {name}")).assert_fails(&[&name, "is not a regular file"]);
+    }
+}
+
 #[test]
 fn an_output_that_cannot_be_written_is_an_error() {
     let desk = Desk::with_boxes();

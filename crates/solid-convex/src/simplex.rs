@@ -1,8 +1,8 @@
 //! The simplex of GJK: up to four support points, and the point of their hull closest to the origin.
 //!
 //! The closest point is found by the Voronoi regions of the simplex's features, through the normal of the face,
-//! rather than by Johnson's recursion of determinants as in the thesis (section 4.4.1): on nearly flat simplices
-//! Johnson's formula certifies a separation in 32 of 2,000 touching boxes where this one does in all, and takes
+//! rather than by Johnson's recursion of determinants as in the thesis (section 4.4.1). On nearly flat simplices these have
+//! no right digit: of 2,000 pairs of boxes a billionth apart they separate 32 where this separates all, and they take
 //! tetrahedra for containing the origin that do not. Whether a tetrahedron contains the origin is decided exactly.
 
 use glam::DVec3;

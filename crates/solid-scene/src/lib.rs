@@ -2,6 +2,33 @@
 //! time.
 //!
 //! VRML97, glTF 2.0 (`.gltf`, `.glb`), OBJ, STL and PLY. Several files make one scene.
+//!
+//! ```
+//! use solid_scene::{LoadOptions, Pose, Scene};
+//! use solid3d::World;
+//!
+//! let scene = Scene::load(&["../../scenes/cloth.wrl"], &LoadOptions::default())?;
+//! let names: Vec<_> = scene.objects().iter().map(|object| object.name()).collect();
+//! assert_eq!(names, ["table", "ball", "cloth"]);
+//!
+//! let (mut world, mut pose) = (World::new(), Pose::default());
+//! scene.sample(0.0, &mut pose);
+//! let mut ids = Vec::new();
+//! for (object, at) in scene.objects().iter().zip(&pose.objects) {
+//!     ids.push(world.add(object.shape(), at.placement)?);
+//! }
+//! assert!(world.test().is_empty());
+//!
+//! scene.sample(2.0, &mut pose);
+//! for (&id, at) in ids.iter().zip(&pose.objects) {
+//!     world.set_placement(id, at.placement)?;
+//!     if !at.positions.is_empty() {
+//!         world.deform(id, &at.positions)?; // the cloth has fallen over the ball
+//!     }
+//! }
+//! assert!(world.test().iter().any(|collision| (collision.a, collision.b) == (ids[1], ids[2])));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod error;
 mod fault;

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError};
 
+use crate::polygon::PolygonError;
 use crate::shape::OpenEdge;
 use crate::world::ObjectId;
 
@@ -13,6 +14,14 @@ pub enum Error {
     /// A radius, height or size is out of range.
     #[error(transparent)]
     Size(#[from] SizeError),
+    /// A polygon that is not flat or not simple.
+    #[error("primitive {primitive}: {error}")]
+    Polygon {
+        /// The primitive's place, in the order in which they were given.
+        primitive: usize,
+        /// What is wrong with it.
+        error: PolygonError,
+    },
     /// A shape without any vertex.
     #[error("{argument} is empty; a shape needs at least one vertex")]
     NoVertices {

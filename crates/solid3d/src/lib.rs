@@ -7,9 +7,11 @@ mod error;
 pub mod hull;
 mod pair;
 mod placement;
+pub mod polygon;
 pub mod query;
 mod shape;
 pub mod tree;
+mod triangle_triangle;
 mod world;
 
 pub use bounds::Aabb;
@@ -18,7 +20,10 @@ pub use error::{Error, Result};
 pub use glam;
 pub use shape::{ComplexShapeBuilder, OpenEdge, Shape, ShapeKind};
 pub use solid_convex as convex;
-pub use world::{Collision, Contact, ObjectId, Response, Statistics, World, WorldOptions};
+pub use world::{
+    Boxes, Collision, Contact, Motion, ObjectId, Response, Statistics, TestProgress, When, World,
+    WorldOptions,
+};
 
 /// The code of the guide and of the README, as tests.
 #[cfg(doctest)]

@@ -1,5 +1,7 @@
 //! Placements: affine maps from an object's space to the world.
 
+use std::ops::RangeInclusive;
+
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN};
 
@@ -13,6 +15,9 @@ const VOLUME_MIN: f64 = 1e-12;
 
 /// The placement itself when it can be used: finite, in range, and not singular.
 pub(crate) fn checked(placement: &DAffine3) -> Result<&DAffine3> {
+    if plainly_good(placement) {
+        return Ok(placement);
+    }
     let out_of_range = |x: &f64| !x.is_finite() || x.abs() > MAGNITUDE_MAX;
     if let Some(value) = placement.to_cols_array().into_iter().find(out_of_range) {
         return Err(Error::PlacementEntry { value });
@@ -23,6 +28,20 @@ pub(crate) fn checked(placement: &DAffine3) -> Result<&DAffine3> {
         _ => true,
     };
     if flat { Err(Error::SingularPlacement { x, y, z }) } else { Ok(placement) }
+}
+
+/// Whether a placement is so ordinary that a few products show it to be good: a third of the time.
+fn plainly_good(placement: &DAffine3) -> bool {
+    /// Squares of lengths between which no product below overflows or loses digits.
+    const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
+    /// Far above the square of `VOLUME_MIN`, by more than the rounding errors of the products.
+    const PLAIN_VOLUME_SQUARED: f64 = 1e-18;
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
+    let squares = [x, y, z].map(DVec3::length_squared);
+    let volume = x.cross(y).dot(z);
+    squares.iter().all(|square| PLAIN_SQUARES.contains(square))
+        && volume * volume > PLAIN_VOLUME_SQUARED * squares[0] * squares[1] * squares[2]
+        && placement.translation.abs().cmple(DVec3::splat(MAGNITUDE_MAX)).all()
 }
 
 /// The unit vector along an axis, without overflow or underflow on the way; `None` for one that is too short.

@@ -141,7 +141,7 @@ fn bad_placements_are_refused_by_queries_on_either_side() {
 
 /// A world with a bit of everything in it, and its objects.
 fn scene(broad_phase: BroadPhaseKind) -> (World, Vec<ObjectId>) {
-    let options = WorldOptions { broad_phase, default_response: Response::Smart, caching: true };
+    let options = WorldOptions { broad_phase, default_response: Response::Smart, ..Default::default() };
     let mut world = World::with_options(&options);
     let sheet = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y];
     let shapes = [

@@ -19,8 +19,8 @@ use rand::rngs::StdRng;
 use solid_oracle::Convex;
 use solid_oracle::generate::{Regime, random_pair, random_shape, seeded};
 use solid3d::{
-    BroadPhaseKind, Collision, Contact, ObjectId, Response, Shape, Statistics, World, WorldOptions, glam,
-    query,
+    Boxes, BroadPhaseKind, Collision, Contact, Motion, ObjectId, Response, Shape, Statistics, When, World,
+    WorldOptions, glam, query,
 };
 
 /// What the model knows of an object: all of it, now and in the previous frame.
@@ -143,6 +143,8 @@ fn all_bits(collisions: &[Collision]) -> Vec<Bits> {
 /// Worlds that are told the same, and the model of them.
 struct Stage {
     worlds: Vec<World>,
+    /// They test the way from the previous frame, too.
+    swept: Vec<World>,
     model: Model,
     rng: StdRng,
     /// The side of the cube that the objects are in.
@@ -155,15 +157,25 @@ fn world(broad_phase: BroadPhaseKind, caching: bool) -> World {
     World::with_options(&WorldOptions { broad_phase, caching, ..WorldOptions::default() })
 }
 
+fn world_of_boxes(broad_phase: BroadPhaseKind, boxes: Boxes) -> World {
+    World::with_options(&WorldOptions { broad_phase, boxes, ..WorldOptions::default() })
+}
+
+fn swept_world(broad_phase: BroadPhaseKind, caching: bool, boxes: Boxes) -> World {
+    let motion = Motion::Swept;
+    World::with_options(&WorldOptions { broad_phase, caching, boxes, motion, ..WorldOptions::default() })
+}
+
 impl Stage {
     fn new(worlds: Vec<World>, seed: u64, room: f64) -> Stage {
         println!("seed {seed}");
-        Stage { worlds, model: Model::default(), rng: seeded(seed), room }
+        Stage { worlds, swept: Vec::new(), model: Model::default(), rng: seeded(seed), room }
     }
 
     /// Tells every world the same and returns what the first said; they all say the same.
     fn tell<T: PartialEq + std::fmt::Debug>(&mut self, mut what: impl FnMut(&mut World) -> T) -> T {
-        let mut answers: Vec<T> = self.worlds.iter_mut().map(&mut what).collect();
+        let worlds = self.worlds.iter_mut().chain(&mut self.swept);
+        let mut answers: Vec<T> = worlds.map(&mut what).collect();
         assert!(answers.iter().all(|answer| *answer == answers[0]), "{answers:?}");
         answers.swap_remove(0)
     }
@@ -348,6 +360,33 @@ impl Stage {
         answers.swap_remove(0)
     }
 
+    /// Tests every swept world; all say the same, to the bit, and of the collisions of now the same as the others, which said
+    /// `now`. Returns the collisions on the way.
+    fn test_swept(&mut self, now: &[Collision]) -> Vec<Collision> {
+        let mut answers: Vec<Vec<Collision>> = self.swept.iter_mut().map(World::test).collect();
+        let whens = |answer: &[Collision]| answer.iter().map(|c| c.when).collect::<Vec<When>>();
+        for (i, answer) in answers.iter().enumerate() {
+            assert_eq!(whens(answer), whens(&answers[0]), "swept world {i} differs");
+            assert_eq!(all_bits(answer), all_bits(&answers[0]), "swept world {i} differs");
+        }
+        let found = answers.swap_remove(0);
+        let (found, on_the_way): (Vec<Collision>, _) =
+            found.into_iter().partition(|collision| collision.when == When::Now);
+        assert_eq!(all_bits(&found), all_bits(now));
+        on_the_way
+    }
+
+    /// Another motion for one object, in the swept worlds.
+    fn set_motion(&mut self) {
+        let index = self.any();
+        let id = self.model.things[index].id;
+        let motion = if self.rng.random_range(0..3) == 0 { Motion::Sampled } else { Motion::Swept };
+        for world in &mut self.swept {
+            world.set_motion(id, motion).unwrap();
+            assert_eq!(world.motion(id).unwrap(), motion);
+        }
+    }
+
     /// Compares the collisions with the model; returns how many there are.
     fn check(&self, collisions: &[Collision]) -> usize {
         let expected = self.model.collisions();
@@ -367,7 +406,18 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
         let mut worlds: Vec<World> =
             kinds.iter().flat_map(|&kind| [true, false].map(|caching| world(kind, caching))).collect();
         worlds.push(world(BroadPhaseKind::DynamicTree, true));
+        worlds.extend(kinds.map(|kind| world_of_boxes(kind, Boxes::FixedSize)));
         let mut stage = Stage::new(worlds, seed, 9.0);
+        // They take most of the time.
+        let with_swept = seed % 4 == 0;
+        stage.swept = vec![
+            swept_world(BroadPhaseKind::DynamicTree, true, Boxes::Dynamic),
+            swept_world(BroadPhaseKind::DynamicTree, false, Boxes::Dynamic),
+            swept_world(BroadPhaseKind::SweepAndPrune, true, Boxes::Dynamic),
+            swept_world(BroadPhaseKind::DynamicTree, true, Boxes::FixedSize),
+        ];
+        stage.swept.truncate(if with_swept { 4 } else { 0 });
+        let mut on_the_way = 0;
         for _ in 0..30 {
             stage.add();
         }
@@ -383,6 +433,12 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
             }
             let found = stage.test();
             let count = stage.check(&found);
+            if with_swept {
+                if stage.rng.random_range(0..4) == 0 {
+                    stage.set_motion();
+                }
+                on_the_way += stage.test_swept(&found).len();
+            }
             for collision in &found {
                 *contacts.entry(bits(collision).2).or_default() += 1;
             }
@@ -396,7 +452,8 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
             assert_eq!(stage.tell(|world| world.objects()), objects);
         }
         println!(
-            "{collisions} collisions of {pairs} pairs, in {busy} of {frames} frames; kinds {contacts:?}"
+            "{collisions} collisions of {pairs} pairs, in {busy} of {frames} frames; kinds {contacts:?}; \
+             {on_the_way} on the way"
         );
         assert!(busy > frames / 3, "most frames have collisions");
         assert!((0..4).all(|kind| contacts.contains_key(&kind)), "every kind of contact comes up");
@@ -407,12 +464,27 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
         assert_eq!(work[0].collisions, work[1].collisions);
         assert_eq!(work[1].cache_hits, 0);
         assert!(work[0].cache_hits > 0 && work[0].primitive_tests < work[1].primitive_tests, "{work:?}");
+        assert_eq!(work[5], work[6]);
+        assert!(work[5].candidates > work[0].candidates && work[5].collisions == work[0].collisions);
+        assert!(work.iter().all(|work| work.sweeps == 0));
+        if !with_swept {
+            continue;
+        }
+        let swept: Vec<Statistics> = stage.swept.iter().map(World::statistics).collect();
+        assert_eq!(swept[0], swept[2]);
+        assert_eq!(swept[0].candidates, swept[1].candidates);
+        assert!(swept[3].candidates > swept[0].candidates && swept[0].candidates > work[0].candidates);
+        assert!(swept[0].cache_hits > 0 && swept[0].sweeps < swept[1].sweeps, "{swept:?}");
+        assert!(on_the_way > frames / 4);
+        for swept in swept {
+            assert_eq!(swept.collisions, work[0].collisions + on_the_way as u64);
+        }
     }
 }
 
 /// Runs an animation in one world, as bits of all that it found and the work it did.
-fn animation(seed: u64, frames: usize) -> (Vec<Vec<Bits>>, Statistics) {
-    let mut stage = Stage::new(vec![world(BroadPhaseKind::DynamicTree, true)], seed, 9.0);
+fn animation(seed: u64, frames: usize, world: World) -> (Vec<Vec<Bits>>, Statistics) {
+    let mut stage = Stage::new(vec![world], seed, 9.0);
     for _ in 0..50 {
         stage.add();
     }
@@ -429,11 +501,16 @@ fn animation(seed: u64, frames: usize) -> (Vec<Vec<Bits>>, Statistics) {
 
 #[test]
 fn the_same_calls_give_the_same_bits_and_the_same_work() {
-    let first = animation(200, 300);
-    let second = animation(200, 300);
-    assert_eq!(first.1, second.1);
-    assert!(first.0 == second.0, "results differ");
-    assert!(first.1.cache_hits > 0 && first.1.collisions > 0);
+    let sampled = || world(BroadPhaseKind::DynamicTree, true);
+    let swept = || swept_world(BroadPhaseKind::DynamicTree, true, Boxes::FixedSize);
+    let makers: [&dyn Fn() -> World; 2] = [&sampled, &swept];
+    for make in makers {
+        let first = animation(200, 300, make());
+        let second = animation(200, 300, make());
+        assert_eq!(first.1, second.1);
+        assert!(first.0 == second.0, "results differ");
+        assert!(first.1.cache_hits > 0 && first.1.collisions > 0);
+    }
 }
 
 #[cfg(feature = "rayon")]
@@ -441,7 +518,7 @@ fn the_same_calls_give_the_same_bits_and_the_same_work() {
 fn the_number_of_threads_changes_no_bit_and_no_count() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| animation(201, 300))
+        pool.install(|| animation(201, 300, swept_world(BroadPhaseKind::DynamicTree, true, Boxes::Dynamic)))
     };
     let one = run(1);
     assert!(one.1.collisions > 100);

@@ -4,22 +4,19 @@ use std::path::Path;
 
 use super::limits::FILE_BYTES_MAX;
 use crate::error::SceneError;
+use crate::file;
 
 /// The first line of every VRML97 file begins with this.
 const HEADER: &str = "#VRML V2.0 utf8";
 
 /// Reads a file of VRML97. Bytes that are not UTF-8 (old exporters wrote Latin-1 into comments and names) become U+FFFD.
 pub(super) fn read(path: &Path) -> Result<String, SceneError> {
-    let fail = |message: String| SceneError::new(path, None, message);
-    let meta = std::fs::metadata(path).map_err(|error| fail(format!("can't be read: {error}")))?;
-    if !meta.is_file() {
-        return Err(fail("is not a regular file".into()));
+    let length = file::metadata(path)?.len();
+    if length > FILE_BYTES_MAX {
+        let message = format!("has {length} bytes; the limit is {FILE_BYTES_MAX}");
+        return Err(SceneError::new(path, None, message));
     }
-    if meta.len() > FILE_BYTES_MAX {
-        return Err(fail(format!("has {} bytes; the limit is {FILE_BYTES_MAX}", meta.len())));
-    }
-    let bytes = std::fs::read(path).map_err(|error| fail(format!("can't be read: {error}")))?;
-    decode(path, &bytes)
+    decode(path, &file::read(path)?)
 }
 
 /// The text of a file's bytes.

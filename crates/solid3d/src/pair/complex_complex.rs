@@ -15,7 +15,7 @@ use crate::shape::Complex;
 use crate::tree::{PairMetric, nearest_pairs, pairs};
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
-    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests } = scratch;
+    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
     let Frame { relative, common: [from_a, from_b], .. } = frame(a, b);
     let found = pairs(a.0.tree(), b.0.tree(), &relative, traversal, |leaf_a, leaf_b| {
         place(a.0, leaf_a, &from_a, in_a);
@@ -60,35 +60,34 @@ pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch)
         return Closest { distance: 0.0, points };
     }
     let Frame { relative, common: [from_a, from_b], scale, stretch: [of_a, of_b] } = frame(a, b);
-    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests } = scratch;
+    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
     // The best distance so far is kept in the common frame, as the bounds are.
     let (mut best, mut answer) = (f64::INFINITY, None);
     let metric = metric(&of_a, &of_b);
-    nearest_pairs(
-        a.0.tree(),
-        b.0.tree(),
-        &relative,
-        &metric,
-        &mut best,
-        traversal,
-        |leaf_a, leaf_b, best| {
-            place(a.0, leaf_a, &from_a, in_a);
-            place(b.0, leaf_b, &from_b, in_b);
-            for x in &*in_a {
-                for y in &*in_b {
-                    if x.bounds.gap(&y.bounds).length() < *best {
-                        *primitive_tests += 1;
-                        let closest = closest_of(a, x.primitive, b, y.primitive);
-                        let distance = closest.distance * scale;
-                        if distance < *best {
-                            *best = distance;
-                            answer = Some(closest);
-                        }
-                    }
+    // From the closest point of B to that of A so far: what is further apart along it is no nearer.
+    let mut axis = DVec3::ZERO;
+    let visit = |leaf_a: &[u32], leaf_b: &[u32], best: &mut f64| {
+        place(a.0, leaf_a, &from_a, in_a);
+        place(b.0, leaf_b, &from_b, in_b);
+        for x in &*in_a {
+            for y in &*in_b {
+                let apart = x.bounds.gap(&y.bounds).length() >= *best
+                    || x.least_along(axis) + y.least_along(-axis) >= *best;
+                if apart {
+                    continue;
+                }
+                *primitive_tests += 1;
+                let closest = closest_of(a, x.primitive, b, y.primitive);
+                if closest.distance * scale < *best {
+                    *best = closest.distance * scale;
+                    let on_a = from_a.transform_point3(closest.points.on_a);
+                    axis = (on_a - from_b.transform_point3(closest.points.on_b)).normalize_or_zero();
+                    answer = Some(closest);
                 }
             }
-        },
-    );
+        }
+    };
+    nearest_pairs(a.0.tree(), b.0.tree(), &relative, &metric, &mut best, traversal, visit);
     answer.expect("a complex shape has a primitive, and every distance is finite")
 }
 

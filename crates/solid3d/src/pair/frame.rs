@@ -9,7 +9,7 @@ use crate::tree::Relative;
 
 /// Roundings of 2^-53, relative to the size of the data, that lie between a local point and its image in another local
 /// space: two products with matrices, three translations, and the products that made the matrices.
-const ROUNDINGS: f64 = 64.0 / (1u64 << 53) as f64;
+pub(super) const ROUNDINGS: f64 = 64.0 / (1u64 << 53) as f64;
 
 /// Beyond what any shape that matters to the size of the data has; less is as valid a bound, and never infinite.
 const STRETCH_MAX: f64 = 1e200;
@@ -64,7 +64,7 @@ impl Frame {
 }
 
 /// The error of a world point of magnitude `size`, taken to local space by an inverse that has an error of its own.
-fn slack(linear: &DMat3, inverse: &DMat3, size: f64) -> f64 {
+pub(super) fn slack(linear: &DMat3, inverse: &DMat3, size: f64) -> f64 {
     let norm = row_norm(inverse);
     ROUNDINGS * norm * (1.0 + norm * row_norm(linear)) * size
 }

@@ -12,20 +12,24 @@ mod complex_convex;
 mod containment;
 mod convex_convex;
 mod crossing;
+mod fixed_box;
 mod frame;
 mod reach;
 mod scratch;
+pub(crate) mod swept;
 mod table;
-mod triangle_triangle;
 
 use glam::{DAffine3, DVec3};
 
+pub(crate) use fixed_box::fixed_bounds;
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};
 pub(crate) use table::{axis, closest, intersection};
 
+use crate::placement::inverse_linear;
 use crate::shape::{Class, Shape};
+use crate::triangle_triangle;
 
 /// A shape at a place.
 #[derive(Clone, Copy)]
@@ -59,6 +63,12 @@ pub(crate) fn midpoint(a: Placed, b: Placed, witness: &Witness) -> DVec3 {
     let on_a = a.placement.transform_point3(witness.on_a);
     let on_b = b.placement.transform_point3(witness.on_b);
     0.5 * on_a + 0.5 * on_b
+}
+
+/// A world point as the placement of a shape has it in local space.
+pub(crate) fn to_local(placed: Placed, point: DVec3) -> DVec3 {
+    let DAffine3 { matrix3, translation } = placed.placement;
+    inverse_linear(matrix3) * (point - *translation)
 }
 
 /// A result that can be read from the other side.

@@ -19,8 +19,13 @@ pub(crate) fn world_bounds(placed: Placed) -> Aabb {
         Class::Complex(complex) => complex.bounds().transformed(&DAffine3::from_mat3(*linear)),
     };
     let extent = bounds.min.abs().max(bounds.max.abs()).max_element();
-    let margin = BOUNDS_MARGIN * (extent + 1e-3 * translation.abs().max_element());
+    let margin = bounds_margin(extent + 1e-3 * translation.abs().max_element());
     Aabb::new(bounds.min + translation, bounds.max + translation).inflated(margin)
+}
+
+/// How much a world box is grown that has this part in the size of the data.
+pub(super) fn bounds_margin(size: f64) -> f64 {
+    BOUNDS_MARGIN * size
 }
 
 /// The smallest box around the image of a convex shape under a linear map, up to rounding: six support points.

@@ -7,11 +7,13 @@ use glam::DVec3;
 use super::complex::{Complex, Primitives};
 use super::{Geometry, Shape, validate};
 use crate::error::{Error, Result};
+use crate::polygon::Polygon;
 
 /// Builds a *complex shape*: a soup of points, segments, triangles, tetrahedra, convex polygons and convex polyhedra
-/// over one vertex buffer (thesis, sections 6.2 and B.2).
+/// over one vertex buffer (thesis, sections 6.2 and B.2), and of polygons that need not be convex (chapter 3).
 ///
-/// Vertices of a primitive may coincide or be collinear or coplanar: a primitive is the convex hull of its vertices.
+/// Vertices of a primitive may coincide or be collinear or coplanar: a primitive is the convex hull of its vertices, except a
+/// [simple polygon](ComplexShapeBuilder::simple_polygon).
 /// The first mistake is reported by [`build`](ComplexShapeBuilder::build).
 ///
 /// ```
@@ -34,13 +36,24 @@ pub struct ComplexShapeBuilder {
     vertices: Vec<DVec3>,
     first: Vec<u32>,
     indices: Vec<u32>,
+    /// The number of the user's primitive that each belongs to.
+    owners: Vec<u32>,
+    /// How many primitives the user gave so far.
+    given: usize,
     error: Option<Error>,
 }
 
 impl ComplexShapeBuilder {
     /// Starts a shape over a vertex buffer.
     pub fn new(vertices: impl Into<Vec<DVec3>>) -> Self {
-        ComplexShapeBuilder { vertices: vertices.into(), first: vec![0], indices: Vec::new(), error: None }
+        ComplexShapeBuilder {
+            vertices: vertices.into(),
+            first: vec![0],
+            indices: Vec::new(),
+            owners: Vec::new(),
+            given: 0,
+            error: None,
+        }
     }
 
     /// Adds a point.
@@ -68,10 +81,55 @@ impl ComplexShapeBuilder {
     }
 
     /// Adds a convex polygon of three or more vertices, approximately coplanar. A polygon that is not convex counts as
-    /// its convex hull: triangulate it.
+    /// its convex hull: see [`simple_polygon`](ComplexShapeBuilder::simple_polygon).
     #[must_use]
     pub fn polygon(self, vertices: &[u32]) -> Self {
         self.add(vertices, 3)
+    }
+
+    /// Adds a polygon that need not be convex, with holes by doubled edges: one closed chain, flat up to
+    /// [`FLATNESS_TOLERANCE`](crate::polygon::FLATNESS_TOLERANCE), whose edges may touch but not cross (thesis, section 2.1.1).
+    /// [`join_holes`](crate::polygon::join_holes) makes such a chain. It counts as one primitive.
+    ///
+    /// It is cut into triangles here, once, by the positions that the vertices have now. A deformation moves the triangles with the
+    /// vertices. They go on covering the polygon while it stays about flat and simple, and no triangle is turned over: bend and
+    /// stretch it, but do not drag a corner across the inside. Cost: O(n^2), at worst O(n^3).
+    ///
+    /// ```
+    /// use solid3d::{ComplexShapeBuilder, Shape, query, polygon, glam::{DAffine3, DVec3}};
+    /// // A wall with a window.
+    /// let square = |from: f64, to: f64| [(from, from), (to, from), (to, to), (from, to)].map(|(x, y)| DVec3::new(x, y, 0.0));
+    /// let vertices = [square(0.0, 4.0), square(1.0, 3.0)].concat();
+    /// let chain = polygon::join_holes(&vertices, &[0, 1, 2, 3], &[vec![4, 5, 6, 7]])?;
+    /// let wall = ComplexShapeBuilder::new(vertices).simple_polygon(&chain).build()?;
+    /// assert_eq!(wall.primitive_count(), 1);
+    ///
+    /// let ball = Shape::sphere(0.9)?;
+    /// let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 2.0, 0.0));
+    /// assert!(!query::intersects(&wall, &DAffine3::IDENTITY, &ball, &at(2.0))?); // through the window
+    /// assert!(query::intersects(&wall, &DAffine3::IDENTITY, &ball, &at(0.5))?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn simple_polygon(mut self, vertices: &[u32]) -> Self {
+        let polygon = self.checked(vertices, 3).and_then(|()| {
+            let corners: Vec<DVec3> = vertices.iter().map(|&i| self.vertices[i as usize]).collect();
+            Polygon::new(corners)
+                .and_then(Polygon::simple)
+                .map_err(|error| Error::Polygon { primitive: self.given, error })
+        });
+        match polygon {
+            Ok(polygon) => {
+                for triangle in polygon.triangles() {
+                    self.push(&triangle.map(|place| vertices[place as usize]));
+                }
+            }
+            Err(error) => {
+                self.error.get_or_insert(error);
+            }
+        }
+        self.given += 1;
+        self
     }
 
     /// Adds a convex polyhedron, solid: the hull of any vertices.
@@ -88,26 +146,34 @@ impl ComplexShapeBuilder {
         validate::vertex_count("vertices", self.vertices.len())?;
         validate::primitive_count("primitives", self.first.len() - 1)?;
         validate::at_most(validate::NAMEABLE_MAX, "indices", self.indices.len())?;
-        let primitives = Primitives::Mixed { first: self.first, indices: self.indices };
+        let all_whole = self.given == self.first.len() - 1;
+        let owners = if all_whole { Vec::new() } else { self.owners };
+        let primitives = Primitives::Mixed { first: self.first, indices: self.indices, owners };
         Ok(Geometry::Complex(Arc::new(Complex::new(self.vertices, primitives)?)).into())
     }
 
     fn add(mut self, vertices: &[u32], least: usize) -> Self {
-        let primitive = self.first.len() - 1;
-        let checked = if vertices.len() < least {
-            Err(Error::PrimitiveSize { primitive, count: vertices.len(), least })
-        } else {
-            validate::indices(primitive, vertices, self.vertices.len())
-        };
-        match checked {
-            Ok(()) => {
-                self.indices.extend_from_slice(vertices);
-                self.first.push(self.indices.len().min(u32::MAX as usize) as u32);
-            }
+        match self.checked(vertices, least) {
+            Ok(()) => self.push(vertices),
             Err(error) => {
                 self.error.get_or_insert(error);
             }
         }
+        self.given += 1;
         self
+    }
+
+    fn checked(&self, vertices: &[u32], least: usize) -> Result<()> {
+        if vertices.len() < least {
+            return Err(Error::PrimitiveSize { primitive: self.given, count: vertices.len(), least });
+        }
+        validate::indices(self.given, vertices, self.vertices.len())
+    }
+
+    /// Adds a primitive, or a piece of one.
+    fn push(&mut self, vertices: &[u32]) {
+        self.indices.extend_from_slice(vertices);
+        self.first.push(self.indices.len().min(u32::MAX as usize) as u32);
+        self.owners.push(self.given.min(u32::MAX as usize) as u32);
     }
 }

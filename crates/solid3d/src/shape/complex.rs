@@ -32,7 +32,12 @@ pub(super) enum Primitives {
     /// All are triangles.
     Triangles(Vec<[u32; 3]>),
     /// Primitive `i` is the hull of `indices[first[i]..first[i + 1]]`.
-    Mixed { first: Vec<u32>, indices: Vec<u32> },
+    Mixed {
+        first: Vec<u32>,
+        indices: Vec<u32>,
+        /// Of which of the user's primitives each is a piece, ascending from 0 without gaps; empty when all are whole.
+        owners: Vec<u32>,
+    },
 }
 
 impl Primitives {
@@ -43,11 +48,19 @@ impl Primitives {
         }
     }
 
+    /// The user's primitive that a primitive is a piece of: what a result names.
+    fn owner(&self, primitive: u32) -> u32 {
+        match self {
+            Primitives::Mixed { owners, .. } if !owners.is_empty() => owners[primitive as usize],
+            _ => primitive,
+        }
+    }
+
     fn get(&self, primitive: u32) -> &[u32] {
         let i = primitive as usize;
         match self {
             Primitives::Triangles(triangles) => &triangles[i],
-            Primitives::Mixed { first, indices } => &indices[first[i] as usize..first[i + 1] as usize],
+            Primitives::Mixed { first, indices, .. } => &indices[first[i] as usize..first[i + 1] as usize],
         }
     }
 
@@ -124,8 +137,10 @@ impl Complex {
         Arc::ptr_eq(&self.parts, &other.parts)
     }
 
+    /// How many primitives the user gave: those of one owner count as one.
     pub fn primitive_count(&self) -> usize {
-        self.primitives.len()
+        // There is at least one.
+        self.primitives.owner(self.primitives.len() as u32 - 1) as usize + 1
     }
 
     /// The indices of the vertices whose hull the primitive is.

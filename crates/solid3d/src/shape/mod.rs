@@ -4,6 +4,7 @@ mod builder;
 mod complex;
 mod kind;
 mod parts;
+mod radius;
 mod solid;
 mod validate;
 

@@ -3,9 +3,8 @@
 use glam::DVec3;
 
 use super::{ObjectId, Response, World};
-use crate::pair::world_bounds;
 
-/// Two objects by their places in the creation order, the earlier first: the order of the results.
+/// Two objects by their places in the order of pairs, the earlier first: the order of the results.
 pub(super) type PairKey = (u64, u64);
 
 /// A pair whose boxes overlap and that is not ignored.
@@ -27,7 +26,7 @@ impl World {
         for id in self.moved.drain(..) {
             if let Some(object) = self.objects.get_mut(id) {
                 object.moved = false;
-                self.broad.update(super::proxy(id), world_bounds(object.placed()));
+                self.broad.update(super::proxy(id), object.update_bounds());
             }
         }
         self.broad.flush();
@@ -36,7 +35,7 @@ impl World {
         let candidates = &mut self.candidates;
         self.broad.for_each_pair(&mut |p, q| {
             let (mut a, mut b) = (by_proxy[p as usize], by_proxy[q as usize]);
-            let mut key = (objects[a].serial, objects[b].serial);
+            let mut key = (objects[a].order, objects[b].order);
             if key.1 < key.0 {
                 (a, b, key) = (b, a, (key.1, key.0));
             }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use solid_convex::{Closest, Witness};
 
-use super::{ObjectId, Response};
+use super::{ObjectId, Response, When};
 use crate::pair::{self, Placed, Scratch};
 
 /// Two objects that collide.
@@ -14,6 +14,8 @@ pub struct Collision {
     pub a: ObjectId,
     /// The other.
     pub b: ObjectId,
+    /// Whether they collide as they are now.
+    pub when: When,
     /// What the pair's response asked for.
     pub contact: Contact,
 }
@@ -24,6 +26,9 @@ pub enum Contact {
     /// Nothing more ([`Response::Simple`]).
     Simple,
     /// A common point ([`Response::Witness`]).
+    ///
+    /// Of objects that collided [on the way](When::OnTheWay), a common point of the volumes that they swept; `local_a` and
+    /// `local_b` are then that point as seen from where they are now, and need not belong to them.
     Witness {
         /// The point. Space: world.
         point: DVec3,
@@ -54,6 +59,11 @@ impl Contact {
     pub(super) fn witness(a: Placed, b: Placed, witness: &Witness) -> Contact {
         let point = pair::midpoint(a, b, witness);
         Contact::Witness { point, local_a: witness.on_a, local_b: witness.on_b }
+    }
+
+    /// A common point of the ways of two objects.
+    pub(super) fn witness_on_the_way(a: Placed, b: Placed, point: DVec3) -> Contact {
+        Contact::Witness { point, local_a: pair::to_local(a, point), local_b: pair::to_local(b, point) }
     }
 
     /// The closest points of two objects as they were.

@@ -4,6 +4,7 @@
 
 mod candidates;
 mod collision;
+mod motion;
 mod object;
 mod options;
 mod response;
@@ -14,19 +15,24 @@ use glam::{DAffine3, DVec3};
 use slotmap::{Key, SlotMap};
 
 pub use collision::{Collision, Contact};
+pub use motion::{Motion, When};
 pub use object::ObjectId;
-pub use options::WorldOptions;
+pub use options::{Boxes, WorldOptions};
 pub use response::Response;
 pub use statistics::Statistics;
+pub use test::TestProgress;
 
 use crate::broad::{BroadPhase, PROXY_MAX, Proxy};
 use crate::error::{Error, Result};
-use crate::pair::{Scratch, world_bounds};
+use crate::pair::Scratch;
 use crate::placement;
 use crate::shape::Shape;
 use candidates::Candidate;
 use object::Object;
 use response::ResponseTable;
+
+/// How many objects there may be: the slot of each is a proxy, and slot 0 is not used.
+const OBJECTS_MAX: usize = PROXY_MAX as usize;
 
 /// Objects in one space, and what is wanted of their collisions.
 ///
@@ -59,6 +65,9 @@ pub struct World {
     added: u64,
     responses: ResponseTable,
     broad: Box<dyn BroadPhase>,
+    boxes: Boxes,
+    /// Of objects that are added.
+    motion: Motion,
     caching: bool,
     /// Objects whose box in the broad phase is out of date.
     moved: Vec<ObjectId>,
@@ -92,6 +101,8 @@ impl World {
             added: 0,
             responses: ResponseTable::new(options.default_response),
             broad: options.broad_phase.build(),
+            boxes: options.boxes,
+            motion: options.motion,
             caching: options.caching,
             moved: Vec::new(),
             displaced: Vec::new(),
@@ -102,16 +113,34 @@ impl World {
         }
     }
 
-    /// Adds an object: an instance of a shape at a place. For smart response, its previous frame is this one until the
-    /// next [`proceed`](World::proceed).
+    /// Adds an object: an instance of a shape at a place. Its previous frame is this one until the next [`proceed`](World::proceed).
     pub fn add(&mut self, shape: &Shape, placement: DAffine3) -> Result<ObjectId> {
+        self.add_ranked(shape, placement, 0)
+    }
+
+    /// Like [`add`](World::add), with a rank other than 0. Of a pair of objects of different ranks, the one of the lower rank
+    /// counts as the one that was created first: it is `a` of the [`Collision`], and its response goes before the other's.
+    ///
+    /// ```
+    /// use solid3d::{Shape, World, glam::DAffine3};
+    /// let mut world = World::new();
+    /// let ball = Shape::sphere(1.0)?;
+    /// let late = world.add_ranked(&ball, DAffine3::IDENTITY, 1)?;
+    /// let early = world.add(&ball, DAffine3::IDENTITY)?;
+    /// assert_eq!((world.test()[0].a, world.test()[0].b), (early, late));
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn add_ranked(&mut self, shape: &Shape, placement: DAffine3, rank: u8) -> Result<ObjectId> {
         placement::checked(&placement)?;
-        if self.objects.capacity() > PROXY_MAX as usize && self.objects.len() + 1 >= PROXY_MAX as usize {
-            let (count, limit) = (self.objects.len() + 1, PROXY_MAX as usize - 1);
-            return Err(Error::TooMany { argument: "objects", count, limit });
+        if self.objects.len() >= OBJECTS_MAX {
+            return Err(Error::TooMany {
+                argument: "objects",
+                count: self.objects.len() + 1,
+                limit: OBJECTS_MAX,
+            });
         }
-        let object = Object::new(self.added, shape.clone(), placement);
-        let bounds = world_bounds(object.placed());
+        let mut object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
+        let bounds = object.update_bounds();
         let id = self.objects.insert(object);
         self.added += 1;
         self.stale = true;
@@ -180,9 +209,8 @@ impl World {
     ///
     /// This is how one deformed shape reaches several objects: [`Shape::deform`] a clone, then set it for each.
     pub fn set_shape(&mut self, id: ObjectId, shape: &Shape) -> Result<()> {
-        let object = self.object_mut(id)?;
-        object.shape = shape.clone();
-        object.spare = None;
+        let boxes = self.boxes;
+        self.object_mut(id)?.set_shape(shape, boxes);
         self.touch(id);
         Ok(())
     }
@@ -197,13 +225,25 @@ impl World {
         Ok(())
     }
 
-    /// Ends the frame: what is now becomes the previous frame of smart response. Cost: follows what moved.
+    /// Ends the frame: what is now becomes the previous frame, of smart response and of [`Motion::Swept`]. Cost: follows what
+    /// moved.
     pub fn proceed(&mut self) {
-        for id in self.displaced.drain(..) {
+        for id in std::mem::take(&mut self.displaced) {
             if let Some(object) = self.objects.get_mut(id) {
+                let had_way = object.has_way();
                 object.proceed();
+                if had_way {
+                    self.update_bounds(id);
+                }
             }
         }
+    }
+
+    /// Ends the frame for one object alone: it is then as if it had just been added, as it is.
+    pub fn proceed_object(&mut self, id: ObjectId) -> Result<()> {
+        // It stays in `displaced`, where a second entry or none to do is harmless.
+        self.object_mut(id)?.proceed();
+        Ok(())
     }
 
     /// Lets tests use what earlier tests found out about a pair: its separating axis. On by default. Answers are the same
@@ -233,12 +273,16 @@ impl World {
 
     /// Notes that an object in the world is not where the broad phase and the previous frame have it.
     fn touch(&mut self, id: ObjectId) {
-        let object = &mut self.objects[id];
-        if !std::mem::replace(&mut object.moved, true) {
-            self.moved.push(id);
-        }
-        if !std::mem::replace(&mut object.displaced, true) {
+        if !std::mem::replace(&mut self.objects[id].displaced, true) {
             self.displaced.push(id);
+        }
+        self.update_bounds(id);
+    }
+
+    /// Notes that the broad phase has another box of an object in the world than it should.
+    fn update_bounds(&mut self, id: ObjectId) {
+        if !std::mem::replace(&mut self.objects[id].moved, true) {
+            self.moved.push(id);
         }
         self.stale = true;
     }

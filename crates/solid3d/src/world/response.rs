@@ -35,7 +35,7 @@ impl ResponseTable {
         ResponseTable { default, objects: SecondaryMap::new(), pairs: HashMap::new() }
     }
 
-    /// The response for a pair, of which `first` was created first.
+    /// The response for a pair, of which `first` comes first.
     pub fn of(&self, first: ObjectId, second: ObjectId) -> Response {
         let pair = if self.pairs.is_empty() { None } else { self.pairs.get(&ordered(first, second)) };
         let object = || self.objects.get(first).or_else(|| self.objects.get(second));
@@ -47,6 +47,14 @@ impl ResponseTable {
         self.objects.remove(id);
         for &partner in partners {
             self.pairs.remove(&ordered(id, partner));
+        }
+        self.give_back();
+    }
+
+    /// Gives memory back when nothing is left in it.
+    fn give_back(&mut self) {
+        if self.pairs.is_empty() {
+            self.pairs.shrink_to_fit();
         }
     }
 }
@@ -130,6 +138,7 @@ impl World {
         if self.responses.pairs.remove(&ordered(a, b)).is_some() {
             self.objects[a].pair_partners.retain(|&partner| partner != b);
             self.objects[b].pair_partners.retain(|&partner| partner != a);
+            self.responses.give_back();
         }
         self.stale = true;
         Ok(())
@@ -138,7 +147,7 @@ impl World {
     /// The response that holds for a pair.
     pub fn response(&self, a: ObjectId, b: ObjectId) -> Result<Response> {
         self.check_pair(a, b)?;
-        let a_first = self.objects[a].serial < self.objects[b].serial;
+        let a_first = self.objects[a].order < self.objects[b].order;
         Ok(if a_first { self.responses.of(a, b) } else { self.responses.of(b, a) })
     }
 

@@ -14,6 +14,8 @@ pub struct Statistics {
     pub box_tests: u64,
     /// Tests of one primitive, or convex shape, against another.
     pub primitive_tests: u64,
+    /// Candidates that are apart now, and whose way from the previous frame was searched for a collision.
+    pub sweeps: u64,
     /// Collisions.
     pub collisions: u64,
 }
@@ -24,6 +26,7 @@ impl AddAssign for Statistics {
         self.cache_hits += other.cache_hits;
         self.box_tests += other.box_tests;
         self.primitive_tests += other.primitive_tests;
+        self.sweeps += other.sweeps;
         self.collisions += other.collisions;
     }
 }

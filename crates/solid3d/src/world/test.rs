@@ -3,19 +3,30 @@
 use glam::DVec3;
 
 use super::candidates::{Candidate, PairKey};
-use super::{Collision, Contact, Response, Statistics, World};
+use super::object::Object;
+use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
+use crate::error::Result;
+use crate::pair::swept::{self, Encounter, Moving};
 use crate::pair::{self, Relation, Scratch};
+
+/// How far a test has come that is made collision by collision: see [`World::test_next`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TestProgress {
+    /// The pair examined last.
+    last: Option<PairKey>,
+}
 
 /// What examining a candidate gave.
 struct Examined {
-    contact: Option<Contact>,
+    found: Option<(When, Contact)>,
     axis: Option<DVec3>,
     work: Statistics,
 }
 
 /// # Tests
 impl World {
-    /// Finds every collision, at the current placements. In the order in which the objects were created: by the first object
+    /// Finds every collision, at the current placements, and of objects with [`Motion::Swept`](super::Motion::Swept) also on the
+    /// way from the previous ones. In the order in which the objects were created: by the first object
     /// of a pair, then by the second.
     ///
     /// Pairs are examined when their response is not [`Response::Ignore`] and their boxes overlap. With the feature `rayon` on
@@ -40,9 +51,7 @@ impl World {
         for (candidate, examined) in self.candidates.iter_mut().zip(examined) {
             candidate.axis = examined.axis;
             self.statistics += examined.work;
-            if let Some(contact) = examined.contact {
-                collisions.push(Collision { a: candidate.a, b: candidate.b, contact });
-            }
+            collisions.extend(candidate.collision(examined.found));
         }
         collisions
     }
@@ -69,17 +78,52 @@ impl World {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn test_with(&mut self, mut respond: impl FnMut(&mut World, &Collision)) -> usize {
+        let mut progress = TestProgress::default();
         let mut count = 0;
-        let mut last: Option<PairKey> = None;
-        loop {
-            self.refresh();
-            let next = self.candidates.partition_point(|candidate| Some(candidate.key) <= last);
-            let Some(collision) = self.next_collision(next, &mut last) else {
-                return count;
-            };
+        while let Some(collision) = self.test_next(&mut progress) {
             count += 1;
             respond(self, &collision);
         }
+        count
+    }
+
+    /// The next collision of a test that pauses after each, for callers that cannot lend the world to a closure as
+    /// [`test_with`](World::test_with) does, and otherwise the same. `None` at the end.
+    ///
+    /// ```
+    /// use solid3d::{Shape, TestProgress, World, glam::DAffine3};
+    /// let mut world = World::new();
+    /// let ball = Shape::sphere(1.0)?;
+    /// let (a, b) = (world.add(&ball, DAffine3::IDENTITY)?, world.add(&ball, DAffine3::IDENTITY)?);
+    /// let mut progress = TestProgress::default();
+    /// let collision = world.test_next(&mut progress).unwrap();
+    /// assert_eq!((collision.a, collision.b), (a, b));
+    /// assert_eq!(world.test_next(&mut progress), None);
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn test_next(&mut self, progress: &mut TestProgress) -> Option<Collision> {
+        self.refresh();
+        let next = self.candidates.partition_point(|candidate| Some(candidate.key) <= progress.last);
+        self.next_collision(next, &mut progress.last)
+    }
+
+    /// Whether two objects collide, and how, as [`test`](World::test) would report them; `None` also when their response is
+    /// [`Response::Ignore`]. Nothing is cached.
+    pub fn test_pair(&mut self, a: ObjectId, b: ObjectId) -> Result<Option<Collision>> {
+        if self.response(a, b)? == Response::Ignore {
+            return Ok(None);
+        }
+        let (mut a, mut b) = (a, b);
+        let mut key = (self.objects[a].order, self.objects[b].order);
+        if key.1 < key.0 {
+            (a, b, key) = (b, a, (key.1, key.0));
+        }
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let candidate = Candidate { key, a, b, axis: None };
+        let examined = self.examine(&candidate, &mut scratch);
+        self.scratch = scratch;
+        self.statistics += examined.work;
+        Ok(candidate.collision(examined.found))
     }
 
     /// Examines candidates from the `next` on until one collides; `last` becomes the key of the last examined.
@@ -92,8 +136,8 @@ impl World {
             self.candidates[i].axis = examined.axis;
             self.statistics += examined.work;
             *last = Some(candidate.key);
-            if let Some(contact) = examined.contact {
-                collision = Some(Collision { a: candidate.a, b: candidate.b, contact });
+            collision = candidate.collision(examined.found);
+            if collision.is_some() {
                 break;
             }
         }
@@ -123,26 +167,61 @@ impl World {
     fn examine(&self, candidate: &Candidate, scratch: &mut Scratch) -> Examined {
         let mut work = Statistics { candidates: 1, ..Statistics::default() };
         let (a, b) = (&self.objects[candidate.a], &self.objects[candidate.b]);
+        let way = (a.has_way() || b.has_way()).then(|| [a.moving(), b.moving()]);
+        let still_separated = |&axis: &DVec3| match &way {
+            None => pair::still_separated(axis, a.placed(), b.placed()),
+            Some([a, b]) => swept::still_separated(axis, a, b),
+        };
         let cached = candidate.axis.filter(|_| self.caching);
-        if let Some(axis) = cached.filter(|&axis| pair::still_separated(axis, a.placed(), b.placed())) {
+        if let Some(axis) = cached.filter(still_separated) {
             work.cache_hits = 1;
-            return Examined { contact: None, axis: Some(axis), work };
+            return Examined { found: None, axis: Some(axis), work };
         }
         let before = scratch.work();
-        let (contact, axis) = match pair::intersection(a.placed(), b.placed(), scratch) {
-            Relation::Separated { axis } => (None, axis.filter(|_| self.caching)),
-            Relation::Common(witness) => {
-                work.collisions = 1;
-                let contact = match self.responses.of(candidate.a, candidate.b) {
+        let response = self.responses.of(candidate.a, candidate.b);
+        let (found, axis) = match (pair::intersection(a.placed(), b.placed(), scratch), &way) {
+            (Relation::Common(witness), _) => {
+                let contact = match response {
                     Response::Ignore | Response::Simple => Contact::Simple,
                     Response::Witness => Contact::witness(a.placed(), b.placed(), &witness),
                     Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
                 };
-                (Some(contact), None)
+                (Some((When::Now, contact)), None)
+            }
+            (Relation::Separated { axis }, None) => (None, axis),
+            (Relation::Separated { .. }, Some(way)) => {
+                work.sweeps = 1;
+                on_the_way([a, b], way, response, scratch)
             }
         };
+        work.collisions = u64::from(found.is_some());
         let after = scratch.work();
         (work.box_tests, work.primitive_tests) = (after.0 - before.0, after.1 - before.1);
-        Examined { contact, axis, work }
+        Examined { found, axis: axis.filter(|_| self.caching), work }
+    }
+}
+
+/// Whether two objects that are apart now collided on the way; else an axis, when one separates them all the way.
+fn on_the_way(
+    [a, b]: [&Object; 2],
+    [way_a, way_b]: &[Moving; 2],
+    response: Response,
+    scratch: &mut Scratch,
+) -> (Option<(When, Contact)>, Option<DVec3>) {
+    let point = match swept::encounter(way_a, way_b, scratch) {
+        Encounter::None { axis } => return (None, axis),
+        Encounter::At(point) => point,
+    };
+    let contact = match response {
+        Response::Ignore | Response::Simple => Contact::Simple,
+        Response::Witness => Contact::witness_on_the_way(a.placed(), b.placed(), point),
+        Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
+    };
+    (Some((When::OnTheWay, contact)), None)
+}
+
+impl Candidate {
+    fn collision(&self, found: Option<(When, Contact)>) -> Option<Collision> {
+        found.map(|(when, contact)| Collision { a: self.a, b: self.b, when, contact })
     }
 }

@@ -76,7 +76,7 @@ pub fn placement(rng: &mut StdRng, size: f64) -> DAffine3 {
 }
 
 /// A rectangle of `rows * columns` vertices, mapped; `wrapped` joins its ends in both directions.
-fn sheet(rows: u32, columns: u32, wrapped: [bool; 2], map: impl FnMut(f64, f64) -> DVec3) -> Soup {
+pub fn sheet(rows: u32, columns: u32, wrapped: [bool; 2], map: impl FnMut(f64, f64) -> DVec3) -> Soup {
     let mut map = map;
     let mut vertices = Vec::new();
     for i in 0..rows {

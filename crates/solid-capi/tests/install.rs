@@ -1,0 +1,79 @@
+//! The install step: a prefix from which pkg-config and CMake build clients, and a static library that shows nothing but its
+//! functions.
+#![cfg(target_os = "linux")]
+
+mod common;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use common::{crate_folder, has, library_folder, run, succeed, text};
+
+/// Installs the library that the tests were built with.
+fn install(name: &str) -> PathBuf {
+    let prefix = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&prefix);
+    let mut script = Command::new("sh");
+    script.arg(crate_folder().join("install.sh")).arg(&prefix).arg(library_folder()).env_remove("DESTDIR");
+    succeed(&mut script);
+    prefix
+}
+
+fn flags(prefix: &Path, options: &[&str]) -> Vec<String> {
+    let mut pkg_config = Command::new("pkg-config");
+    pkg_config.args(options).arg("solid").env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig"));
+    text(&succeed(&mut pkg_config).stdout).split_whitespace().map(String::from).collect()
+}
+
+#[test]
+fn pkg_config_builds_clients() {
+    if !(has("cc") && has("pkg-config")) {
+        return;
+    }
+    let prefix = install("pkg_config_prefix");
+    let source = crate_folder().join("tests/c/manual.c");
+    let shared = prefix.join("shared");
+    let mut cc = Command::new("cc");
+    cc.arg(&source).args(flags(&prefix, &["--cflags", "--libs"])).arg("-lm").arg("-o").arg(&shared);
+    succeed(cc.arg(format!("-Wl,-rpath,{}", prefix.join("lib").display())));
+    run(&shared);
+
+    let alone = prefix.join("static");
+    let mut cc = Command::new("cc");
+    let libraries = flags(&prefix, &["--cflags", "--static", "--libs"]);
+    cc.arg(&source).args(libraries.iter().map(|flag| flag.replace("-lsolid", "-l:libsolid.a")));
+    succeed(cc.arg("-o").arg(&alone));
+    run(&alone);
+}
+
+#[test]
+fn the_static_library_shows_its_functions_only() {
+    if !(has("nm") && has("objcopy") && has("ld")) {
+        return;
+    }
+    let library = install("nm_prefix").join("lib/libsolid.a");
+    let symbols = succeed(Command::new("nm").args(["-g", "--defined-only", "--format=posix"]).arg(library));
+    let symbols = text(&symbols.stdout);
+    let names: Vec<&str> = symbols
+        .lines()
+        .filter(|line| !line.ends_with(':'))
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    assert_eq!(names.len(), 43, "{names:?}");
+    assert!(names.iter().all(|name| name.starts_with("dt")), "{names:?}");
+}
+
+#[test]
+fn cmake_builds_clients() {
+    if !(has("cc") && has("cmake")) {
+        return;
+    }
+    let prefix = install("cmake_prefix");
+    let build = prefix.join("build");
+    let mut configure = Command::new("cmake");
+    configure.arg("-S").arg(crate_folder().join("tests/cmake")).arg("-B").arg(&build);
+    succeed(configure.arg(format!("-DCMAKE_PREFIX_PATH={}", prefix.display())));
+    succeed(Command::new("cmake").arg("--build").arg(&build));
+    run(build.join("client_solid"));
+    run(build.join("client_solid_static"));
+}

@@ -1,0 +1,100 @@
+//! Which boxes of a moving complex shape's tree another moving shape may meet.
+
+use std::ops::ControlFlow;
+
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::Support;
+
+use super::bodies::{MovingComplex, MovingConvex};
+use crate::bounds::Aabb;
+use crate::pair::frame::{ROUNDINGS, slack};
+use crate::pair::reach::{convex_bounds, image_reach};
+use crate::placement::{inverse_linear, row_norm};
+use crate::shape::Complex;
+use crate::tree::Traversal;
+
+/// The local space of a moving complex shape as it is now, seen by what else moves.
+///
+/// With `c0`, `c1` the two positions of a point of the shape and `x0`, `x1` those of a point of the other, all in this
+/// space, they meet only if the origin is between `x0 - c0` and `x1 - c1`, that is, if `c1` is between `x1` and
+/// `x0 - (c0 - c1)`: if it lies in the box around those. So the tree, which bounds `c1`, serves the whole way.
+pub(super) struct TreeSpace<'a> {
+    pub shape: &'a Complex,
+    to_local: DMat3,
+    /// Where this space has its origin. Space: world.
+    origin: DVec3,
+    /// Contains `c0 - c1` for every point.
+    backward: Aabb,
+    /// Bounds the error of a box in this space.
+    slack: f64,
+}
+
+impl<'a> TreeSpace<'a> {
+    /// `size` bounds the size of the data; see [`size`].
+    pub fn new(moving: &MovingComplex<'a>, size: f64) -> Self {
+        let ((was, from), (is, to)) = (moving.from, moving.to);
+        let to_local = inverse_linear(&to.matrix3);
+        let origin = to.translation;
+        // c0 - c1 = (P1^-1 P0 v0 - v0) - (v1 - v0) for the local positions v0 and v1.
+        let by_placement = DAffine3 {
+            matrix3: to_local * from.matrix3 - DMat3::IDENTITY,
+            translation: to_local * (from.translation - origin),
+        };
+        let backward = less(&was.bounds().transformed(&by_placement), &moving.deformation);
+        let local_size = (was.reach() + is.reach()).max_element() * (1.0 + row_norm(&by_placement.matrix3));
+        let slack = slack(&to.matrix3, &to_local, size) + ROUNDINGS * local_size;
+        TreeSpace { shape: is, to_local, origin, backward, slack }
+    }
+
+    /// The primitives whose box overlaps one.
+    pub fn primitives(&self, query: &Aabb, traversal: &mut Traversal, primitives: &mut Vec<u32>) {
+        primitives.clear();
+        let _ = self.shape.tree().overlapping(query, traversal, |leaf| {
+            let overlaps = |&&primitive: &&u32| self.shape.primitive_bounds(primitive).overlaps(query);
+            primitives.extend(leaf.iter().filter(overlaps));
+            ControlFlow::<()>::Continue(())
+        });
+    }
+
+    /// What lies apart from this box is not met by a convex shape.
+    pub fn query_of_convex(&self, [from, to]: MovingConvex) -> Aabb {
+        let local = |(shape, at): (&dyn Support, &DAffine3)| {
+            let map = self.map_from(at);
+            let bounds = convex_bounds(shape, &map.matrix3);
+            Aabb::new(bounds.min + map.translation, bounds.max + map.translation)
+        };
+        self.query(local(from), local(to))
+    }
+
+    /// The same for a complex shape.
+    pub fn query_of_complex(&self, other: &MovingComplex) -> Aabb {
+        let local = |(shape, at): (&Complex, &DAffine3)| shape.bounds().transformed(&self.map_from(at));
+        self.query(local(other.from), local(other.to))
+    }
+
+    fn query(&self, was: Aabb, is: Aabb) -> Aabb {
+        less(&was, &self.backward).union(&is).inflated(self.slack)
+    }
+
+    fn map_from(&self, at: &DAffine3) -> DAffine3 {
+        DAffine3 {
+            matrix3: self.to_local * at.matrix3,
+            translation: self.to_local * (at.translation - self.origin),
+        }
+    }
+}
+
+/// A bound on every difference of two world points that a test of two moving shapes computes, given how far each reaches
+/// from its local origin at each end.
+pub(super) fn size(a: [(DVec3, &DAffine3); 2], b: [(DVec3, &DAffine3); 2]) -> f64 {
+    let far = |(reach, at): (DVec3, &DAffine3)| {
+        let offset = at.translation - a[1].1.translation;
+        image_reach(&at.matrix3, reach).max_element() + offset.abs().max_element()
+    };
+    [a, b].as_flattened().iter().map(|&end| far(end)).sum()
+}
+
+/// All differences of a point of one box and one of another.
+fn less(x: &Aabb, y: &Aabb) -> Aabb {
+    Aabb::new(x.min - y.max, x.max - y.min)
+}

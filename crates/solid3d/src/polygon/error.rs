@@ -1,0 +1,67 @@
+//! What can be wrong with a polygon.
+
+use glam::DVec3;
+use solid_convex::MAGNITUDE_MAX;
+
+/// Vertices that make no polygon. The message names what, where and the limit.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PolygonError {
+    /// Fewer than three vertices.
+    #[error("{chain} has {count} vertices; a closed chain needs at least 3")]
+    TooFewVertices {
+        /// Which chain: `polygon`, `outer`, or `hole 0`.
+        chain: String,
+        /// How many vertices it has.
+        count: usize,
+    },
+    /// A vertex is not finite, or too far out.
+    #[error(
+        "vertex {index} is {value}; each coordinate must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
+    )]
+    Vertex {
+        /// Its place in the chain.
+        index: usize,
+        /// Its position.
+        value: DVec3,
+    },
+    /// The vertices do not lie in a plane.
+    #[error("vertex {index} is {deviation:e} off the plane of the polygon; at most {tolerance:e} is allowed")]
+    NotFlat {
+        /// The vertex that is farthest off.
+        index: usize,
+        /// Its distance from the plane.
+        deviation: f64,
+        /// What was allowed.
+        tolerance: f64,
+    },
+    /// Two edges cross. Edges are named by their first vertices' places in the chain.
+    #[error(
+        "edges {first} and {second} of the polygon cross; a simple polygon's edges may touch but not cross"
+    )]
+    NotSimple {
+        /// An edge.
+        first: usize,
+        /// An edge after it.
+        second: usize,
+    },
+    /// A hole is not in the polygon, or is in another hole, or crosses a boundary.
+    #[error("hole {hole} is not inside the outer boundary and outside the other holes")]
+    HoleOutside {
+        /// Its place among the holes.
+        hole: usize,
+    },
+    /// A sphere's centre or radius, or a corner of a box, that no query can be made of.
+    #[error(
+        "{argument} is {value}; it must be finite, at most {MAGNITUDE_MAX:e} in magnitude, and no radius is negative"
+    )]
+    Argument {
+        /// The argument's name.
+        argument: &'static str,
+        /// The value it had.
+        value: f64,
+    },
+}
+
+/// A result whose error says why vertices make no polygon.
+pub type Result<T> = std::result::Result<T, PolygonError>;

@@ -1,0 +1,67 @@
+//! In the plane: points in polygons, crossing edges.
+
+use glam::DVec2;
+
+use super::exact::{segment_contains, segments_cross, turn};
+
+/// The edges of a closed chain.
+pub(super) fn edges(chain: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
+    chain.iter().copied().zip(chain.iter().copied().cycle().skip(1))
+}
+
+/// Whether a polygon contains a point, its boundary included: by counting how often a ray from the point crosses the
+/// boundary (thesis, section 3.2.1).
+pub(super) fn contains(chain: &[DVec2], x: DVec2) -> bool {
+    let mut inside = false;
+    for (p, q) in edges(chain) {
+        if segment_contains(p, q, x) {
+            return true;
+        }
+        // The ray goes to the right. An edge has its lower end but not its upper one, so that a vertex counts once.
+        if (p.y > x.y) != (q.y > x.y) && (turn(p, q, x) > 0.0) == (q.y > p.y) {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+/// Whether a polygon contains a point, its boundary excluded.
+pub(super) fn contains_strictly(chain: &[DVec2], x: DVec2) -> bool {
+    contains(chain, x) && !edges(chain).any(|(p, q)| segment_contains(p, q, x))
+}
+
+/// Two edges that cross, by their places.
+pub(super) fn crossing(chain: &[DVec2]) -> Option<[usize; 2]> {
+    let edge = |i: usize| (chain[i], chain[(i + 1) % chain.len()]);
+    (0..chain.len()).find_map(|i| {
+        let (p, q) = edge(i);
+        (i + 1..chain.len()).find(|&j| segments_cross(p, q, edge(j).0, edge(j).1)).map(|j| [i, j])
+    })
+}
+
+/// Twice the area, positive when the chain runs counter-clockwise; up to rounding.
+pub(super) fn doubled_area(chain: &[DVec2]) -> f64 {
+    let first = chain.first().copied().unwrap_or_default();
+    edges(chain).map(|(p, q)| (p - first).perp_dot(q - first)).sum()
+}
+
+/// Whether a chain goes around a convex region once, without turning back.
+pub(super) fn is_convex(chain: &[DVec2]) -> bool {
+    let mut corners: Vec<DVec2> = chain.to_vec();
+    corners.dedup();
+    while corners.len() > 1 && corners.first() == corners.last() {
+        corners.pop();
+    }
+    let n = corners.len();
+    let (mut left, mut right, mut reversals) = (false, false, 0);
+    for i in 0..n {
+        let [p, q, r] = [0, 1, 2].map(|k| corners[(i + k) % n]);
+        let turned = turn(p, q, r);
+        left |= turned > 0.0;
+        right |= turned < 0.0;
+        // A convex chain goes up once and down once in the lexicographic order.
+        let goes_up = |p: DVec2, q: DVec2| (p.x, p.y) < (q.x, q.y);
+        reversals += u32::from(goes_up(p, q) != goes_up(q, r));
+    }
+    !(left && right) && reversals <= 2
+}

@@ -1,0 +1,111 @@
+//! Triangulation by cutting ears, exactly.
+//!
+//! Every vertex is kept: n vertices give n - 2 triangles over the chain as it is, of which those at collinear vertices and at
+//! edges that turn back have no area. So the union of the triangles is the polygon to the last bit, antennae included, and
+//! it stays a covering of the polygon when the vertices move. (The crate `earcut` drops collinear vertices, which leaves gaps once
+//! they move, and all that has no area.)
+
+use glam::DVec2;
+
+use super::exact::turn;
+use super::planar;
+
+/// The triangles, as places in the chain, turned as the chain is. Cost: O(n^2), at worst O(n^3).
+///
+/// For a chain that crosses itself the triangles are n - 2 all the same, but cover something else.
+pub(super) fn triangulate(chain: &[DVec2]) -> Vec<[u32; 3]> {
+    let sense = if planar::doubled_area(chain) < 0.0 { -1.0 } else { 1.0 };
+    let mut rest = Rest { chain, sense, places: (0..chain.len()).collect() };
+    let mut triangles = Vec::with_capacity(chain.len().saturating_sub(2));
+    let mut start = 0;
+    while rest.places.len() > 3 {
+        let ear = rest.find(start);
+        triangles.push(rest.corner(ear).map(|place| place as u32));
+        rest.places.remove(ear);
+        // Going on behind the neighbour makes fewer slivers than cutting a fan.
+        start = if ear + 1 < rest.places.len() { ear + 1 } else { 0 };
+    }
+    if let [a, b, c] = rest.places[..] {
+        triangles.push([a, b, c].map(|place| place as u32));
+    }
+    triangles
+}
+
+/// What is left of the chain.
+struct Rest<'a> {
+    chain: &'a [DVec2],
+    /// 1 for a chain that runs counter-clockwise, else -1.
+    sense: f64,
+    places: Vec<usize>,
+}
+
+impl Rest<'_> {
+    /// The corner to cut next: a tip; else an ear; else one without an area; else, which a simple polygon has not, any.
+    fn find(&self, start: usize) -> usize {
+        let n = self.places.len();
+        let around = || (0..n).map(|k| (start + k) % n);
+        let first = around().find(|&i| self.is_tip(i)).or_else(|| around().find(|&i| self.is_ear(i)));
+        first.or_else(|| around().find(|&i| self.turn(self.corner(i)) == 0.0)).unwrap_or(start)
+    }
+
+    /// Whether the corner is the tip of an antenna, or repeats a vertex. Such corners go first: beside them others look like
+    /// ears that are not. A slit has a tip, too, but with the polygon around it.
+    fn is_tip(&self, i: usize) -> bool {
+        let corner = self.corner(i);
+        let [a, v, b] = corner.map(|place| self.chain[place]);
+        if a == v || v == b {
+            return true;
+        }
+        let turns_back = self.turn(corner) == 0.0 && (a - v).dot(b - v) > 0.0;
+        turns_back && {
+            let others: Vec<DVec2> =
+                self.places.iter().filter(|&&place| place != corner[1]).map(|&p| self.chain[p]).collect();
+            !planar::contains_strictly(&others, v)
+        }
+    }
+
+    /// The places before, at and after a corner.
+    fn corner(&self, i: usize) -> [usize; 3] {
+        let n = self.places.len();
+        [self.places[(i + n - 1) % n], self.places[i], self.places[(i + 1) % n]]
+    }
+
+    fn turn(&self, [a, b, c]: [usize; 3]) -> f64 {
+        self.sense * turn(self.chain[a], self.chain[b], self.chain[c])
+    }
+
+    /// Whether the corner is convex, and nothing of the chain lies in its triangle.
+    fn is_ear(&self, i: usize) -> bool {
+        let ear @ [a, v, b] = self.corner(i);
+        if self.turn(ear) <= 0.0 {
+            return false;
+        }
+        let [at_a, at_v, at_b] = ear.map(|place| self.chain[place]);
+        let (low, high) = (at_a.min(at_v).min(at_b), at_a.max(at_v).max(at_b));
+        (0..self.places.len()).all(|j| {
+            let [before, w, after] = self.corner(j);
+            let x = self.chain[w];
+            if w == a || w == v || w == b || x.cmplt(low).any() || x.cmpgt(high).any() {
+                return true;
+            }
+            if x == at_v {
+                // The chain comes by again; it may leave into the triangle and out of its far side.
+                let enters = |y: usize| self.turn([a, v, y]) > 0.0 && self.turn([v, b, y]) > 0.0;
+                return !enters(before) && !enters(after);
+            }
+            if x == at_a || x == at_b {
+                return true;
+            }
+            let sides = [[a, v], [v, b], [b, a]];
+            let turns = sides.map(|[from, to]| self.turn([from, to, w]));
+            // On a side of the triangle the chain may touch it from outside.
+            let on_side = turns.iter().position(|&turned| turned == 0.0);
+            let outside = turns.iter().any(|&turned| turned < 0.0);
+            outside
+                || on_side.is_some_and(|k| {
+                    let [from, to] = sides[k];
+                    self.turn([from, to, before]) <= 0.0 && self.turn([from, to, after]) <= 0.0
+                })
+        })
+    }
+}

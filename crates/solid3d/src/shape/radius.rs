@@ -1,0 +1,59 @@
+//! The radius of a shape.
+
+use glam::DVec3;
+use solid_convex::Support;
+
+use super::{Geometry, Shape};
+
+impl Shape {
+    /// The radius of the smallest ball about the local origin that contains the shape, up to rounding. Cost: linear in the
+    /// vertices.
+    pub(crate) fn radius(&self) -> f64 {
+        match &self.geometry {
+            Geometry::Sphere(sphere) => sphere.radius(),
+            Geometry::Cuboid(cuboid) => furthest([cuboid.reach()]),
+            Geometry::Cone(cone) => rim(cone.radius(), cone.height()),
+            Geometry::Cylinder(cylinder) => rim(cylinder.radius(), cylinder.height()),
+            Geometry::Capsule(capsule) => capsule.radius() + 0.5 * capsule.height(),
+            Geometry::Polytope(polytope) => furthest(polytope.points().iter().copied()),
+            Geometry::Complex(complex) => {
+                let indices = (0..complex.primitive_count() as u32).flat_map(|i| complex.primitive(i));
+                furthest(indices.map(|&index| complex.vertices()[index as usize]))
+            }
+        }
+    }
+}
+
+/// The distance of the base's rim; no other point of a cone or a cylinder is further, for the apex is as far along the axis.
+fn rim(radius: f64, height: f64) -> f64 {
+    radius.hypot(0.5 * height)
+}
+
+/// The distance of the furthest point. `hypot` neither overflows nor underflows.
+fn furthest(points: impl IntoIterator<Item = DVec3>) -> f64 {
+    points.into_iter().map(|p| p.x.hypot(p.y).hypot(p.z)).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Result;
+
+    #[test]
+    fn the_radius_of_each_kind() -> Result<()> {
+        let corners = [DVec3::new(1.0, 2.0, 2.0), DVec3::X, DVec3::Y, DVec3::new(9.0, 0.0, 0.0)];
+        let expected = [
+            (Shape::sphere(2.0)?, 2.0),
+            (Shape::cuboid([2.0, 4.0, 4.0])?, 3.0),
+            (Shape::cone(3.0, 8.0)?, 5.0),
+            (Shape::cylinder(3.0, 8.0)?, 5.0),
+            (Shape::capsule(1.0, 4.0)?, 3.0),
+            (Shape::convex_hull(&corners[..3])?, 3.0),
+            (Shape::mesh(corners, [[0, 1, 2]])?, 3.0), // no primitive names the fourth vertex
+        ];
+        for (shape, radius) in expected {
+            assert!((shape.radius() - radius).abs() < 1e-15, "{}: {}", shape.kind(), shape.radius());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,177 @@
+//! Non-convex polygons as primitives of complex shapes: in every query, in worlds, and deformed.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Soup, assert_rate, direction, in_cube, placement, random_complex, random_mesh, shape_of};
+use glam::{DAffine3, DMat3, DVec3};
+use rand::Rng;
+use rand::rngs::StdRng;
+use solid_oracle::generate::{random_shape, seeded};
+use solid3d::polygon::{Polygon, join_holes};
+use solid3d::{ComplexShapeBuilder, Error, Shape, ShapeKind, World, glam, query};
+
+/// A star-shaped polygon with a hole of the same form, in the plane x, y; about 1 from its origin.
+fn star(rng: &mut StdRng) -> (Vec<DVec3>, Vec<u32>) {
+    let n = rng.random_range(3..=9);
+    let radii: Vec<f64> = (0..n).map(|_| rng.random_range(0.3..=1.0)).collect();
+    let at = |i: usize, size: f64| {
+        let angle = std::f64::consts::TAU * i as f64 / n as f64;
+        size * radii[i] * DVec3::new(angle.cos(), angle.sin(), 0.0)
+    };
+    let mut vertices: Vec<DVec3> = (0..n).map(|i| at(i, 1.0)).collect();
+    let outer: Vec<u32> = (0..n as u32).collect();
+    if rng.random() {
+        return (vertices, outer);
+    }
+    vertices.extend((0..n).map(|i| at(i, 0.6)));
+    let chain = join_holes(&vertices, &outer, &[(n as u32..2 * n as u32).collect()]).unwrap();
+    (vertices, chain)
+}
+
+/// Several stars in space: as polygons, and as the triangles that they should be.
+fn stars(rng: &mut StdRng) -> (Shape, Soup, usize) {
+    let count = rng.random_range(1..=5);
+    let (mut vertices, mut chains, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..count {
+        let (flat, chain) = star(rng);
+        let at = DAffine3 {
+            matrix3: DMat3::from_quat(glam::DQuat::from_rotation_arc(DVec3::Z, direction(rng)))
+                * rng.random_range(0.2..0.7),
+            translation: 0.5 * in_cube(rng),
+        };
+        let first = vertices.len() as u32;
+        vertices.extend(flat.iter().map(|&p| at.transform_point3(p)));
+        let chain: Vec<u32> = chain.iter().map(|i| first + i).collect();
+        let polygon = Polygon::new(chain.iter().map(|&i| vertices[i as usize]).collect::<Vec<_>>()).unwrap();
+        triangles.extend(polygon.triangles().into_iter().map(|t| t.map(|i| chain[i as usize])));
+        chains.push(chain);
+    }
+    let builder = ComplexShapeBuilder::new(vertices.clone());
+    let shape = chains.iter().fold(builder, |builder, chain| builder.simple_polygon(chain)).build().unwrap();
+    (shape, Soup::mesh(vertices, triangles), count)
+}
+
+/// A shape of any kind, about 1 from its origin.
+fn any_shape(rng: &mut StdRng) -> Shape {
+    match rng.random_range(0..4) {
+        0 => random_mesh(rng, 40).shape(),
+        1 => random_complex(rng, 8).shape(),
+        2 => stars(rng).0,
+        _ => shape_of(&random_shape(rng, 0.7)),
+    }
+}
+
+/// Law: a polygon in a complex shape is its triangles, in every query and against every kind.
+#[test]
+fn polygons_are_their_triangles_in_every_query() {
+    let seed = 60;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (cases, mut hits) = (3000, 0);
+    for case in 0..cases {
+        let (shape, soup, count) = stars(&mut rng);
+        assert_eq!((shape.kind(), shape.primitive_count()), (ShapeKind::Complex, count));
+        let mesh = soup.shape();
+        let other = any_shape(&mut rng);
+        let (at, mut at_other) = (placement(&mut rng, 1.0), placement(&mut rng, 0.2));
+        let near = at.transform_point3(soup.vertices[0]);
+        at_other.translation = near + rng.random_range(0.0..1.4) * direction(&mut rng);
+        let meet = query::intersects(&mesh, &at, &other, &at_other).unwrap();
+        hits += usize::from(meet);
+        assert_eq!(query::intersects(&shape, &at, &other, &at_other).unwrap(), meet, "case {case}");
+        assert_eq!(query::intersects(&other, &at_other, &shape, &at).unwrap(), meet, "case {case}, swapped");
+        assert_eq!(query::common_point(&shape, &at, &other, &at_other).unwrap().is_some(), meet);
+        let of_mesh = query::distance(&mesh, &at, &other, &at_other).unwrap().distance;
+        let of_shape = query::distance(&shape, &at, &other, &at_other).unwrap().distance;
+        assert!((of_mesh - of_shape).abs() <= 1e-9 * (1.0 + of_mesh), "case {case}: {of_mesh} {of_shape}");
+        let axes = [&mesh, &shape].map(|x| query::separating_axis(x, &at, &other, &at_other).unwrap());
+        assert_eq!(axes[0], axes[1]);
+
+        let mut world = World::new();
+        let id = world.add(&shape, at).unwrap();
+        world.add(&other, at_other).unwrap();
+        assert_eq!(!world.test().is_empty(), meet, "case {case}, in a world");
+        world.remove(id).unwrap();
+    }
+    assert_rate("polygons against anything", hits, cases);
+}
+
+/// Law: deformed within its plane, a polygon stays covered by its triangles; also where collinear vertices open.
+#[test]
+fn deformed_polygons_are_what_would_be_built_anew() {
+    let seed = 61;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut cases, mut hits) = (0, 0);
+    for case in 0..4000 {
+        // A comb whose back has collinear vertices in it.
+        let comb = [
+            (0.0, 0.0),
+            (1.0, 0.0),
+            (2.0, 0.0),
+            (3.0, 0.0),
+            (4.0, 0.0),
+            (5.0, 0.0),
+            (5.0, 3.0),
+            (4.0, 3.0),
+            (4.0, 1.0),
+            (3.0, 1.0),
+            (3.0, 3.0),
+            (2.0, 3.0),
+            (2.0, 1.0),
+            (1.0, 1.0),
+            (1.0, 3.0),
+            (0.0, 3.0),
+        ];
+        let lift = |(x, y): (f64, f64)| DVec3::new(x, y, x + 2.0 * y);
+        let rest: Vec<DVec3> = comb.map(lift).to_vec();
+        let chain: Vec<u32> = (0..16).collect();
+        let shape = ComplexShapeBuilder::new(rest.clone()).point(0).simple_polygon(&chain).build().unwrap();
+        assert_eq!(shape.primitive_count(), 2);
+        let moved: Vec<DVec3> = comb
+            .map(|(x, y)| lift((x + rng.random_range(-0.2..0.2), y + rng.random_range(-0.2..0.2))))
+            .to_vec();
+        let mut world = World::new();
+        let id = world.add(&shape, DAffine3::IDENTITY).unwrap();
+        let through = DVec3::new(rng.random_range(-0.5..5.5), rng.random_range(-0.5..3.5), 0.0);
+        let needle =
+            ComplexShapeBuilder::new([DVec3::Z * -30.0, DVec3::Z * 30.0]).segment([0, 1]).build().unwrap();
+        let at = DAffine3::from_translation(through);
+        world.add(&needle, at).unwrap();
+        world.test();
+        world.deform(id, &moved).unwrap();
+        let Ok(anew) = ComplexShapeBuilder::new(moved.clone()).simple_polygon(&chain).build() else {
+            continue;
+        };
+        let expected = query::intersects(&anew, &DAffine3::IDENTITY, &needle, &at).unwrap();
+        assert_eq!(!world.test().is_empty(), expected, "case {case}: {through}");
+        let mut deformed = shape.clone();
+        deformed.deform(&moved).unwrap();
+        assert_eq!(query::intersects(&deformed, &DAffine3::IDENTITY, &needle, &at).unwrap(), expected);
+        cases += 1;
+        hits += usize::from(expected);
+    }
+    assert!(cases > 3000);
+    assert_rate("deformed combs", hits, cases);
+}
+
+#[test]
+fn mistakes_name_the_primitive_as_the_user_counts() {
+    let flat = |points: &[(f64, f64)]| points.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect::<Vec<_>>();
+    let mut vertices = flat(&[(0.0, 0.0), (2.0, 1.0), (0.0, 2.0), (1.0, 1.0), (1.0, 2.0)]);
+    vertices.push(DVec3::Z);
+    let builder = || ComplexShapeBuilder::new(vertices.clone()).simple_polygon(&[0, 1, 2, 3]);
+    assert_eq!(builder().point(0).build().unwrap().primitive_count(), 2);
+    let bow = builder().simple_polygon(&[0, 1, 2]).simple_polygon(&[0, 4, 1, 2]).build().unwrap_err();
+    assert_eq!(
+        bow.to_string(),
+        "primitive 2: edges 0 and 2 of the polygon cross; a simple polygon's edges may touch but not cross"
+    );
+    let tent = builder().simple_polygon(&[0, 1, 5, 2]).build().unwrap_err().to_string();
+    assert!(tent.starts_with("primitive 1: vertex ") && tent.contains("off the plane"), "{tent}");
+    let short = builder().simple_polygon(&[0, 1]).build().unwrap_err();
+    assert_eq!(short, Error::PrimitiveSize { primitive: 1, count: 2, least: 3 });
+    let lost = builder().triangle([0, 1, 9]).build().unwrap_err();
+    assert_eq!(lost, Error::VertexIndex { primitive: 1, index: 9, vertices: 6 });
+}
