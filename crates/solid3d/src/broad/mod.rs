@@ -82,6 +82,18 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
     /// If something changed since the last [`flush`](Self::flush): the pairs would be neither the old nor the new.
     fn for_each_pair(&self, visit: &mut dyn FnMut(Proxy, Proxy));
 
+    /// Visits the proxies whose boxes overlap that of `proxy`, each once, in unspecified order.
+    ///
+    /// # Panics
+    /// As [`for_each_pair`](Self::for_each_pair).
+    fn for_each_partner(&self, proxy: Proxy, visit: &mut dyn FnMut(Proxy)) {
+        self.for_each_pair(&mut |a, b| match (a == proxy, b == proxy) {
+            (true, _) => visit(b),
+            (_, true) => visit(a),
+            _ => {}
+        });
+    }
+
     /// The work done since the engine was made.
     fn counters(&self) -> Counters;
 

@@ -11,6 +11,8 @@ mod response;
 mod statistics;
 mod test;
 
+use std::collections::BTreeMap;
+
 use glam::{DAffine3, DVec3};
 use slotmap::{Key, SlotMap};
 
@@ -27,7 +29,7 @@ use crate::error::{Error, Result};
 use crate::pair::Scratch;
 use crate::placement;
 use crate::shape::Shape;
-use candidates::Candidate;
+use candidates::{Candidate, PairKey};
 use object::Object;
 use response::ResponseTable;
 
@@ -75,8 +77,12 @@ pub struct World {
     displaced: Vec<ObjectId>,
     /// The pairs to examine, in creation order, with what is cached for each.
     candidates: Vec<Candidate>,
+    /// Pairs that came to overlap since `candidates` were found, during a test that pauses.
+    late: BTreeMap<PairKey, Candidate>,
     /// Whether something changed since `candidates` were found.
     stale: bool,
+    /// Whether a response did, so that pairs may be missing among them.
+    response_changed: bool,
     scratch: Scratch,
     statistics: Statistics,
 }
@@ -107,7 +113,9 @@ impl World {
             moved: Vec::new(),
             displaced: Vec::new(),
             candidates: Vec::new(),
+            late: BTreeMap::new(),
             stale: false,
+            response_changed: false,
             scratch: Scratch::default(),
             statistics: Statistics::default(),
         }
@@ -140,10 +148,11 @@ impl World {
             });
         }
         let mut object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
-        let bounds = object.update_bounds();
+        object.update_bounds();
+        let bounds = object.bounds;
         let id = self.objects.insert(object);
         self.added += 1;
-        self.stale = true;
+        self.update_bounds(id);
         let proxy = proxy(id);
         if self.by_proxy.len() <= proxy as usize {
             self.by_proxy.resize(proxy as usize + 1, ObjectId::default());
@@ -274,6 +283,10 @@ impl World {
     /// Notes that an object in the world is not where the broad phase and the previous frame have it.
     fn touch(&mut self, id: ObjectId) {
         if !std::mem::replace(&mut self.objects[id].displaced, true) {
+            if self.displaced.len() > 2 * self.objects.len() {
+                // Most of them were removed; without `proceed` nothing else would forget them.
+                self.displaced.retain(|&id| self.objects.contains_key(id));
+            }
             self.displaced.push(id);
         }
         self.update_bounds(id);
@@ -310,6 +323,40 @@ mod tests {
             world.remove(goes)?;
             assert!(world.objects[stays].pair_partners.is_empty());
         }
+        Ok(())
+    }
+
+    /// One pair alone is reported as the test of all would.
+    #[test]
+    fn a_pair_alone_is_as_in_a_test() -> Result<()> {
+        let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        let late = world.add_ranked(&ball, DAffine3::IDENTITY, 1)?;
+        let early = world.add(&ball, DAffine3::from_translation(DVec3::X))?;
+        let far = world.add(&ball, DAffine3::from_translation(DVec3::Y * 9.0))?;
+        let all = world.test();
+        assert_eq!(all.len(), 1);
+        assert_eq!(world.test_pair(late, early)?, Some(all[0]));
+        assert_eq!(world.test_pair(early, late)?, Some(all[0]));
+        assert_eq!(world.test_pair(early, far)?, None);
+        world.clear_pair_response(early, late)?;
+        assert_eq!(world.test_pair(early, late)?, None);
+        Ok(())
+    }
+
+    /// Ending the frame for one object leaves the previous frame of the other.
+    #[test]
+    fn a_frame_ends_for_one_object_alone() -> Result<()> {
+        let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        world.set_default_response(Response::Smart);
+        let a = world.add(&ball, DAffine3::IDENTITY)?;
+        let b = world.add(&ball, DAffine3::IDENTITY)?;
+        world.set_placement(b, DAffine3::from_translation(DVec3::Y * 3.0))?;
+        world.proceed_object(b)?;
+        world.set_placement(a, DAffine3::from_translation(DVec3::Y * 2.0))?;
+        let normal = world.test()[0].normal();
+        assert!(normal.is_some_and(|normal| (normal + DVec3::Y).length() < 1e-9), "{normal:?}");
+        world.proceed();
+        assert_eq!(world.test()[0].normal(), None);
         Ok(())
     }
 }

@@ -36,6 +36,8 @@ pub(super) struct Object {
     deformation: Aabb,
     /// The radius about the local origin, when its box in the broad phase is to have a fixed size.
     radius: Option<f64>,
+    /// The box in the broad phase.
+    pub bounds: Aabb,
     /// Whether the broad phase has another box.
     pub moved: bool,
     /// Whether the previous frame is another.
@@ -64,6 +66,7 @@ impl Object {
             shape,
             placement,
             spare: None,
+            bounds: Aabb::EMPTY,
             moved: false,
             displaced: false,
             pair_partners: Vec::new(),
@@ -106,14 +109,14 @@ impl Object {
         if self.was_deformed() { &self.previous_shape } else { &self.shape }
     }
 
-    /// The box for the broad phase, which contains the object on its way.
-    pub fn update_bounds(&mut self) -> Aabb {
+    /// Brings the box for the broad phase up to date, which contains the object on its way.
+    pub fn update_bounds(&mut self) {
         self.deformation = if self.has_way() { deformation(self.shape_on_way(), &self.shape) } else { STILL };
-        if self.has_way() {
+        self.bounds = if self.has_way() {
             moving_bounds(&self.moving(), |placed| self.bounds_of(placed))
         } else {
             self.bounds_of(self.placed())
-        }
+        };
     }
 
     fn bounds_of(&self, placed: Placed) -> Aabb {

@@ -87,7 +87,7 @@ impl World {
     /// Sets the response for pairs that have none of their own.
     pub fn set_default_response(&mut self, response: Response) {
         self.responses.default = response;
-        self.stale = true;
+        (self.stale, self.response_changed) = (true, true);
     }
 
     /// Makes pairs without a response of their own be ignored.
@@ -99,7 +99,7 @@ impl World {
     pub fn set_object_response(&mut self, id: ObjectId, response: Response) -> Result<()> {
         self.object(id)?;
         self.responses.objects.insert(id, response);
-        self.stale = true;
+        (self.stale, self.response_changed) = (true, true);
         Ok(())
     }
 
@@ -112,7 +112,7 @@ impl World {
     pub fn reset_object_response(&mut self, id: ObjectId) -> Result<()> {
         self.object(id)?;
         self.responses.objects.remove(id);
-        self.stale = true;
+        (self.stale, self.response_changed) = (true, true);
         Ok(())
     }
 
@@ -123,7 +123,7 @@ impl World {
             self.objects[a].pair_partners.push(b);
             self.objects[b].pair_partners.push(a);
         }
-        self.stale = true;
+        (self.stale, self.response_changed) = (true, true);
         Ok(())
     }
 
@@ -140,7 +140,7 @@ impl World {
             self.objects[b].pair_partners.retain(|&partner| partner != a);
             self.responses.give_back();
         }
-        self.stale = true;
+        (self.stale, self.response_changed) = (true, true);
         Ok(())
     }
 

@@ -102,9 +102,23 @@ impl World {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn test_next(&mut self, progress: &mut TestProgress) -> Option<Collision> {
-        self.refresh();
-        let next = self.candidates.partition_point(|candidate| Some(candidate.key) <= progress.last);
-        self.next_collision(next, &mut progress.last)
+        match progress.last {
+            None => self.refresh(),
+            Some(last) => self.refresh_beyond(last),
+        }
+        let mut scratch = std::mem::take(&mut self.scratch);
+        let mut collision = None;
+        while let Some(candidate) = self.next_candidate(progress.last).filter(|_| collision.is_none()) {
+            progress.last = Some(candidate.key);
+            if self.is_candidate(&candidate) {
+                let examined = self.examine(&candidate, &mut scratch);
+                self.cache_axis(candidate.key, examined.axis);
+                self.statistics += examined.work;
+                collision = candidate.collision(examined.found);
+            }
+        }
+        self.scratch = scratch;
+        collision
     }
 
     /// Whether two objects collide, and how, as [`test`](World::test) would report them; `None` also when their response is
@@ -124,25 +138,6 @@ impl World {
         self.scratch = scratch;
         self.statistics += examined.work;
         Ok(candidate.collision(examined.found))
-    }
-
-    /// Examines candidates from the `next` on until one collides; `last` becomes the key of the last examined.
-    fn next_collision(&mut self, next: usize, last: &mut Option<PairKey>) -> Option<Collision> {
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let mut collision = None;
-        for i in next..self.candidates.len() {
-            let candidate = self.candidates[i];
-            let examined = self.examine(&candidate, &mut scratch);
-            self.candidates[i].axis = examined.axis;
-            self.statistics += examined.work;
-            *last = Some(candidate.key);
-            collision = candidate.collision(examined.found);
-            if collision.is_some() {
-                break;
-            }
-        }
-        self.scratch = scratch;
-        collision
     }
 
     #[cfg(not(feature = "rayon"))]
@@ -223,5 +218,67 @@ fn on_the_way(
 impl Candidate {
     fn collision(&self, found: Option<(When, Contact)>) -> Option<Collision> {
         found.map(|(when, contact)| Collision { a: self.a, b: self.b, when, contact })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DAffine3;
+
+    use super::*;
+    use crate::{BroadPhaseKind, Shape, WorldOptions};
+
+    /// Balls in a row, each touching the next.
+    fn row(count: usize) -> (World, Vec<ObjectId>) {
+        let options = WorldOptions { broad_phase: BroadPhaseKind::DynamicTree, ..WorldOptions::default() };
+        let mut world = World::with_options(&options);
+        let ball = Shape::sphere(0.5).unwrap();
+        let at = |i: usize| DAffine3::from_translation(DVec3::X * 0.9 * i as f64);
+        let ids = (0..count).map(|i| world.add(&ball, at(i)).unwrap()).collect();
+        (world, ids)
+    }
+
+    /// What a response costs that moves one object follows the pairs of that object, not all pairs.
+    #[test]
+    fn a_move_in_a_response_costs_what_moved() {
+        let work = |count: usize| {
+            let (mut world, _) = row(count);
+            let before = world.broad.counters();
+            let hits = world.test_with(|world, collision| {
+                let placement = world.placement(collision.b).unwrap();
+                world.set_placement(collision.b, placement * DAffine3::from_rotation_y(0.1)).unwrap();
+            });
+            assert_eq!(hits, count - 1);
+            (world.statistics().candidates, world.broad.counters().node_visits - before.node_visits)
+        };
+        let ((few, few_visits), (many, many_visits)) = (work(500), work(4000));
+        assert!(many <= 9 * few, "{few} candidates for 500 balls, {many} for 4000");
+        assert!(
+            many_visits <= 20 * few_visits,
+            "{few_visits} node visits for 500 balls, {many_visits} for 4000"
+        );
+    }
+
+    #[test]
+    fn what_comes_into_the_way_during_a_test_is_found() {
+        for kind in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+            let mut world =
+                World::with_options(&WorldOptions { broad_phase: kind, ..WorldOptions::default() });
+            let ball = Shape::sphere(0.5).unwrap();
+            let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+            let ids: Vec<_> = [0.0, 0.5, 10.0, 20.0].map(|x| world.add(&ball, at(x)).unwrap()).into();
+            let mut found = Vec::new();
+            world.test_with(|world, collision| {
+                found.push((collision.a, collision.b));
+                if found.len() == 1 {
+                    // The third comes to the first and the second, the second goes, a fifth comes to the fourth.
+                    world.set_placement(ids[2], at(0.1)).unwrap();
+                    world.remove(ids[1]).unwrap();
+                    world.add(&ball, at(20.5)).unwrap();
+                }
+            });
+            let fifth = world.objects()[3];
+            assert_eq!(found, [(ids[0], ids[1]), (ids[0], ids[2]), (ids[3], fifth)], "{kind:?}");
+        }
     }
 }

@@ -247,6 +247,15 @@ impl BroadPhase for DynamicTree {
         });
     }
 
+    fn for_each_partner(&self, proxy: Proxy, visit: &mut dyn FnMut(Proxy)) {
+        assert!(!self.dirty, "boxes changed since the last flush");
+        self.pairs.for_each_of(proxy, |partner, overlaps| {
+            if overlaps {
+                visit(partner);
+            }
+        });
+    }
+
     fn counters(&self) -> Counters {
         self.counters
     }

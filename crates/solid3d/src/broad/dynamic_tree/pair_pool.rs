@@ -69,6 +69,16 @@ impl PairPool {
         }
     }
 
+    /// Visits the partners of a proxy, and whether the tight boxes overlap.
+    pub fn for_each_of(&self, proxy: Proxy, mut visit: impl FnMut(Proxy, bool)) {
+        let mut link = self.heads[proxy as usize];
+        while link != END {
+            let (pair, side) = (&self.pairs[link as usize / 2], link as usize % 2);
+            visit(pair.proxies[1 - side], pair.overlaps);
+            link = pair.next[side];
+        }
+    }
+
     /// Finds anew which tight boxes overlap, among all pairs.
     pub fn refresh_all(&mut self, overlaps: impl Fn(Proxy, Proxy) -> bool) {
         for pair in &mut self.pairs {
