@@ -33,7 +33,7 @@ fn at(x: f64, y: f64, z: f64) -> DAffine3 {
 fn meet(a: &Shape, at_a: &DAffine3, b: &Shape, at_b: &DAffine3) -> bool {
     let answer = query::intersects(a, at_a, b, at_b).unwrap();
     assert_eq!(query::intersects(b, at_b, a, at_a).unwrap(), answer, "swapped");
-    for factor in [2f64.powi(-40), 2f64.powi(33)] {
+    for factor in [2f64.powi(-250), 2f64.powi(300)] {
         let (in_a, in_b) = (rescaled(at_a, factor), rescaled(at_b, factor));
         assert_eq!(query::intersects(a, &in_a, b, &in_b).unwrap(), answer, "times {factor}");
     }
@@ -545,4 +545,38 @@ fn a_world_reports_what_is_inside() {
     world.proceed();
     world.deform(shell, &cube(2.0).vertices).unwrap();
     assert_eq!(world.test().len(), 1);
+}
+
+/// Local sizes and placements may be anything that is in range.
+#[test]
+fn local_sizes_of_any_magnitude_are_placed() {
+    let ball = Shape::sphere(0.1).unwrap();
+    for size in [1e-90, 1e-30, 1e30, 1e90] {
+        let shell = solid(&torus(20, 10, 0.3).scaled(size));
+        let place = DAffine3::from_scale(DVec3::splat(1.0 / size));
+        for (x, expected) in [(0.0, false), (1.0 / 1.3, true), (-1.0 / 1.3, true), (2.0, false)] {
+            let found = query::intersects(&shell, &place, &ball, &at(x, 0.0, 0.0)).unwrap();
+            assert_eq!(found, expected, "{size} {x}");
+            let found = query::intersects(&point_shape(dvec3(x, 0.0, 0.0)), &HERE, &shell, &place).unwrap();
+            assert_eq!(found, expected, "{size} {x}");
+        }
+    }
+}
+
+/// What is inside is found along one ray, not by looking at the whole surface.
+#[test]
+fn a_ray_visits_few_triangles() {
+    let mut world = World::new();
+    let ring = torus(400, 100, 0.3);
+    world.add(&solid(&ring), HERE).unwrap();
+    world.add(&Shape::sphere(0.01).unwrap(), at(0.0, 0.01, -1.0 / 1.3)).unwrap();
+    assert_eq!(world.test().len(), 1);
+    let work = world.statistics();
+    println!(
+        "{} triangles: {} box tests, {} tests",
+        ring.primitives.len(),
+        work.box_tests,
+        work.primitive_tests
+    );
+    assert!(work.box_tests < 100 && work.primitive_tests < 100);
 }
