@@ -35,7 +35,8 @@ impl Report<'_> {
 
     /// The work in counts, which repeat exactly, and in time, which does not.
     pub fn statistics(&self) -> String {
-        let Statistics { candidates, cache_hits, box_tests, primitive_tests, collisions, .. } = self.statistics;
+        let Statistics { candidates, cache_hits, box_tests, primitive_tests, collisions, .. } =
+            self.statistics;
         let counts = [
             ("candidates", candidates),
             ("cache hits", cache_hits),

@@ -22,9 +22,9 @@ pub(super) fn encounter_in(
     let query = space.query_of_convex(convex);
     // The traversal is lent to the walk, and what is visited counts, too.
     let mut traversal = std::mem::take(&mut scratch.traversal);
-    let found = space.shape.tree().overlapping(&query, &mut traversal, |leaf| {
+    let found = space.shape.tree().overlapping(&query.bounds(), &mut traversal, |leaf| {
         for &primitive in leaf {
-            if space.shape.primitive_bounds(primitive).overlaps(&query) {
+            if query.meets(&space.shape.primitive_bounds(primitive)) {
                 let hulls = complex.primitive_hulls(primitive);
                 let met = convex_convex::encounter(complex.ends(&hulls), convex, scratch);
                 if let Encounter::At(point) = met {
