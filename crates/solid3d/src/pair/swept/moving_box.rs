@@ -14,9 +14,9 @@ impl MovingBox {
         self.from.union(&self.to)
     }
 
-    /// Whether it touches a box that stands still at some time, up to rounding: along each axis it does so in an interval of time,
-    /// and these have a time in common. Measured with two meshes of 80,000 triangles that pass each other by, a radius in
-    /// a frame along a diagonal: 5.4 million tests of primitives without this, 5.7 s.
+    /// Whether it touches a box that stands still at some time, up to rounding: along each axis it does so in an interval of
+    /// time, and these have a time in common. Measured with two meshes of 80,000 triangles that pass each other by, a radius
+    /// in a frame along a diagonal: 10 ms; with the box around the way alone 5.7 s, for 5.4 million tests of primitives.
     pub fn meets(&self, still: &Aabb) -> bool {
         let (mut first, mut last) = (0.0f64, 1.0f64);
         let mut while_positive = |at_start: f64, at_end: f64| {
@@ -53,9 +53,9 @@ mod tests {
         for _ in 0..cases {
             let mut corner =
                 |size: f64| DVec3::from_array(std::array::from_fn(|_| size * rng.random::<f64>()));
-            let [from, to, still] = [3.0, 3.0, 2.0].map(|room| {
+            let [from, to, still] = [6.0, 6.0, 6.0].map(|room| {
                 let min = corner(room);
-                Aabb::new(min, min + corner(1.0))
+                Aabb::new(min, min + corner(3.0))
             });
             let at = |t: f64| Aabb::new(from.min.lerp(to.min, t), from.max.lerp(to.max, t));
             let expected = (0..=1000).any(|i| at(f64::from(i) / 1000.0).overlaps(&still));

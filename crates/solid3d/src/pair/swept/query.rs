@@ -18,7 +18,8 @@ use crate::tree::Traversal;
 ///
 /// With `c0`, `c1` the two positions of a point of the shape and `x0`, `x1` those of a point of the other, all in this
 /// space, they meet only if the origin is between `x0 - c0` and `x1 - c1`, that is, if `c1` is between `x1` and
-/// `x0 - (c0 - c1)`: if a box that moves from the latter to the former meets it. So the tree, which bounds `c1`, serves the whole way.
+/// `x0 - (c0 - c1)`: if a box that moves from the latter to the former meets it. So the tree, which bounds `c1`, serves the
+/// whole way.
 pub(super) struct TreeSpace<'a> {
     pub shape: &'a Complex,
     to_local: DMat3,
@@ -50,7 +51,8 @@ impl<'a> TreeSpace<'a> {
     /// The primitives that a box meets.
     pub fn primitives(&self, query: &MovingBox, traversal: &mut Traversal, primitives: &mut Vec<u32>) {
         primitives.clear();
-        let _ = self.shape.tree().overlapping(&query.bounds(), traversal, |leaf| {
+        let meets = |bounds: &Aabb| query.meets(bounds);
+        let _ = self.shape.tree().overlapping_where(&query.bounds(), meets, traversal, |leaf| {
             let met = |&&primitive: &&u32| query.meets(&self.shape.primitive_bounds(primitive));
             primitives.extend(leaf.iter().filter(met));
             ControlFlow::<()>::Continue(())
