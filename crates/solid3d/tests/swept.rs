@@ -355,6 +355,27 @@ fn a_bullet_in_a_valley_costs_little() {
     }
 }
 
+/// The way of a box along a diagonal is much less than the box around its way.
+#[test]
+fn meshes_that_pass_each_other_by_cost_little() {
+    let ring = common::torus(60, 60, 0.3);
+    let triangles = ring.primitives.len() as u64;
+    for length in [0.1, 1.0, 10.0, 1000.0] {
+        for mut world in worlds(Response::Simple) {
+            let way = DVec3::new(1.0, 0.1, 1.0).normalize() * length;
+            let beside = DVec3::new(1.0, 0.0, -1.0).normalize() * 2.05;
+            world.add(&ring.shape(), DAffine3::IDENTITY).unwrap();
+            let id = world.add(&ring.shape(), DAffine3::from_translation(beside - 0.5 * way)).unwrap();
+            world.set_placement(id, DAffine3::from_translation(beside + 0.5 * way)).unwrap();
+            assert!(world.test().is_empty());
+            let work = world.statistics();
+            println!("{length}: {work:?}");
+            assert_eq!(work.sweeps, 1);
+            assert!(work.box_tests.max(work.primitive_tests) < 2 * triangles, "{work:?}");
+        }
+    }
+}
+
 /// At the limit of precision the boxes of the ways must not decide otherwise than the narrow phase: what touches is found
 /// with any boxes, and scaling all by a power of two changes nothing.
 #[test]

@@ -36,6 +36,36 @@ impl Tree {
         self.walk(|node| overlapping_box(node, &query), traversal, visit)
     }
 
+    /// Like [`overlapping`](Tree::overlapping), but only through boxes that `meets` does not refuse: for a query of which the box
+    /// is but the bounds. It is asked about boxes around one primitive or more, in local coordinates.
+    ///
+    /// ```
+    /// # use solid3d::{Aabb, glam::DVec3, tree::{Traversal, Tree}};
+    /// # use std::ops::ControlFlow;
+    /// let unit = Aabb::new(DVec3::ZERO, DVec3::ONE);
+    /// let tree = Tree::build(&[unit]);
+    /// let refused = tree.overlapping_where(&unit, |_| false, &mut Traversal::default(), |_| ControlFlow::Break(()));
+    /// assert_eq!(refused, ControlFlow::Continue(()));
+    /// ```
+    pub fn overlapping_where<B>(
+        &self,
+        query: &Aabb,
+        meets: impl Fn(&Aabb) -> bool,
+        traversal: &mut Traversal,
+        visit: impl FnMut(&[u32]) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        if !query.overlaps(&self.bounds) {
+            return ControlFlow::Continue(());
+        }
+        let clipped = Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
+        let query = self.normal.pack(&clipped);
+        let test = |node: &Node| {
+            let met = |lane: &usize| meets(&self.normal.unpack(&node.lane(*lane)));
+            bits(overlapping_box(node, &query)).filter(met).fold(0, |hits, lane| hits | 1 << lane)
+        };
+        self.walk(test, traversal, visit)
+    }
+
     /// Visits the leaves whose box may overlap a box of another space (six facet axes): all primitives whose box does, and some
     /// whose box does not.
     ///

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use super::bodies::{MovingComplex, MovingConvex};
 use super::query::{TreeSpace, size};
 use super::{Encounter, convex_convex};
+use crate::bounds::Aabb;
 use crate::pair::Scratch;
 
 pub(super) fn encounter(complex: MovingComplex, convex: MovingConvex, scratch: &mut Scratch) -> Encounter {
@@ -22,9 +23,10 @@ pub(super) fn encounter_in(
     let query = space.query_of_convex(convex);
     // The traversal is lent to the walk, and what is visited counts, too.
     let mut traversal = std::mem::take(&mut scratch.traversal);
-    let found = space.shape.tree().overlapping(&query, &mut traversal, |leaf| {
+    let meets = |bounds: &Aabb| query.meets(bounds);
+    let found = space.shape.tree().overlapping_where(&query.bounds(), meets, &mut traversal, |leaf| {
         for &primitive in leaf {
-            if space.shape.primitive_bounds(primitive).overlaps(&query) {
+            if query.meets(&space.shape.primitive_bounds(primitive)) {
                 let hulls = complex.primitive_hulls(primitive);
                 let met = convex_convex::encounter(complex.ends(&hulls), convex, scratch);
                 if let Encounter::At(point) = met {

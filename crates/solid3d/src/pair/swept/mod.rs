@@ -19,6 +19,7 @@ mod complex_complex;
 mod complex_convex;
 mod convex_convex;
 mod hulls;
+mod moving_box;
 mod query;
 
 use glam::DVec3;

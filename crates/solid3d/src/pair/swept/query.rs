@@ -6,6 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::Support;
 
 use super::bodies::{MovingComplex, MovingConvex};
+use super::moving_box::MovingBox;
 use crate::bounds::Aabb;
 use crate::pair::frame::{ROUNDINGS, slack};
 use crate::pair::reach::{convex_bounds, image_reach};
@@ -17,7 +18,8 @@ use crate::tree::Traversal;
 ///
 /// With `c0`, `c1` the two positions of a point of the shape and `x0`, `x1` those of a point of the other, all in this
 /// space, they meet only if the origin is between `x0 - c0` and `x1 - c1`, that is, if `c1` is between `x1` and
-/// `x0 - (c0 - c1)`: if it lies in the box around those. So the tree, which bounds `c1`, serves the whole way.
+/// `x0 - (c0 - c1)`: if a box that moves from the latter to the former meets it. So the tree, which bounds `c1`, serves the
+/// whole way.
 pub(super) struct TreeSpace<'a> {
     pub shape: &'a Complex,
     to_local: DMat3,
@@ -25,7 +27,7 @@ pub(super) struct TreeSpace<'a> {
     origin: DVec3,
     /// Contains `c0 - c1` for every point.
     backward: Aabb,
-    /// Bounds the error of a box in this space.
+    /// Bounds the error of a box in this space, and that of comparing it.
     slack: f64,
 }
 
@@ -42,22 +44,23 @@ impl<'a> TreeSpace<'a> {
         };
         let backward = less(&was.bounds().transformed(&by_placement), &moving.deformation);
         let local_size = (was.reach() + is.reach()).max_element() * (1.0 + row_norm(&by_placement.matrix3));
-        let slack = slack(&to.matrix3, &to_local, size) + ROUNDINGS * local_size;
+        let slack = 2.0 * (slack(&to.matrix3, &to_local, size) + ROUNDINGS * local_size);
         TreeSpace { shape: is, to_local, origin, backward, slack }
     }
 
-    /// The primitives whose box overlaps one.
-    pub fn primitives(&self, query: &Aabb, traversal: &mut Traversal, primitives: &mut Vec<u32>) {
+    /// The primitives that a box meets.
+    pub fn primitives(&self, query: &MovingBox, traversal: &mut Traversal, primitives: &mut Vec<u32>) {
         primitives.clear();
-        let _ = self.shape.tree().overlapping(query, traversal, |leaf| {
-            let overlaps = |&&primitive: &&u32| self.shape.primitive_bounds(primitive).overlaps(query);
-            primitives.extend(leaf.iter().filter(overlaps));
+        let meets = |bounds: &Aabb| query.meets(bounds);
+        let _ = self.shape.tree().overlapping_where(&query.bounds(), meets, traversal, |leaf| {
+            let met = |&&primitive: &&u32| query.meets(&self.shape.primitive_bounds(primitive));
+            primitives.extend(leaf.iter().filter(met));
             ControlFlow::<()>::Continue(())
         });
     }
 
-    /// What lies apart from this box is not met by a convex shape.
-    pub fn query_of_convex(&self, [from, to]: MovingConvex) -> Aabb {
+    /// What this box does not meet is not met by a convex shape.
+    pub fn query_of_convex(&self, [from, to]: MovingConvex) -> MovingBox {
         let local = |(shape, at): (&dyn Support, &DAffine3)| {
             let map = self.map_from(at);
             let bounds = convex_bounds(shape, &map.matrix3);
@@ -67,13 +70,13 @@ impl<'a> TreeSpace<'a> {
     }
 
     /// The same for a complex shape.
-    pub fn query_of_complex(&self, other: &MovingComplex) -> Aabb {
+    pub fn query_of_complex(&self, other: &MovingComplex) -> MovingBox {
         let local = |(shape, at): (&Complex, &DAffine3)| shape.bounds().transformed(&self.map_from(at));
         self.query(local(other.from), local(other.to))
     }
 
-    fn query(&self, was: Aabb, is: Aabb) -> Aabb {
-        less(&was, &self.backward).union(&is).inflated(self.slack)
+    fn query(&self, was: Aabb, is: Aabb) -> MovingBox {
+        MovingBox { from: less(&was, &self.backward).inflated(self.slack), to: is.inflated(self.slack) }
     }
 
     fn map_from(&self, at: &DAffine3) -> DAffine3 {
