@@ -1,10 +1,11 @@
 //! Writing: to a file or to standard output, where the reader may leave early.
 
-use std::fs::File;
+use std::fs::OpenOptions;
 use std::io::{self, BufWriter, ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use tempfile::NamedTempFile;
 
 /// A buffered output, whose errors name it. To be flushed in the end, for the last of them.
 pub type Output = BufWriter<Named<Box<dyn Write>>>;
@@ -14,14 +15,55 @@ pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Opens a file for writing, or standard output for `-`.
+/// Opens a file for writing, or standard output for `-`. A file takes its name when it is flushed in the end: a run that
+/// fails on the way leaves what was there before.
 pub fn open(path: &Path) -> Result<Output> {
     if is_stdout(path) {
         return Ok(stdout());
     }
     let name = path.display().to_string();
-    let file = File::create(path).with_context(|| format!("{name}: can't be written"))?;
-    Ok(output(name, Box::new(file)))
+    let inner = create(path).with_context(|| format!("{name}: can't be written"))?;
+    Ok(output(name, inner))
+}
+
+/// Devices and pipes are written directly; anything else through a file beside it.
+fn create(path: &Path) -> io::Result<Box<dyn Write>> {
+    // Also finds out whether an existing file may be written.
+    let there = match OpenOptions::new().write(true).open(path) {
+        Ok(file) if !file.metadata()?.is_file() => return Ok(Box::new(file)),
+        Ok(_) => path.canonicalize()?,
+        Err(error) if error.kind() == ErrorKind::NotFound => path.to_owned(),
+        Err(error) => return Err(error),
+    };
+    let folder = there.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".solid-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    Ok(Box::new(Staged { file: Some(builder.tempfile_in(folder)?), path: there }))
+}
+
+/// A file that takes its name when it is flushed, once.
+struct Staged {
+    file: Option<NamedTempFile>,
+    path: PathBuf,
+}
+
+impl Write for Staged {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        match &mut self.file {
+            Some(file) => file.write(buffer),
+            None => Err(io::Error::other("written after its end")),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if let Some(mut file) = self.file.take() {
+            file.flush()?;
+            file.persist(&self.path)?;
+        }
+        Ok(())
+    }
 }
 
 /// Standard output.
@@ -77,6 +119,20 @@ impl<W: Write> Write for Named<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_that_is_not_finished_leaves_what_was_there() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("out.json");
+        std::fs::write(&path, "before").expect("a file");
+        let read = || std::fs::read_to_string(&path).expect("a file");
+        open(&path).expect("it opens").write_all(b"half").expect("it is written");
+        assert_eq!(read(), "before");
+        let mut output = open(&path).expect("it opens");
+        output.write_all(b"after").and_then(|()| output.flush()).expect("it is written");
+        assert_eq!(read(), "after");
+        assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1);
+    }
 
     struct Failing(ErrorKind);
 

@@ -1,17 +1,20 @@
 //! Loading the scene that the command line names.
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use solid_scene::{LoadOptions, Scene};
 
 use crate::args::SceneArgs;
 use crate::words;
 
-/// Loads the files into one scene.
+/// Loads the files into one scene, which must have an object: a check of nothing finds nothing.
 pub fn load(args: &SceneArgs) -> Result<Scene> {
     let mut options = LoadOptions::default();
     options.split = args.split;
     options.animation.clone_from(&args.animation);
-    Ok(Scene::load(&args.files, &options)?)
+    let scene = Scene::load(&args.files, &options)?;
+    let files = || args.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ");
+    ensure!(!scene.objects().is_empty(), "{}: there is no geometry; expected a node with a shape", files());
+    Ok(scene)
 }
 
 /// What was passed over or guessed in the files, a line each.
