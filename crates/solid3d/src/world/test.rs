@@ -48,12 +48,13 @@ impl World {
     /// ```
     pub fn test(&mut self) -> Vec<Collision> {
         self.refresh();
+        let mut candidates = std::mem::take(&mut self.candidates);
+        let found = self.examine_all(&mut candidates);
+        self.candidates = candidates;
         let mut collisions = Vec::new();
-        let examined = self.examine_all();
-        for (candidate, examined) in self.candidates.iter_mut().zip(examined) {
-            candidate.axis = examined.axis;
-            self.statistics += examined.work;
-            collisions.extend(candidate.collision(examined.found));
+        for (of_chunk, work) in found {
+            collisions.extend(of_chunk);
+            self.statistics += work;
         }
         collisions
     }
@@ -142,22 +143,37 @@ impl World {
         Ok(candidate.collision(examined.found))
     }
 
+    /// Examines candidates, chunk by chunk: what collides, in their order, and the work. Notes the axes that separate the others.
     #[cfg(not(feature = "rayon"))]
-    fn examine_all(&mut self) -> Vec<Examined> {
+    fn examine_all(&mut self, candidates: &mut [Candidate]) -> Vec<(Vec<Collision>, Statistics)> {
         let mut scratch = std::mem::take(&mut self.scratch);
-        let examined =
-            self.candidates.iter().map(|candidate| self.examine(candidate, &mut scratch)).collect();
+        let found = self.examine_chunk(candidates, &mut scratch);
         self.scratch = scratch;
-        examined
+        vec![found]
     }
 
     #[cfg(feature = "rayon")]
-    fn examine_all(&mut self) -> Vec<Examined> {
+    fn examine_all(&mut self, candidates: &mut [Candidate]) -> Vec<(Vec<Collision>, Statistics)> {
         use rayon::prelude::*;
         /// Fewer pairs than this are not worth waking a thread.
-        const PAIRS_PER_TASK: usize = 16;
-        let candidates = self.candidates.par_iter().with_min_len(PAIRS_PER_TASK);
-        candidates.map_init(Scratch::default, |scratch, candidate| self.examine(candidate, scratch)).collect()
+        const CHUNK: usize = 16;
+        let chunks = candidates.par_chunks_mut(CHUNK);
+        chunks.map_init(Scratch::default, |scratch, chunk| self.examine_chunk(chunk, scratch)).collect()
+    }
+
+    fn examine_chunk(
+        &self,
+        candidates: &mut [Candidate],
+        scratch: &mut Scratch,
+    ) -> (Vec<Collision>, Statistics) {
+        let (mut collisions, mut work) = (Vec::new(), Statistics::default());
+        for candidate in candidates {
+            let examined = self.examine(candidate, scratch);
+            candidate.axis = examined.axis;
+            work += examined.work;
+            collisions.extend(candidate.collision(examined.found));
+        }
+        (collisions, work)
     }
 
     /// Whether a candidate collides; a function of the two objects alone.
