@@ -27,6 +27,7 @@ mod rules;
 mod scene;
 mod suggest;
 mod table;
+mod text;
 mod words;
 
 use std::io::Write;

@@ -3,12 +3,12 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::fields;
 use super::row::Row;
-use crate::suggest;
+use crate::{suggest, text};
 
 /// The columns; the last three may be missing.
 const COLUMNS: [&str; 12] = ["frame", "object", "tx", "ty", "tz", "qx", "qy", "qz", "qw", "sx", "sy", "sz"];
@@ -27,7 +27,7 @@ pub struct Placements {
 impl Placements {
     /// Reads a file of placements of objects with these names.
     pub fn read(path: &Path, names: &[&str]) -> Result<Placements> {
-        let text = std::fs::read_to_string(path).with_context(|| format!("{}", path.display()))?;
+        let text = text::read(path)?;
         let rows =
             rows(&text, names).map_err(|(line, message)| anyhow!("{}:{line}: {message}", path.display()))?;
         Ok(Placements { path: path.to_owned(), rows })

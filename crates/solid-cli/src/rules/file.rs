@@ -3,12 +3,13 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 use serde::Deserialize;
 use solid3d::Response;
 use toml::Spanned;
 
 use super::pattern::Pattern;
+use crate::text;
 
 /// The rules of a file, in its order.
 #[derive(Debug, Default)]
@@ -45,7 +46,7 @@ pub(super) struct Names {
 impl Rules {
     /// Reads a file.
     pub fn read(path: &Path) -> Result<Rules> {
-        let text = std::fs::read_to_string(path).with_context(|| format!("{}", path.display()))?;
+        let text = text::read(path)?;
         Rules::parse(path, &text)
     }
 

@@ -1,0 +1,47 @@
+//! Reading a text file that the command line names.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow, ensure};
+
+/// The most bytes of a file of rules or placements; of a pipe or device too, which tells no size.
+const BYTES_MAX: u64 = 1 << 30;
+
+/// The text of a file.
+pub fn read(path: &Path) -> Result<String> {
+    read_within(path, BYTES_MAX)
+}
+
+fn read_within(path: &Path, bytes_max: u64) -> Result<String> {
+    let name = path.display();
+    let mut bytes = Vec::new();
+    let file = File::open(path).with_context(|| format!("{name}: can't be read"))?;
+    file.take(bytes_max + 1).read_to_end(&mut bytes).with_context(|| format!("{name}: can't be read"))?;
+    ensure!(
+        bytes.len() as u64 <= bytes_max,
+        "{name}: there are more than {bytes_max} bytes, which is the limit"
+    );
+    String::from_utf8(bytes).map_err(|error| {
+        let line =
+            1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
+        anyhow!("{name}:{line}: there are bytes that are no UTF-8; expected text in UTF-8")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_text_is_refused_with_its_line() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("rules.toml");
+        std::fs::write(&path, b"a = 1\nb = \xff\n").expect("a file");
+        let error = read(&path).expect_err("it is no text").to_string();
+        assert!(error.contains("rules.toml:2: "), "{error}");
+        let error = read_within(&path, 4).expect_err("it is too large").to_string();
+        assert!(error.contains("more than 4 bytes"), "{error}");
+    }
+}
