@@ -1,13 +1,18 @@
 //! Loading the scene that the command line names.
 
 use anyhow::{Result, ensure};
-use solid_scene::{LoadOptions, Scene};
+use solid_scene::{Format, LoadOptions, Scene};
 
 use crate::args::SceneArgs;
 use crate::words;
 
 /// Loads the files into one scene, which must have an object: a check of nothing finds nothing.
 pub fn load(args: &SceneArgs) -> Result<Scene> {
+    let gltf = args.files.iter().any(|file| Format::of(file) == Some(Format::Gltf));
+    ensure!(
+        gltf || args.animation.is_none(),
+        "--animation chooses one of a glTF file; there is none among the files"
+    );
     let mut options = LoadOptions::default();
     options.split = args.split;
     options.animation.clone_from(&args.animation);
