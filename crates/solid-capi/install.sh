@@ -7,7 +7,12 @@
 # What is installed may be moved as a whole. Needs cargo, unless FOLDER is given; GNU ld and objcopy if they are there.
 set -eu
 
-[ $# -ge 1 ] && [ $# -le 2 ] || { sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+usage() { sed -n '2,7s/^# \{0,1\}//p' "$0"; }
+case ${1:-} in
+    -h | --help) usage; exit ;;
+    -*) usage >&2; exit 2 ;;
+esac
+[ $# -ge 1 ] && [ $# -le 2 ] || { usage >&2; exit 2; }
 here=$(cd "$(dirname "$0")" && pwd)
 prefix=${DESTDIR:-}$1
 version=$(sed -n '/^\[workspace.package\]/,/^$/s/^version = "\(.*\)"/\1/p' "$here/../../Cargo.toml")
