@@ -111,12 +111,18 @@ impl World {
 
     /// The candidate that two overlapping boxes make, unless it is to be ignored.
     fn candidate(&self, p: Proxy, q: Proxy) -> Option<Candidate> {
-        let (mut a, mut b) = (self.by_proxy[p as usize], self.by_proxy[q as usize]);
-        let mut key = (self.objects[a].order, self.objects[b].order);
-        if key.1 < key.0 {
-            (a, b, key) = (b, a, (key.1, key.0));
+        let candidate = self.candidate_of(self.by_proxy[p as usize], self.by_proxy[q as usize]);
+        (self.responses.of(candidate.a, candidate.b) != Response::Ignore).then_some(candidate)
+    }
+
+    /// Two objects of the world as a candidate, in the order of pairs.
+    pub(super) fn candidate_of(&self, a: ObjectId, b: ObjectId) -> Candidate {
+        let key = (self.objects[a].order, self.objects[b].order);
+        if key.0 <= key.1 {
+            Candidate { key, a, b, axis: None }
+        } else {
+            Candidate { key: (key.1, key.0), a: b, b: a, axis: None }
         }
-        (self.responses.of(a, b) != Response::Ignore).then_some(Candidate { key, a, b, axis: None })
     }
 }
 

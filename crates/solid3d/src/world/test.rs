@@ -130,13 +130,8 @@ impl World {
         if self.response(a, b)? == Response::Ignore {
             return Ok(None);
         }
-        let (mut a, mut b) = (a, b);
-        let mut key = (self.objects[a].order, self.objects[b].order);
-        if key.1 < key.0 {
-            (a, b, key) = (b, a, (key.1, key.0));
-        }
         let mut scratch = std::mem::take(&mut self.scratch);
-        let candidate = Candidate { key, a, b, axis: None };
+        let candidate = self.candidate_of(a, b);
         let examined = self.examine(&candidate, &mut scratch);
         self.scratch = scratch;
         self.statistics += examined.work;
