@@ -4,6 +4,7 @@
 pub mod bounds;
 pub mod broad;
 mod error;
+mod exact;
 pub mod hull;
 mod pair;
 mod placement;

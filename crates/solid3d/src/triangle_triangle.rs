@@ -6,7 +6,8 @@
 //! in the plane.
 
 use glam::{DVec2, DVec3};
-use robust::{Coord, Coord3D};
+
+use crate::exact::{self, orient2d, orient3d};
 
 /// Three corners.
 pub(crate) type Triangle = [DVec3; 3];
@@ -14,11 +15,11 @@ pub(crate) type Triangle = [DVec3; 3];
 /// Whether two triangles share a point. Worth asking when their boxes do.
 pub(crate) fn intersect(x: &Triangle, y: &Triangle) -> bool {
     let (x_flat, y_flat) = (collinear(x), collinear(y));
-    let y_sides = x.map(|p| orient3d(&y[0], &y[1], &y[2], &p));
+    let y_sides = x.map(|p| orient3d(y[0], y[1], y[2], p));
     if !y_flat && same_strict_side(y_sides) {
         return false;
     }
-    let x_sides = y.map(|p| orient3d(&x[0], &x[1], &x[2], &p));
+    let x_sides = y.map(|p| orient3d(x[0], x[1], x[2], p));
     if !x_flat && same_strict_side(x_sides) {
         return false;
     }
@@ -51,13 +52,15 @@ fn segment_meets_triangle(p: &DVec3, q: &DVec3, p_side: f64, q_side: f64, triang
     if same_strict_side([p_side, q_side, p_side]) {
         return false;
     }
-    let turns = EDGES.map(|[i, j]| orient3d(p, q, &triangle[i], &triangle[j]));
+    let turns = EDGES.map(|[i, j]| orient3d(*p, *q, triangle[i], triangle[j]));
     turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0)
 }
 
 fn segments_meet(p: &DVec3, q: &DVec3, r: &DVec3, s: &DVec3) -> bool {
-    orient3d(p, q, r, s) == 0.0
-        && PROJECTIONS.iter().all(|flatten| segments_meet_2d(flatten(p), flatten(q), flatten(r), flatten(s)))
+    orient3d(*p, *q, *r, *s) == 0.0
+        && PROJECTIONS
+            .iter()
+            .all(|flatten| exact::segments_meet(flatten(p), flatten(q), flatten(r), flatten(s)))
 }
 
 /// Coplanar sets meet if and only if they do in all three projections along the coordinate axes: at least one of these
@@ -66,7 +69,8 @@ const PROJECTIONS: [fn(&DVec3) -> DVec2; 3] =
     [|p| DVec2::new(p.y, p.z), |p| DVec2::new(p.z, p.x), |p| DVec2::new(p.x, p.y)];
 
 fn segment_meets_triangle_2d(p: DVec2, q: DVec2, triangle: [DVec2; 3]) -> bool {
-    EDGES.iter().any(|&[i, j]| segments_meet_2d(p, q, triangle[i], triangle[j])) || contains_2d(triangle, p)
+    EDGES.iter().any(|&[i, j]| exact::segments_meet(p, q, triangle[i], triangle[j]))
+        || contains_2d(triangle, p)
 }
 
 /// Whether a point lies in a triangle's interior; `false` for a degenerate triangle, whose edges are all there is.
@@ -75,27 +79,8 @@ fn contains_2d(triangle: [DVec2; 3], p: DVec2) -> bool {
     same_strict_side(turns)
 }
 
-fn segments_meet_2d(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {
-    if p.max(q).cmplt(r.min(s)).any() || r.max(s).cmplt(p.min(q)).any() {
-        return false;
-    }
-    let parted = |a: f64, b: f64| (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0);
-    // With overlapping bounding boxes, segments that are not parted by each other's lines meet, also collinear ones.
-    !parted(orient2d(p, q, r), orient2d(p, q, s)) && !parted(orient2d(r, s, p), orient2d(r, s, q))
-}
-
 fn collinear(t: &Triangle) -> bool {
     PROJECTIONS.iter().all(|flatten| orient2d(flatten(&t[0]), flatten(&t[1]), flatten(&t[2])) == 0.0)
-}
-
-fn orient2d(p: DVec2, q: DVec2, r: DVec2) -> f64 {
-    let coord = |p: DVec2| Coord { x: p.x, y: p.y };
-    robust::orient2d(coord(p), coord(q), coord(r))
-}
-
-fn orient3d(p: &DVec3, q: &DVec3, r: &DVec3, s: &DVec3) -> f64 {
-    let coord = |p: &DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
-    robust::orient3d(coord(p), coord(q), coord(r), coord(s))
 }
 
 #[cfg(test)]

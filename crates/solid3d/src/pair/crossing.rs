@@ -5,8 +5,9 @@
 //! no edge, and of the triangles at an edge or a vertex that the ray would hit, it crosses just those that it must for
 //! counts to be right. The thesis (section 3.1.2) tries other rays until one hits no edge; this is never in doubt.
 
-use glam::DVec3;
-use robust::{Coord, Coord3D};
+use glam::{DVec3, Vec3Swizzles};
+
+use crate::exact::{orient2d, orient3d};
 
 use super::triangle_triangle::{Triangle, intersect};
 
@@ -36,8 +37,7 @@ pub(super) fn crossing(triangle: &Triangle, p: DVec3) -> Option<i64> {
 
 /// The orientation of `p` and an edge in the plane (y, z).
 fn turn(u: DVec3, v: DVec3, p: DVec3) -> i64 {
-    let coord = |q: DVec3| Coord { x: q.y, y: q.z };
-    sign(robust::orient2d(coord(u), coord(v), coord(p)))
+    sign(orient2d(u.yz(), v.yz(), p.yz()))
 }
 
 /// The orientation of a point on the edge's line, once moved: the sign of the derivative by y, else by z. 0 for an edge
@@ -45,11 +45,6 @@ fn turn(u: DVec3, v: DVec3, p: DVec3) -> i64 {
 fn turn_moved([u, v]: [DVec3; 2]) -> i64 {
     let by_y = sign(u.z - v.z);
     if by_y == 0 { sign(v.y - u.y) } else { by_y }
-}
-
-fn orient3d(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
-    let coord = |q: DVec3| Coord3D { x: q.x, y: q.y, z: q.z };
-    robust::orient3d(coord(a), coord(b), coord(c), coord(p))
 }
 
 fn sign(x: f64) -> i64 {

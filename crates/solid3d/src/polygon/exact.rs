@@ -1,7 +1,9 @@
 //! Exact signs: where a point lies to a line or a plane.
 
 use glam::{DVec2, DVec3};
-use robust::{Coord, Coord3D};
+
+use crate::exact::orient3d;
+pub(super) use crate::exact::{orient2d as turn, same_strict_side, segments_meet};
 
 /// No predicate overflows while coordinates are at most this: a determinant of three differences stays below
 /// 6 * (2^301)^3, with room for the splitting constant of exact products.
@@ -11,36 +13,15 @@ pub(super) const MAGNITUDE_MAX: f64 = power_of_two(300);
 /// 2^(-300 - 52), and the product of three such bits is still a positive number.
 pub(super) const MAGNITUDE_MIN: f64 = power_of_two(-300);
 
-/// Positive where `a`, `b`, `c` turn to the left.
-pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
-    let coord = |p: DVec2| Coord { x: p.x, y: p.y };
-    robust::orient2d(coord(a), coord(b), coord(c))
-}
-
 /// Positive where `d` lies above the plane through `a`, `b`, `c`, from where they appear counter-clockwise: the sign of
 /// `det(b - a, c - a, d - a)`.
 pub(super) fn height(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
-    let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
-    -robust::orient3d(coord(a), coord(b), coord(c), coord(d))
-}
-
-/// Whether two numbers have the same sign, and neither is zero.
-pub(super) fn same_strict_side(a: f64, b: f64) -> bool {
-    (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
+    -orient3d(a, b, c, d)
 }
 
 /// A point without one of its coordinates: looking along that axis, from its positive end.
 pub(super) fn flatten(dropped: usize, p: DVec3) -> DVec2 {
     DVec2::new(p[(dropped + 1) % 3], p[(dropped + 2) % 3])
-}
-
-/// Whether two closed segments of a plane share a point.
-pub(super) fn segments_meet(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {
-    if p.max(q).cmplt(r.min(s)).any() || r.max(s).cmplt(p.min(q)).any() {
-        return false;
-    }
-    // With overlapping boxes, segments that are not parted by each other's lines meet, also collinear ones.
-    !same_strict_side(turn(p, q, r), turn(p, q, s)) && !same_strict_side(turn(r, s, p), turn(r, s, q))
 }
 
 /// Whether two segments of a plane cross: each has its ends strictly on both sides of the other's line.

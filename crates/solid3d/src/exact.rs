@@ -1,0 +1,33 @@
+//! Exact signs: where a point lies to a line or a plane, and what follows from that in a plane.
+//!
+//! Exact while nothing overflows or underflows: callers bring their points to a unit near the size of the data first.
+
+use glam::{DVec2, DVec3};
+use robust::{Coord, Coord3D};
+
+/// Positive where `a`, `b`, `c` turn to the left.
+pub(crate) fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    let coord = |p: DVec2| Coord { x: p.x, y: p.y };
+    robust::orient2d(coord(a), coord(b), coord(c))
+}
+
+/// Positive where `d` lies below the plane through `a`, `b`, `c`, from above which they appear counter-clockwise.
+pub(crate) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+    let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    robust::orient3d(coord(a), coord(b), coord(c), coord(d))
+}
+
+/// Whether two numbers have the same sign, and neither is zero.
+pub(crate) fn same_strict_side(a: f64, b: f64) -> bool {
+    (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
+}
+
+/// Whether two closed segments of a plane share a point.
+pub(crate) fn segments_meet(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {
+    if p.max(q).cmplt(r.min(s)).any() || r.max(s).cmplt(p.min(q)).any() {
+        return false;
+    }
+    // With overlapping boxes, segments that are not parted by each other's lines meet, also collinear ones.
+    !same_strict_side(orient2d(p, q, r), orient2d(p, q, s))
+        && !same_strict_side(orient2d(r, s, p), orient2d(r, s, q))
+}
