@@ -1,0 +1,1 @@
+//! Shapes, pairs and motions to measure on: the same for the same seed.
