@@ -23,6 +23,7 @@
 mod difference;
 pub mod gjk;
 mod kinds;
+pub mod simd;
 mod simplex;
 mod size;
 mod support;
