@@ -17,10 +17,12 @@ Exit status:
 const CHECK_NOTES: &str = "\
 Objects:
   Every node with geometry is an object. Nodes on one root path (one holds the other) are not tested against each
-  other. Shapes are closed sets, so touching collides; a mesh is a surface, so a body wholly inside one does not.
+  other. Shapes are closed sets, so touching collides; a mesh is a surface, so a body wholly inside one does not,
+  unless --solid declares the mesh solid.
 
 Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any characters, `?` for one.
     default = \"witness\"             # ignore, simple, witness, smart or curve
+    solid = [\"tank*\"]               # as --solid
 
     [[object]]                      # all pairs with the object
     name = \"mine*\"
@@ -110,6 +112,11 @@ pub struct CheckArgs {
     /// Placements per frame, in place of the animation
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["from", "to"])]
     pub placements: Option<PathBuf>,
+
+    /// Take the mesh objects of this name (`*`, `?`) for the solids that they bound, so that what is inside collides; may be
+    /// repeated. The meshes must be closed
+    #[arg(long, value_name = "PATTERN")]
+    pub solid: Vec<String>,
 
     /// What to find out about colliding pairs [default: witness]
     #[arg(long, value_name = "RESPONSE")]

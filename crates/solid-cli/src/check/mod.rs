@@ -6,6 +6,7 @@ mod motion;
 mod player;
 mod report;
 mod root_paths;
+mod solids;
 mod stage;
 mod timeline;
 
@@ -33,7 +34,8 @@ use timeline::Timeline;
 pub fn run(args: &CheckArgs) -> Result<Verdict> {
     files::refuse_clashes(args)?;
     let (mut clock, mut times) = (Clock::start(), Times::default());
-    let rules = args.rules.as_deref().map(Rules::read).transpose()?.unwrap_or_default();
+    let mut rules = args.rules.as_deref().map(Rules::read).transpose()?.unwrap_or_default();
+    rules.declare_solid(&args.solid);
     let scene = scene::load(&args.scene)?;
     scene::warnings(&scene).for_each(|warning| complain("warning", warning));
     let placements = placements(args, &scene)?;
@@ -42,7 +44,10 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
         Some(placements) => Motion::table(&scene, placements),
         None => Motion::animation(&scene),
     };
-    let mut stage = Stage::new(&scene, motion, timeline.time(0))?;
+    let (solid, warnings) = rules::solids(&rules, &names(&scene));
+    warnings.iter().for_each(|warning| complain("warning", warning));
+    let shapes = solids::shapes(&scene, &solid)?;
+    let mut stage = Stage::new(&scene, &shapes, motion, timeline.time(0))?;
     set_responses(&rules, args.response.map(Response::from), &scene, &mut stage)?;
     let recorders = recorders(args, &scene)?;
     clock.lap(&mut times.load);

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use anyhow::{Result, anyhow};
 use solid_scene::{ObjectPose, Pose, Scene};
-use solid3d::{Collision, ObjectId, Statistics, World};
+use solid3d::{Collision, ObjectId, Shape, Statistics, World};
 
 use super::motion::Motion;
 use crate::record::Hit;
@@ -25,8 +25,8 @@ pub struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    /// The scene at the first frame, at a time in seconds.
-    pub fn new(scene: &'a Scene, mut motion: Motion<'a>, time: f64) -> Result<Self> {
+    /// The scene at the first frame, at a time in seconds, its objects with these shapes.
+    pub fn new(scene: &'a Scene, shapes: &[Shape], mut motion: Motion<'a>, time: f64) -> Result<Self> {
         let mut wanted = Pose::default();
         motion.pose(0, time, &mut wanted);
         let mut stage = Stage {
@@ -38,8 +38,8 @@ impl<'a> Stage<'a> {
             shown: wanted.clone(),
             wanted,
         };
-        for object in 0..scene.objects().len() {
-            let added = stage.add(object);
+        for (object, shape) in shapes.iter().enumerate() {
+            let added = stage.add(object, shape);
             let id = added.map_err(|error| stage.refusal(object, time, &error))?;
             stage.places.insert(id, object);
             stage.ids.push(id);
@@ -76,9 +76,9 @@ impl<'a> Stage<'a> {
         self.world.statistics()
     }
 
-    fn add(&mut self, object: usize) -> solid3d::Result<ObjectId> {
+    fn add(&mut self, object: usize, shape: &Shape) -> solid3d::Result<ObjectId> {
         let ObjectPose { placement, positions } = &self.wanted.objects[object];
-        let id = self.world.add(self.scene.objects()[object].shape(), *placement)?;
+        let id = self.world.add(shape, *placement)?;
         if !positions.is_empty() {
             self.world.deform(id, positions)?;
         }

@@ -15,6 +15,7 @@ use crate::text;
 #[derive(Debug, Default)]
 pub struct Rules {
     pub(super) default: Option<Response>,
+    pub(super) solid: Vec<Names>,
     pub(super) objects: Vec<ObjectRule>,
     pub(super) pairs: Vec<PairRule>,
 }
@@ -43,11 +44,23 @@ pub(super) struct Names {
     pub place: String,
 }
 
+impl Names {
+    fn new(text: String, place: String) -> Self {
+        Names { pattern: Pattern::new(&text), text, place }
+    }
+}
+
 impl Rules {
     /// Reads a file.
     pub fn read(path: &Path) -> Result<Rules> {
         let text = text::read(path)?;
         Rules::parse(path, &text)
+    }
+
+    /// Adds objects that are to be solid, as the command line names them.
+    pub fn declare_solid(&mut self, patterns: &[String]) {
+        let names = |text: &String| Names::new(text.clone(), "--solid".to_owned());
+        self.solid.extend(patterns.iter().map(names));
     }
 
     /// The rules of a text; `path` is where it is from, for messages.
@@ -65,6 +78,7 @@ impl Rules {
         };
         Ok(Rules {
             default: written.default.map(Response::from),
+            solid: written.solid.into_iter().map(|text| source.names(text)).collect(),
             objects: written.object.into_iter().map(object).collect(),
             pairs: written.pair.into_iter().map(pair).collect(),
         })
@@ -80,8 +94,7 @@ struct Source<'a> {
 impl Source<'_> {
     fn names(&self, text: Spanned<String>) -> Names {
         let place = self.place(text.span());
-        let text = text.into_inner();
-        Names { pattern: Pattern::new(&text), text, place }
+        Names::new(text.into_inner(), place)
     }
 
     fn fault(&self, error: &toml::de::Error) -> anyhow::Error {
@@ -100,6 +113,8 @@ impl Source<'_> {
 #[serde(deny_unknown_fields)]
 struct Written {
     default: Option<WrittenResponse>,
+    #[serde(default)]
+    solid: Vec<Spanned<String>>,
     #[serde(default)]
     object: Vec<WrittenObject>,
     #[serde(default)]
@@ -175,7 +190,7 @@ mod tests {
             ),
             (
                 "\ncolour = 1",
-                "rules.toml:2: unknown field `colour`, expected one of `default`, `object`, `pair`",
+                "rules.toml:2: unknown field `colour`, expected one of `default`, `solid`, `object`, `pair`",
             ),
             ("[[object]]\nname = \"x\"", "rules.toml:1: missing field `response`"),
             ("[[pair]]\na = \"x\"\nb = 3\nresponse = \"simple\"", "rules.toml:3: invalid type: integer"),

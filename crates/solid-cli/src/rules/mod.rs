@@ -2,6 +2,7 @@
 //!
 //! ```toml
 //! default = "witness"        # ignore, simple, witness, smart or curve
+//! solid = ["ship*"]          # closed meshes that are to be solid
 //!
 //! [[object]]                 # all pairs with the object
 //! name = "mine*"
@@ -23,4 +24,4 @@ mod pattern;
 mod table;
 
 pub use file::Rules;
-pub use table::{Objects, apply};
+pub use table::{Objects, apply, solids};

@@ -19,6 +19,13 @@ pub struct Objects<'a> {
     pub exempt: &'a [(usize, usize)],
 }
 
+/// The places of the objects that rules declare solid, and warnings, for patterns that match nothing.
+pub fn solids(rules: &Rules, names: &[&str]) -> (Vec<usize>, Vec<String>) {
+    let mut index = NameIndex::new(names);
+    let places = rules.solid.iter().flat_map(|wanted| index.matching(wanted)).collect();
+    (places, index.into_warnings())
+}
+
 /// Sets the responses of a world. Returns warnings, for patterns that match nothing.
 pub fn apply(
     rules: &Rules,
