@@ -21,6 +21,7 @@ mod distance;
 mod double_double;
 mod exact;
 pub mod generate;
+mod known_answers;
 mod mesh;
 mod penetration;
 mod placed;
@@ -30,6 +31,7 @@ mod verdict;
 
 pub use distance::{contains_within, distance_bounds};
 pub use exact::hulls_intersect_exact;
+pub use known_answers::known_answers;
 pub use mesh::{mesh_distance, mesh_pairs, triangle_distance, triangles_intersect, winding_number};
 pub use penetration::penetration_bounds;
 pub use placed::verify_axis;

@@ -13,25 +13,11 @@ use std::path::PathBuf;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde_json::Value;
 use solid_oracle::generate::Pair;
-use solid_oracle::{Convex, Verdict, distance_bounds, penetration_bounds, verdict};
+use solid_oracle::{Convex, Verdict, distance_bounds, known_answers, penetration_bounds, verdict};
 
-/// A file of the folder `convex`, `None` with a line printed when there is no data.
+/// A file of the folder `convex`, `None` when there is no data.
 fn data_file(name: &str) -> Option<PathBuf> {
-    let Some(root) = std::env::var_os("SOLID_DATA").map(PathBuf::from) else {
-        println!("SOLID_DATA is not set: {name} is not checked");
-        return None;
-    };
-    // Tests run in the folder of their crate; a relative name is meant from the root of the workspace.
-    let root = if root.is_relative() {
-        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..").join(root)
-    } else {
-        root
-    };
-    let file = [root.join("convex").join(name), root.join(name)].into_iter().find(|path| path.exists());
-    if file.is_none() {
-        println!("SOLID_DATA has no {name}: it is not checked");
-    }
-    file
+    known_answers(&format!("convex/{name}"))
 }
 
 fn read_json(path: &PathBuf) -> Value {

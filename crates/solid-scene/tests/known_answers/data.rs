@@ -1,30 +1,15 @@
 //! Reading the data folder.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 
 use csv::StringRecord;
 use glam::{DAffine3, DMat3, DVec3};
 use serde_json::Value;
+pub(crate) use solid_oracle::known_answers as folder;
 use solid_scene::{LoadOptions, Scene};
 use solid3d::Shape;
-
-/// A part of the data folder; `None`, with a line printed, when there is none.
-pub(crate) fn folder(name: &str) -> Option<PathBuf> {
-    let Some(root) = std::env::var_os("SOLID_DATA").map(PathBuf::from) else {
-        println!("SOLID_DATA is not set: {name} is not checked");
-        return None;
-    };
-    // Tests run in the folder of their crate; a relative name is meant from the root of the workspace.
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let folder = workspace.join(root).join(name);
-    if !folder.exists() {
-        println!("SOLID_DATA has no {name}: it is not checked");
-        return None;
-    }
-    Some(folder)
-}
 
 /// A JSON file.
 pub(crate) fn json(path: &Path) -> Value {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
+use solid_oracle::known_answers;
 use solid_scene::Scene;
 use solid3d::Aabb;
 
@@ -27,15 +28,6 @@ const REFUSED: [(&str, &str); 13] = [
     ("vrml/choreonoid/Tank/tank.wrl", "expected one more value or ']'"),
 ];
 
-/// The folder; says so when there is none.
-fn folder() -> Option<PathBuf> {
-    let data = std::env::var_os("SOLID_DATA");
-    if data.is_none() {
-        println!("SOLID_DATA is not set: no files to test with");
-    }
-    data.map(PathBuf::from)
-}
-
 /// All files with the ending .wrl below a folder, in order.
 fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
     let entries = std::fs::read_dir(folder).expect("the data folder can be read");
@@ -52,7 +44,7 @@ fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
 
 #[test]
 fn exactly_the_listed_files_are_refused() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = known_answers("") else { return };
     let mut files = Vec::new();
     files_below(&folder.join("vrml"), &mut files);
     let mut refused = Vec::new();
@@ -106,7 +98,7 @@ fn expected(folder: &Path) -> Vec<Expected> {
 
 #[test]
 fn bounds_areas_and_triangles_agree_with_other_programs() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = known_answers("") else { return };
     let mut wrong = Vec::new();
     for row in expected(&folder) {
         match load_file(&folder.join(&row.file)) {

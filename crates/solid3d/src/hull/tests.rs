@@ -327,11 +327,7 @@ fn is_separable(p: DVec3, others: &[DVec3]) -> bool {
 /// 3,378 point sets from the Jolt test assets: vertex count, volume and area as CGAL found them.
 #[test]
 fn the_hulls_of_jolt() {
-    let Some(folder) = std::env::var_os("SOLID_DATA") else {
-        println!("skipped: SOLID_DATA names no folder");
-        return;
-    };
-    let folder = std::path::Path::new(&folder).join("convex");
+    let Some(folder) = solid_oracle::known_answers("convex") else { return };
     let table = std::fs::read_to_string(folder.join("jolt_convex_hulls_open.csv")).expect("the table");
     // For each set a little-endian u32, the number of points, and that many triples of f32.
     let bytes = std::fs::read(folder.join("jolt_convex_hulls_open.bin")).expect("the points");
