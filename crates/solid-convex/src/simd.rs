@@ -1,43 +1,113 @@
 //! The one door to wide instructions.
 //!
-//! Loops over lanes are written once, over `fearless_simd`'s vectors, and compiled for each level of instructions; which
-//! level runs is chosen here, at run time. A level changes no bit of any answer: no loop contracts a product and a sum, ties
-//! go to the lowest lane or index, and the scalar level is what tests hold the others against.
+//! Kernels, loops over lanes, are written once, over `fearless_simd`'s vectors, and compiled twice: scalar, which is what tests
+//! hold the other against, and for the wide instructions of the architecture (AVX2, NEON, WebAssembly's SIMD). Which one runs
+//! is chosen here, at run time. It changes no bit of any answer: no kernel contracts a product and a sum, and ties go to the
+//! lowest lane or index.
+//!
+//! AVX-512 machines run the AVX2 code: eight lanes are what the trees have, and arg-max over vertices is no faster with
+//! sixteen. SSE2 alone runs the scalar code, which the compiler vectorises by itself. Each further copy of the kernels would
+//! cost seconds of everybody's build.
 
 use std::sync::OnceLock;
 
-use fearless_simd::Level;
+use fearless_simd::Fallback;
 
-/// The level of instructions that loops over lanes use: the widest of this machine, or what the environment variable
-/// `SOLID_SIMD` says when the process first asks: `scalar` (no vectors at all) or `baseline` (what every machine of the
-/// architecture has). Any other value is as if it were not set.
+/// The wide instructions of the architecture.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub type Wide = fearless_simd::Avx2;
+/// The wide instructions of the architecture.
+#[cfg(target_arch = "aarch64")]
+pub type Wide = fearless_simd::Neon;
+/// The wide instructions of the architecture.
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+pub type Wide = fearless_simd::WasmSimd128;
+/// The architecture has no wide instructions that are known here: there is only the scalar level.
+#[cfg(not(any(
+    target_arch = "x86",
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
+pub type Wide = Fallback;
+
+/// What kernels run on.
+#[derive(Clone, Copy, Debug)]
+pub enum Level {
+    /// No vectors.
+    Scalar(Fallback),
+    /// The wide instructions of this machine.
+    Wide(Wide),
+}
+
+/// Runs a kernel, a call of an `#[inline(always)]` function generic over `fearless_simd::Simd`, on a level.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! dispatch {
+    ($level:expr, $simd:ident => $kernel:expr) => {
+        match $level {
+            $crate::simd::Level::Scalar($simd) => $kernel,
+            $crate::simd::Level::Wide($simd) => $crate::simd::vectorize(
+                $simd,
+                #[inline(always)]
+                || $kernel,
+            ),
+        }
+    };
+}
+pub use dispatch;
+
+/// Runs what is inlined into `kernel` on the wide instructions.
+#[inline(always)]
+#[doc(hidden)]
+pub fn vectorize<R>(wide: Wide, kernel: impl FnOnce() -> R) -> R {
+    fearless_simd::Simd::vectorize(wide, kernel)
+}
+
+/// The level that everything runs on: wide, if this machine can, unless the environment variable `SOLID_SIMD` is `scalar` when
+/// the process first asks.
 pub fn level() -> Level {
     static LEVEL: OnceLock<Level> = OnceLock::new();
-    *LEVEL.get_or_init(|| named(std::env::var("SOLID_SIMD").ok().as_deref()))
+    *LEVEL.get_or_init(|| match std::env::var_os("SOLID_SIMD") {
+        Some(name) if name == "scalar" => scalar(),
+        _ => widest(),
+    })
 }
 
-fn named(name: Option<&str>) -> Level {
-    match name {
-        Some("scalar") => Level::fallback(),
-        Some("baseline") => Level::baseline(),
-        _ => Level::new(),
-    }
+/// All levels that this machine can run: for tests that hold them against each other.
+pub fn levels() -> [Level; 2] {
+    [scalar(), widest()]
 }
 
-/// All levels that this machine can run, from scalar to widest: for tests that hold them against each other.
-pub fn levels() -> [Level; 3] {
-    [Level::fallback(), Level::baseline(), Level::new()]
+fn scalar() -> Level {
+    Level::Scalar(Fallback::new())
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+fn widest() -> Level {
+    wide().map_or_else(scalar, Level::Wide)
+}
 
-    #[test]
-    fn a_level_is_chosen_by_its_name() {
-        assert!(named(Some("scalar")).is_fallback());
-        assert_eq!(format!("{:?}", named(Some("baseline"))), format!("{:?}", Level::baseline()));
-        assert_eq!(format!("{:?}", named(None)), format!("{:?}", Level::new()));
-        assert_eq!(format!("{:?}", named(Some("other"))), format!("{:?}", Level::new()));
-    }
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+fn wide() -> Option<Wide> {
+    fearless_simd::Level::new().as_avx2()
+}
+
+#[cfg(target_arch = "aarch64")]
+fn wide() -> Option<Wide> {
+    fearless_simd::Level::new().as_neon()
+}
+
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+fn wide() -> Option<Wide> {
+    fearless_simd::Level::new().as_wasm_simd128()
+}
+
+#[cfg(not(any(
+    target_arch = "x86",
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
+fn wide() -> Option<Wide> {
+    None
 }
