@@ -18,8 +18,9 @@ pub(super) fn intersection(
     scratch: &mut Scratch,
 ) -> Relation {
     let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
-    let found =
-        meetings_in((complex, at_complex), (convex, at_convex), &query, scratch, |_, w| ControlFlow::Break(w));
+    let found = meetings_in((complex, at_complex), (convex, at_convex), &query, scratch, |_, w| {
+        ControlFlow::Break(w)
+    });
     let common = found.break_value().or_else(|| contained(complex, convex, &frame, scratch));
     common.map_or(Relation::Separated { axis: None }, Relation::Common)
 }

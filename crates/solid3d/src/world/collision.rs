@@ -88,7 +88,14 @@ impl Contact {
         let Approach { points, distance, normal } = pair::approach(now, before, scratch);
         let [point_on_a, point_on_b] = [(before[0], points.on_a), (before[1], points.on_b)]
             .map(|(placed, point)| placed.placement.transform_point3(point));
-        Contact::Smart { point_on_a, point_on_b, local_a: points.on_a, local_b: points.on_b, distance, normal }
+        Contact::Smart {
+            point_on_a,
+            point_on_b,
+            local_a: points.on_a,
+            local_b: points.on_b,
+            distance,
+            normal,
+        }
     }
 
     /// Where the surfaces of two objects meet; a common point is known.
