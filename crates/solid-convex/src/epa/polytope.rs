@@ -5,7 +5,7 @@ use robust::orient3d;
 
 use super::face::Face;
 use crate::Support;
-use crate::difference::{Difference, SupportPoint};
+use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::coord;
 
 /// The hull of some points of `A - B`, with an inside. Invariant: exactly convex and closed, for the vertices as they were rounded;
@@ -105,9 +105,25 @@ impl Polytope {
         self.open[index] = f64::INFINITY;
     }
 
-    /// A ball of this radius around the origin is in the polytope; negative when that cannot be said.
-    pub fn radius(&self) -> f64 {
-        self.faces.iter().map(|face| face.offset - face.slack).fold(f64::INFINITY, f64::min)
+    /// A ball of this radius around the origin is in the polytope; negative when that cannot be said. Beyond `enough` it need not
+    /// be precise.
+    pub fn radius(&self, enough: f64) -> f64 {
+        let bound = |(index, face): (usize, &Face)| {
+            let of_plane = face.offset - face.slack;
+            if of_plane < enough { of_plane.max(self.sliver_distance(index)) } else { of_plane }
+        };
+        self.faces.iter().enumerate().map(bound).fold(f64::INFINITY, f64::min)
+    }
+
+    /// A lower bound of the distance of a face that needs no plane, which a sliver hardly has: that of its longest edge, less how wide it is.
+    fn sliver_distance(&self, index: usize) -> f64 {
+        let [p, q, r] = self.corners(index).map(|corner| corner.w);
+        let edges = [(p, q, r), (q, r, p), (r, p, q)];
+        let length_squared = |(p, q, _): &(DVec3, DVec3, DVec3)| p.distance_squared(*q);
+        let longer = |x, y| if length_squared(&y) > length_squared(&x) { y } else { x };
+        let (p, q, r) = edges.into_iter().fold(edges[0], longer);
+        let along = |x: DVec3| p + (q - p) * ((x - p).dot(q - p) / p.distance_squared(q)).clamp(0.0, 1.0);
+        along(DVec3::ZERO).length() - along(r).distance(r) - SUPPORT_ERROR
     }
 
     /// The corners of the faces through which the ray along a direction leaves the polytope: those that it meets at most this much later than
