@@ -79,6 +79,12 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
         self.linear_a * (y.a - x.a) - self.linear_b * (y.b - x.b)
     }
 
+    /// The same as [`edge`](Difference::edge), and the size of the two edges that it is the difference of, whose rounding is its error.
+    pub fn edge_with_size(&self, x: &SupportPoint, y: &SupportPoint) -> (DVec3, f64) {
+        let (of_a, of_b) = (self.linear_a * (y.a - x.a), self.linear_b * (y.b - x.b));
+        (of_a - of_b, of_a.abs().element_sum() + of_b.abs().element_sum())
+    }
+
     /// Where to start: from the middle of `B` to that of `A`, and along x when they coincide.
     pub fn initial_direction(&self) -> DVec3 {
         let v = self.linear_a * self.a.center() - (self.linear_b * self.b.center() + self.offset);

@@ -3,7 +3,7 @@
 //!
 //! A *support mapping* of a convex object `A` takes a direction `d` to a point of `A` that lies furthest along
 //! `d`. Given the support mappings of two objects under affine placements, GJK finds a separating axis, a common
-//! point, or the closest points (van den Bergen, *Collision Detection in Interactive 3D Computer Animation*, 1999,
+//! point, or the closest points, and [`epa`] how deep they are in each other (van den Bergen, *Collision Detection in Interactive 3D Computer Animation*, 1999,
 //! sections 4.4.1 to 4.4.4).
 //!
 //! ```
@@ -21,6 +21,7 @@
 //! This crate knows no tree and no world; `solid3d` builds on it.
 
 mod difference;
+pub mod epa;
 pub mod gjk;
 mod kinds;
 pub mod simd;
@@ -28,6 +29,7 @@ mod simplex;
 mod size;
 mod support;
 
+pub use epa::Penetration;
 pub use gjk::{Closest, Outcome, Witness};
 pub use kinds::{Capsule, Cone, Cuboid, Cylinder, IndexedPoints, Points, Polytope, Sphere};
 pub use size::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError, unit_scale};

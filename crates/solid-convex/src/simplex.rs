@@ -265,6 +265,6 @@ fn closest(features: impl Iterator<Item = Feature>) -> Option<Feature> {
     features.min_by(|x, y| x.v.length_squared().total_cmp(&y.v.length_squared()))
 }
 
-fn coord(p: DVec3) -> Coord3D<f64> {
+pub(crate) fn coord(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }
 }

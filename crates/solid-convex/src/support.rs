@@ -19,6 +19,16 @@ pub trait Support: Send + Sync {
     fn center(&self) -> DVec3 {
         DVec3::ZERO
     }
+
+    /// The object is all that is within this distance of its core; 0 for one that is its own core.
+    fn core_radius(&self) -> f64 {
+        0.0
+    }
+
+    /// A support point of the core, which is what the object is rounded from: of a ball its centre.
+    fn core_support(&self, direction: DVec3) -> DVec3 {
+        self.support(direction)
+    }
 }
 
 /// `-magnitude` for negative `sign`, else `magnitude`: the thesis's sgn, which is 1 at 0.

@@ -153,8 +153,10 @@ void dtResetPairResponse(DtObjectRef object1, DtObjectRef object2);
  * Smart: point1 and point2 are the closest points in the previous frame, local to the placements of that frame; normal is
  * the world position of point1 less that of point2, so it points away from object2. The previous frame is what was at the
  * last dtProceed; for an object created since, what was at the first dtTest or dtTestObjects after its creation. When they
- * collided there already, no direction is known: point1 and point2 are a common point of that frame, and normal is exactly
- * zero.
+ * collided there already, point1 and point2 are the points of each that were deepest in the other, and normal is a vector of
+ * length 1: the way on which object1 would have left object2 soonest. It is never zero. Where many ways are as short, as for
+ * equal balls in one place, it is one of them. Of complex shapes, all pairs of primitives that collide now are looked at: the
+ * answer is of the pair that was nearest in the previous frame, or deepest.
  *
  * Within a response, every function may be called. Changes hold at once. A pair is examined as things are when its turn
  * comes: what moves, is deformed, deleted or given another response is seen by the pairs that come later, and each pair comes

@@ -44,7 +44,7 @@ typedef enum DtResponseType {
 typedef struct DtCollData {
     DtVector point1;  /* Of object1, in its local coordinates. */
     DtVector point2;  /* Of object2, in its local coordinates. */
-    DtVector normal;  /* Smart response: from point2 to point1, in world coordinates. Otherwise zero. */
+    DtVector normal;  /* Smart response: away from object2, in world coordinates, never zero. Otherwise zero. */
 } DtCollData;
 
 /* A response: called by dtTest for a pair of colliding objects. coll_data holds until it returns. */

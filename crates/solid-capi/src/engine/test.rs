@@ -61,7 +61,7 @@ pub(crate) struct Points {
     pub point1: DVec3,
     /// Space: local to `object2`.
     pub point2: DVec3,
-    /// From `point2` to `point1`, or zero. Space: world.
+    /// From `point2` to `point1`; where these were in each other, the unit vector along which `object1` leaves; or zero. Space: world.
     pub normal: DVec3,
 }
 
@@ -117,9 +117,10 @@ fn points(contact: &Contact) -> Option<Points> {
         Contact::Witness { local_a, local_b, .. } => {
             Some(Points { point1: local_a, point2: local_b, normal: DVec3::ZERO })
         }
-        Contact::Smart { point_on_a, point_on_b, local_a, local_b, normal } => {
-            let difference = normal.map_or(DVec3::ZERO, |_| point_on_a - point_on_b);
-            Some(Points { point1: local_a, point2: local_b, normal: difference })
+        Contact::Smart { local_a, local_b, distance, normal, .. } => {
+            // As long as the points are apart; of unit length where they are not, since clients divide by it.
+            let normal = if distance > 0.0 { normal * distance } else { normal };
+            Some(Points { point1: local_a, point2: local_b, normal })
         }
     }
 }

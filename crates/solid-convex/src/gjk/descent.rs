@@ -8,7 +8,7 @@ use crate::simplex::{Reduced, Simplex, normal, perpendicular};
 
 /// When a descent may stop.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Goal {
+pub(crate) enum Goal {
     /// As soon as an axis is known to separate the objects.
     Separation,
     /// As soon as the distance is known to this relative error.
@@ -20,7 +20,7 @@ pub(super) enum Goal {
 
 /// How a descent ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum End {
+pub(crate) enum End {
     /// `v` separates the objects.
     Separated,
     /// A tetrahedron of the difference contains the origin.
@@ -30,7 +30,7 @@ pub(super) enum End {
 }
 
 /// A descent that ended. Space: the difference's own.
-pub(super) struct Descent {
+pub(crate) struct Descent {
     pub end: End,
     /// The point of the simplex closest to the origin, or the separating axis.
     pub v: DVec3,
@@ -53,7 +53,7 @@ const GROWTH_MAX: f64 = 4.0;
 const REFINEMENTS_MAX: usize = 8;
 
 /// Runs a descent. `v` starts along the initial direction; the objects' own support points take over from there.
-pub(super) fn descend<A, B>(difference: &Difference<A, B>, goal: Goal) -> Descent
+pub(crate) fn descend<A, B>(difference: &Difference<A, B>, goal: Goal) -> Descent
 where
     A: Support + ?Sized,
     B: Support + ?Sized,

@@ -18,7 +18,7 @@ pub struct Closest {
 
 /// The relative error of a distance, as far as the rounding error of positions allows: polytopes reach it in their last
 /// iteration anyway, and for quadrics each digit costs some four iterations.
-const DISTANCE_TOLERANCE: f64 = 1e-12;
+pub(crate) const DISTANCE_TOLERANCE: f64 = 1e-12;
 
 /// The closest points of two placed convex objects, and their distance. Algorithm 4.1 of the thesis.
 ///

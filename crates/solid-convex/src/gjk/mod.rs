@@ -17,6 +17,8 @@ mod intersection;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use descent::{End, Goal, descend};
+pub(crate) use distance::DISTANCE_TOLERANCE;
 pub use distance::{Closest, closest_points};
 pub use intersection::{Outcome, Witness, intersection, separates};
 

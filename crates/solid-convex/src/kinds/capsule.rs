@@ -34,11 +34,18 @@ impl Capsule {
 
 impl Support for Capsule {
     fn support(&self, direction: DVec3) -> DVec3 {
-        let end = with_sign(self.half_height, direction.y);
-        ball_support(self.radius, direction) + DVec3::new(0.0, end, 0.0)
+        ball_support(self.radius, direction) + self.core_support(direction)
     }
 
     fn reach(&self) -> DVec3 {
         DVec3::new(self.radius, self.radius + self.half_height, self.radius)
+    }
+
+    fn core_radius(&self) -> f64 {
+        self.radius
+    }
+
+    fn core_support(&self, direction: DVec3) -> DVec3 {
+        DVec3::new(0.0, with_sign(self.half_height, direction.y), 0.0)
     }
 }

@@ -42,4 +42,12 @@ impl Support for Sphere {
     fn reach(&self) -> DVec3 {
         DVec3::splat(self.radius)
     }
+
+    fn core_radius(&self) -> f64 {
+        self.radius
+    }
+
+    fn core_support(&self, _direction: DVec3) -> DVec3 {
+        DVec3::ZERO
+    }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::{DAffine3, DVec3};
-use solid_oracle::{Convex, Verdict, distance_bounds, verdict};
+use solid_oracle::{Convex, Verdict, distance_bounds, penetration_bounds, verdict};
 use solid3d::{Shape, query};
 
 use crate::data::{Row, folder, for_each_row, json};
@@ -34,10 +34,24 @@ fn primitives() {
         libraries.error(&label, (found - coal.max(0.0)).abs(), limit);
         let (low, high) = distance_bounds(&a, &at_a, &b, &at_b);
         certified.hit(&label, collide, high == 0.0);
+        let depth = query::penetration(&shape_a, &at_a, &shape_b, &at_b).unwrap();
+        certified.check(depth.is_some() == collide, || format!("{label}: {depth:?}"));
+        if let (Some(depth), Some(truth)) = (depth, penetration_bounds(&a, &at_a, &b, &at_b)) {
+            certified.error(
+                &label,
+                outside([depth.depth_min, depth.depth_max], truth) / size,
+                DISTANCE_ERROR,
+            );
+        }
         certified.error(&label, (low - found).max(found - high).max(0.0) / size, DISTANCE_ERROR);
     });
     libraries.finish_representative();
     certified.finish();
+}
+
+/// How far apart an answer, given as bounds, and certified bounds of the truth are.
+pub(crate) fn outside([low, high]: [f64; 2], (certain_low, certain_high): (f64, f64)) -> f64 {
+    (certain_low - high).max(low - certain_high).max(0.0)
 }
 
 fn primitive(row: &Row, object: &str, prefix: &str) -> Convex {
@@ -96,6 +110,9 @@ fn hull_pairs() {
         let found = query::distance(shape_a, &here, shape_b, &at).unwrap().distance;
         let size = reach(a) + reach(b) + at.translation.length();
         tally.error(&label, (found - signed.max(0.0)).abs() / size, DISTANCE_ERROR);
+        let depth =
+            query::penetration(shape_a, &here, shape_b, &at).unwrap().map_or(0.0, |found| found.depth);
+        tally.error(&label, (depth - (-signed).max(0.0)).abs() / size, DISTANCE_ERROR);
     });
     tally.finish_representative();
 }

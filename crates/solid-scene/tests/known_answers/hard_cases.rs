@@ -3,10 +3,10 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use serde_json::Value;
-use solid_oracle::{Convex, Verdict, distance_bounds, verdict};
+use solid_oracle::{Convex, Verdict, distance_bounds, penetration_bounds, verdict};
 use solid3d::{convex::gjk::TOUCHING_ERROR, query};
 
-use crate::convex::{reach, shape};
+use crate::convex::{outside, reach, shape};
 use crate::data::{folder, json};
 use crate::tally::Tally;
 
@@ -51,6 +51,12 @@ fn check(tally: &mut Tally, case: &Value) {
     tally.error(name, (low - found).max(found - high).max(0.0) / size, DISTANCE_ERROR);
     if let Some(signed) = case["reference_signed_distance"].as_f64() {
         tally.error(name, (found - signed.max(0.0)).abs() / size, DISTANCE_ERROR);
+    }
+    let deep = query::penetration(&shape_a, &at_a, &shape_b, &at_b).unwrap();
+    tally.check(deep.is_some() == hit, || format!("{name}: {deep:?}"));
+    if let (Some(deep), Some(truth)) = (deep, penetration_bounds(&a, &at_a, &b, &at_b)) {
+        let error = outside([deep.depth_min, deep.depth_max], truth);
+        tally.error(name, error / size, DISTANCE_ERROR);
     }
     for (source, signed) in opinions(case) {
         if (found - signed.max(0.0)).abs() > PUBLISHED_ERROR * size || (signed > 0.0) == hit {

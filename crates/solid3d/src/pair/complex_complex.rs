@@ -15,9 +15,23 @@ use crate::shape::Complex;
 use crate::tree::{PairMetric, nearest_pairs, pairs};
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
+    let found = meetings(a, b, scratch, |i, j| ControlFlow::Break((i, j)));
+    match found.break_value() {
+        Some((i, j)) => Relation::Common(closest_of(a, i, b, j).points),
+        None => contained(a, b, scratch).map_or(Relation::Separated { axis: None }, Relation::Common),
+    }
+}
+
+/// Visits the pairs of primitives that meet.
+pub(super) fn meetings<B>(
+    a: PlacedComplex,
+    b: PlacedComplex,
+    scratch: &mut Scratch,
+    mut visit: impl FnMut(u32, u32) -> ControlFlow<B>,
+) -> ControlFlow<B> {
     let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
     let Frame { relative, common: [from_a, from_b], .. } = frame(a, b);
-    let found = pairs(a.0.tree(), b.0.tree(), &relative, traversal, |leaf_a, leaf_b| {
+    pairs(a.0.tree(), b.0.tree(), &relative, traversal, |leaf_a, leaf_b| {
         place(a.0, leaf_a, &from_a, in_a);
         place(b.0, leaf_b, &from_b, in_b);
         for x in &*in_a {
@@ -28,16 +42,12 @@ pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scr
                     _ => hulls_meet(a, x.primitive, b, y.primitive),
                 };
                 if meet {
-                    return ControlFlow::Break((x.primitive, y.primitive));
+                    visit(x.primitive, y.primitive)?;
                 }
             }
         }
         ControlFlow::Continue(())
-    });
-    match found.break_value() {
-        Some((i, j)) => Relation::Common(closest_of(a, i, b, j).points),
-        None => contained(a, b, scratch).map_or(Relation::Separated { axis: None }, Relation::Common),
-    }
+    })
 }
 
 /// A point of a part of one that is inside the other, a solid; for surfaces that do not meet.

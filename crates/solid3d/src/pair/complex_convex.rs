@@ -18,21 +18,48 @@ pub(super) fn intersection(
     scratch: &mut Scratch,
 ) -> Relation {
     let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
+    let found = meetings_in((complex, at_complex), (convex, at_convex), &query, scratch, |_, w| {
+        ControlFlow::Break(w)
+    });
+    let common = found.break_value().or_else(|| contained(complex, convex, &frame, scratch));
+    common.map_or(Relation::Separated { axis: None }, Relation::Common)
+}
+
+/// Visits the primitives that the convex shape meets.
+pub(super) fn meetings(
+    complex: PlacedComplex,
+    convex: PlacedConvex,
+    scratch: &mut Scratch,
+    mut visit: impl FnMut(u32),
+) {
+    let (query, _) = convex_in_complex(complex, convex);
+    let _ = meetings_in(complex, convex, &query, scratch, |primitive, _| {
+        visit(primitive);
+        ControlFlow::<()>::Continue(())
+    });
+}
+
+/// Visits the primitives that the convex shape, which is in this box, meets, each with a common point.
+fn meetings_in<B>(
+    (complex, at_complex): PlacedComplex,
+    (convex, at_convex): PlacedConvex,
+    query: &Aabb,
+    scratch: &mut Scratch,
+    mut visit: impl FnMut(u32, Witness) -> ControlFlow<B>,
+) -> ControlFlow<B> {
     let Scratch { traversal, primitive_tests, .. } = scratch;
-    let found = complex.tree().overlapping(&query, traversal, |leaf| {
+    complex.tree().overlapping(query, traversal, |leaf| {
         for &primitive in leaf {
-            if complex.primitive_bounds(primitive).overlaps(&query) {
+            if complex.primitive_bounds(primitive).overlaps(query) {
                 *primitive_tests += 1;
                 let points = complex.primitive_hull(primitive);
                 if let Some(witness) = gjk::intersection(&points, at_complex, convex, at_convex).witness() {
-                    return ControlFlow::Break(*witness);
+                    visit(primitive, *witness)?;
                 }
             }
         }
         ControlFlow::Continue(())
-    });
-    let common = found.break_value().or_else(|| contained(complex, convex, &frame, scratch));
-    common.map_or(Relation::Separated { axis: None }, Relation::Common)
+    })
 }
 
 pub(super) fn closest(

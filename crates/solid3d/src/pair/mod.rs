@@ -7,14 +7,17 @@
 //!
 //! Placements were checked by the caller.
 
+mod approach;
 mod complex_complex;
 mod complex_convex;
 mod containment;
 mod convex_convex;
 mod crossing;
 mod curve;
+mod depth;
 mod fixed_box;
 mod frame;
+
 mod reach;
 mod scratch;
 pub(crate) mod swept;
@@ -22,13 +25,14 @@ mod table;
 
 use glam::{DAffine3, DVec3};
 
+pub(crate) use approach::{Approach, approach};
 pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};
-pub(crate) use table::{axis, closest, intersection};
+pub(crate) use table::{axis, closest, intersection, penetration};
 
 use crate::placement::inverse_linear;
 use crate::shape::{Class, Shape};

@@ -1,9 +1,11 @@
 //! The table.
 
-use glam::{DAffine3, DVec3};
-use solid_convex::{Closest, Support};
+use std::ops::ControlFlow;
 
-use super::{Mirror, Placed, Relation, Scratch, complex_complex, complex_convex, convex_convex};
+use glam::{DAffine3, DVec3};
+use solid_convex::{Closest, Penetration, Support};
+
+use super::{Mirror, Placed, Relation, Scratch, complex_complex, complex_convex, convex_convex, depth};
 use crate::shape::{Class, Complex};
 
 /// A convex shape at a place.
@@ -58,6 +60,50 @@ pub(crate) fn axis(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<DVec3>
         convex_convex: convex_convex::axis,
         complex_convex: |a, b, scratch| convex_convex::axis((&a.0.hull(), a.1), b, scratch),
         complex_complex: |a, b, scratch| convex_convex::axis((&a.0.hull(), a.1), (&b.0.hull(), b.1), scratch),
+    };
+    ROW.apply(a, b, scratch)
+}
+
+/// How deep they are in each other.
+pub(crate) fn penetration(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<Penetration> {
+    const ROW: Row<Option<Penetration>> = Row {
+        convex_convex: depth::convex_convex,
+        complex_convex: depth::complex_convex,
+        complex_complex: depth::complex_complex,
+    };
+    ROW.apply(a, b, scratch)
+}
+
+/// The pairs of primitives that meet, in any order; a convex shape is its only one.
+pub(super) struct Meetings(pub Vec<[u32; 2]>);
+
+impl Mirror for Meetings {
+    fn mirrored(mut self) -> Self {
+        self.0.iter_mut().for_each(|pair| pair.reverse());
+        self
+    }
+}
+
+/// Which primitives meet.
+pub(super) fn meetings(a: Placed, b: Placed, scratch: &mut Scratch) -> Meetings {
+    const ROW: Row<Meetings> = Row {
+        convex_convex: |a, b, scratch| match convex_convex::intersection(a, b, scratch) {
+            Relation::Separated { .. } => Meetings(Vec::new()),
+            Relation::Common(_) => Meetings(vec![[0, 0]]),
+        },
+        complex_convex: |a, b, scratch| {
+            let mut pairs = Vec::new();
+            complex_convex::meetings(a, b, scratch, |i| pairs.push([i, 0]));
+            Meetings(pairs)
+        },
+        complex_complex: |a, b, scratch| {
+            let mut pairs = Vec::new();
+            let _ = complex_complex::meetings(a, b, scratch, |i, j| {
+                pairs.push([i, j]);
+                ControlFlow::<()>::Continue(())
+            });
+            Meetings(pairs)
+        },
     };
     ROW.apply(a, b, scratch)
 }

@@ -10,6 +10,8 @@
 //! that [`intersects`] keeps apart. See
 //! [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR).
 
+mod penetration;
+
 use glam::{DAffine3, DVec3};
 
 use crate::bounds::Aabb;
@@ -18,6 +20,7 @@ use crate::pair::{self, Placed, Relation, Scratch};
 pub use crate::pair::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 use crate::placement;
 use crate::shape::Shape;
+pub use penetration::{Penetration, penetration};
 
 /// The distance of two placed shapes, with their closest points.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -253,6 +253,15 @@ impl Shape {
         }
     }
 
+    /// Whether the primitives of the two have the same numbers: both are convex, or one mesh or complex shape, deformed or not.
+    pub(crate) fn has_primitives_of(&self, other: &Shape) -> bool {
+        match (&self.geometry, &other.geometry) {
+            (Geometry::Complex(a), Geometry::Complex(b)) => a.same_primitives(b),
+            (Geometry::Complex(_), _) | (_, Geometry::Complex(_)) => false,
+            _ => true,
+        }
+    }
+
     pub(crate) fn class(&self) -> Class<'_> {
         match &self.geometry {
             Geometry::Sphere(shape) => Class::Convex(shape),

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use solid_convex::{Closest, Witness};
+use solid_convex::Witness;
 
 use super::{ObjectId, Response, When};
-use crate::pair::{self, IntersectionCurve, Placed, Scratch};
+use crate::pair::{self, Approach, IntersectionCurve, Placed, Scratch};
 
 /// Two objects that collide.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,20 +38,28 @@ pub enum Contact {
         /// The same as a point of `b`. Space: local to `b`.
         local_b: DVec3,
     },
-    /// The closest points of the previous frame ([`Response::Smart`]).
+    /// How the objects came together since the previous frame ([`Response::Smart`]).
+    ///
+    /// Of convex objects it is said of the objects, of meshes and complex shapes of one pair of primitives among all that intersect now:
+    /// the pair that was nearest in the previous frame. What was apart there has its closest points; what
+    /// intersected there already (because it was not resolved, or nothing was since it was added) has the points of each that were deepest in
+    /// the other, as [`query::penetration`](crate::query::penetration) gives them, of the deepest pair of primitives.
+    /// The whole objects are looked at when one got another shape, when a solid contains the other, and [on the way](When::OnTheWay).
     Smart {
-        /// The point of `a` that was closest to `b`. Space: world, where it was in the previous frame.
+        /// The point of `a`. Space: world, where it was in the previous frame.
         point_on_a: DVec3,
-        /// The point of `b` that was closest to `a`. Space: world, where it was in the previous frame.
+        /// The point of `b`. Space: world, where it was in the previous frame.
         point_on_b: DVec3,
         /// `point_on_a`. Space: local to `a`.
         local_a: DVec3,
         /// `point_on_b`. Space: local to `b`.
         local_b: DVec3,
-        /// The unit vector from `point_on_b` to `point_on_a`: an approximation of the normal of the contact. Space: world.
-        /// `None` when the objects collided in the previous frame already, or were both added since: there is no direction
-        /// then, and the points are a common point.
-        normal: Option<DVec3>,
+        /// How far the points were apart; negative for what intersected there already: less the depth. World units.
+        distance: f64,
+        /// The unit vector along which `a` was off `b`, from `point_on_b` to `point_on_a`; or, where they intersected already, would
+        /// have left it soonest, from `point_on_a` to `point_on_b`. An approximation of the normal of the contact. Where many directions are
+        /// as good, as for balls in one place, it is one of them. Space: world.
+        normal: DVec3,
     },
     /// Where the surfaces meet ([`Response::Curve`]).
     Curve {
@@ -75,13 +83,19 @@ impl Contact {
         Contact::Witness { point, local_a: pair::to_local(a, point), local_b: pair::to_local(b, point) }
     }
 
-    /// The closest points of two objects as they were.
-    pub(super) fn smart(a: Placed, b: Placed, scratch: &mut Scratch) -> Contact {
-        let Closest { distance, points } = pair::closest(a, b, scratch);
-        let point_on_a = a.placement.transform_point3(points.on_a);
-        let point_on_b = b.placement.transform_point3(points.on_b);
-        let normal = if distance > 0.0 { (point_on_a - point_on_b).try_normalize() } else { None };
-        Contact::Smart { point_on_a, point_on_b, local_a: points.on_a, local_b: points.on_b, normal }
+    /// How two objects came together, from as they were to as they are.
+    pub(super) fn smart(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch) -> Contact {
+        let Approach { points, distance, normal } = pair::approach(now, before, scratch);
+        let [point_on_a, point_on_b] = [(before[0], points.on_a), (before[1], points.on_b)]
+            .map(|(placed, point)| placed.placement.transform_point3(point));
+        Contact::Smart {
+            point_on_a,
+            point_on_b,
+            local_a: points.on_a,
+            local_b: points.on_b,
+            distance,
+            normal,
+        }
     }
 
     /// Where the surfaces of two objects meet; a common point is known.
@@ -104,10 +118,10 @@ impl Collision {
         }
     }
 
-    /// The approximate normal of the contact, a unit vector from `b` to `a`: of smart response, where there is one.
+    /// The approximate normal of the contact, a unit vector from `b` to `a`: of smart response.
     pub fn normal(&self) -> Option<DVec3> {
         match self.contact {
-            Contact::Smart { normal, .. } => normal,
+            Contact::Smart { normal, .. } => Some(normal),
             Contact::Simple | Contact::Witness { .. } | Contact::Curve { .. } => None,
         }
     }

@@ -17,7 +17,7 @@ pub enum Response {
     /// A point that both objects have in common.
     Witness,
     /// The closest points of the previous frame, and their direction: an approximation of the contact (thesis,
-    /// section 2.3).
+    /// section 2.3). Of what intersected there already, the deepest points, and the shortest way out.
     Smart,
     /// The line segments in which the surfaces meet, joined into polylines (thesis, section 6.5): of meshes, complex shapes,
     /// boxes and convex hulls. Other kinds give a common point. Costs more than the others: all pairs of primitives are

@@ -192,7 +192,7 @@ impl World {
                 let contact = match response {
                     Response::Ignore | Response::Simple => Contact::Simple,
                     Response::Witness => Contact::witness(a.placed(), b.placed(), &witness),
-                    Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
+                    Response::Smart => smart([a, b], scratch),
                     Response::Curve => Contact::curve(a.placed(), b.placed(), &witness, scratch),
                 };
                 (Some((When::Now, contact)), None)
@@ -224,11 +224,16 @@ fn on_the_way(
     let contact = match response {
         Response::Ignore | Response::Simple => Contact::Simple,
         Response::Witness => Contact::witness_on_the_way(a.placed(), b.placed(), point),
-        Response::Smart => Contact::smart(a.previously_placed(), b.previously_placed(), scratch),
+        Response::Smart => smart([a, b], scratch),
         // As they are now, the surfaces do not meet.
         Response::Curve => Contact::Curve { point, curve: Arc::default() },
     };
     (Some((When::OnTheWay, contact)), None)
+}
+
+fn smart([a, b]: [&Object; 2], scratch: &mut Scratch) -> Contact {
+    let now = [a.placed(), b.placed()];
+    Contact::smart(now, [a.previously_placed(), b.previously_placed()], scratch)
 }
 
 impl Candidate {

@@ -184,9 +184,14 @@ pub fn shape_of(convex: &Convex) -> Shape {
     try_shape_of(convex).unwrap()
 }
 
-/// The same; an error where the oracle's has no thickness.
+/// The same, a box without thickness as the hull of its corners; an error for a round shape without thickness.
 pub fn try_shape_of(convex: &Convex) -> solid3d::Result<Shape> {
     match convex {
+        Convex::Cuboid { half } if half.min_element() == 0.0 => {
+            let corner =
+                |i: u32| DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { half[k] } else { -half[k] }));
+            Shape::convex_hull(&(0..8).map(corner).collect::<Vec<_>>())
+        }
         Convex::Sphere { radius } => Shape::sphere(*radius),
         Convex::Cuboid { half } => Shape::cuboid(2.0 * *half),
         Convex::Cone { radius, half_height } => Shape::cone(*radius, 2.0 * half_height),

@@ -1,0 +1,201 @@
+//! Penetration depth by the expanding polytope algorithm (EPA): how far, and which way, must `A` move to leave `B`?
+//!
+//! The thesis names the question (section 2.3); the algorithm is its author's later one (van den Bergen, *Proximity Queries and
+//! Penetration Depth Computation on 3D Game Objects*, 2001). A polytope inside `A - B` that contains the origin grows, by
+//! a support point along the normal of the face nearest to the origin, until that face is known to lie on the boundary of `A - B`.
+//! What differs, and why:
+//!
+//! - Which faces a new point sees is decided exactly, so that the polytope is always convex and closed. Where rounding decides,
+//!   the seen faces can be several patches, or none.
+//! - It starts from GJK's tetrahedron when there is one. When GJK ended with less, as it does for shapes that touch or have
+//!   their middles in one place, the start is spanned by support points along the axes and then across what these span; a
+//!   difference without thickness is recognised there, and its depth is 0 along its normal.
+//! - Spheres and capsules, unless they are stretched, are points and segments with a radius: what is searched is the depth or the
+//!   distance of these, and both are found exactly.
+//! - Every direction that was looked along gives an upper bound, the nearest face a lower one. Both are reported, so that an
+//!   answer that had to stop early ([`VERTICES_MAX`]) says how good it is.
+
+mod face;
+mod polytope;
+mod rounded;
+mod start;
+#[cfg(test)]
+mod tests;
+
+use glam::{DAffine3, DVec3};
+
+use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
+use crate::gjk::{End, Goal, descend};
+use crate::simplex::{Reduced, Simplex};
+use crate::{Support, Witness};
+use polytope::Polytope;
+use rounded::Core;
+use start::start;
+
+/// A depth is searched until its bounds are this near, relative to it. Polytopes are exact in the end; a curved surface needs
+/// some five support points for each digit.
+pub const DEPTH_TOLERANCE: f64 = 1e-7;
+
+/// The most vertices of a polytope. Curved shapes that have their least depth in many directions at once, as a cylinder around
+/// another, need one for every few degrees; at this many, of a circle of directions, the bounds are 3e-4 of the depth apart.
+pub const VERTICES_MAX: usize = 256;
+
+/// The most support points that are looked at: each gives a vertex or finishes a face, of which there are at most two a vertex.
+const EXPANSIONS_MAX: usize = 4 * VERTICES_MAX;
+
+/// The error of the height of a support point along a unit vector, whose coordinates sum to less than 2.
+const HEIGHT_ERROR: f64 = 2.0 * SUPPORT_ERROR;
+
+/// How deep two placed convex objects are in each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Penetration {
+    /// The length of the shortest translation that leaves them touching, at least 0. World units.
+    pub depth: f64,
+    /// The depth is at least this.
+    pub lower: f64,
+    /// The depth is at most this.
+    pub upper: f64,
+    /// The unit vector along which `A` is to move by [`depth`](Penetration::depth), from `B` to `A`. Space: world.
+    pub direction: DVec3,
+    /// The point of each object that is deepest in the other: that of `A` comes to lie on that of `B`.
+    pub points: Witness,
+}
+
+/// How deep two placed convex objects are in each other; `None` when [`intersection`](crate::gjk::intersection) says that they are
+/// separate. Touching objects have a depth of about 0, and the direction of their common plane.
+///
+/// Flat objects have a depth too, in the sense that a translation by it leaves them touching: two triangles in a plane, and whatever else has
+/// a Minkowski difference without thickness, have a depth of 0 along its normal. Of several shortest translations one is
+/// given, the same for the same input. Scaling both by a power of two scales the answer and changes no other bit.
+///
+/// The placements must be finite, with entries of at most [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX). The error is what `lower` and `upper`
+/// say: for polytopes some 1e-14 of the size of the data, for others [`DEPTH_TOLERANCE`] of the depth unless [`VERTICES_MAX`] ended
+/// the search. Cost: that of [`intersection`](crate::gjk::intersection), and some ten support points of each object, more the deeper they are.
+///
+/// ```
+/// use solid_convex::{Cuboid, epa};
+/// use glam::{DAffine3, DVec3};
+/// let block = Cuboid::new(DVec3::ONE)?;
+/// let right = DAffine3::from_translation(DVec3::new(0.75, 0.0, 0.0));
+/// let found = epa::penetration(&block, &right, &block, &DAffine3::IDENTITY).unwrap();
+/// assert_eq!((found.depth, found.direction), (0.25, DVec3::X));
+/// assert_eq!((found.points.on_a.x, found.points.on_b.x), (-0.5, 0.5));
+/// # Ok::<(), solid_convex::SizeError>(())
+/// ```
+pub fn penetration<A, B>(a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3) -> Option<Penetration>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let difference = Difference::new(a, placement_a, b, placement_b);
+    let descent = descend(&difference, Goal::Separation);
+    if descent.end == End::Separated {
+        return None;
+    }
+    let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
+    if core_a.radius() > 0.0 || core_b.radius() > 0.0 {
+        return Some(rounded::penetration(&core_a, placement_a, &core_b, placement_b));
+    }
+    let ended = descent.simplex.points();
+    let found = match start(&difference, ended) {
+        Ok(mut polytope) => expand(&difference, &mut polytope),
+        Err(normal) => flat(&difference, normal, ended),
+    };
+    Some(found.penetration(difference.scale(), 0.0))
+}
+
+/// The point of the boundary of `A - B` nearest to the origin.
+struct Nearest {
+    /// Its distance: an upper bound of the depth. Negative when the origin is outside.
+    height: f64,
+    /// A lower bound.
+    lower: f64,
+    /// The outward normal there.
+    normal: DVec3,
+    /// The point, as a point of `A` and one of `B`.
+    points: Witness,
+}
+
+impl Nearest {
+    /// The answer in world units, for two objects that are all within some distance of these; `radius` is the sum of both.
+    fn penetration(&self, scale: f64, radius: f64) -> Penetration {
+        let depth = (self.height + radius).max(0.0);
+        let error = HEIGHT_ERROR * (1.0 + radius);
+        Penetration {
+            depth: depth / scale,
+            lower: (self.lower + radius - error).clamp(0.0, depth) / scale,
+            upper: (depth + error) / scale,
+            direction: -self.normal,
+            points: self.points,
+        }
+    }
+}
+
+/// Grows a polytope until the point of the boundary nearest to the origin is known.
+fn expand<A, B>(difference: &Difference<A, B>, polytope: &mut Polytope) -> Nearest
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let (mut height, mut normal) = (f64::INFINITY, DVec3::X);
+    for _ in 0..EXPANSIONS_MAX {
+        let Some(index) = polytope.nearest_open() else { break };
+        let face = *polytope.face(index);
+        if face.offset >= height - tolerance(height) {
+            break;
+        }
+        let p = difference.support_against(-face.normal);
+        let beyond = face.normal.dot(p.w);
+        if beyond < height {
+            (height, normal) = (beyond, face.normal);
+        }
+        let grows = beyond - face.offset > tolerance(beyond)
+            && polytope.vertex_count() < VERTICES_MAX
+            && polytope.insert(difference, p, index);
+        if !grows {
+            polytope.finish(index);
+        }
+    }
+    let near = polytope.faces_across(normal, tolerance(height));
+    let points = near.map(|corners| closest(&corners, normal * height)).min_by(|x, y| x.0.total_cmp(&y.0));
+    let (_, points) = points.expect("a polytope has faces");
+    Nearest { height, lower: polytope.radius(height - tolerance(height)), normal, points }
+}
+
+/// The side of a difference without thickness on which less of it is; `ended` has the origin between its points.
+fn flat<A, B>(difference: &Difference<A, B>, normal: DVec3, ended: &[SupportPoint]) -> Nearest
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let height = |normal: DVec3| normal.dot(difference.support_against(-normal).w);
+    let (above, below) = (height(normal), height(-normal));
+    let (height, normal) = if below < above { (below, -normal) } else { (above, normal) };
+    Nearest { height, lower: 0.0, normal, points: closest(ended, DVec3::ZERO).1 }
+}
+
+/// How far above a face `A - B` may reach for the face to count as its boundary.
+fn tolerance(height: f64) -> f64 {
+    if height.is_finite() { DEPTH_TOLERANCE * height.max(0.0) + HEIGHT_ERROR } else { 0.0 }
+}
+
+/// The point of the hull of up to three points that is closest to a target, with the square of the distance.
+fn closest(points: &[SupportPoint], target: DVec3) -> (f64, Witness) {
+    let shifted = |p: &SupportPoint| SupportPoint { w: p.w - target, ..*p };
+    // A simplex keeps its newest point, as GJK wants it: each in turn is the newest.
+    let newest = (0..points.len()).map(|last| {
+        let mut simplex = Simplex::new();
+        for p in points[last + 1..].iter().chain(&points[..=last]).map(shifted) {
+            if !simplex.contains(&p) {
+                simplex.push(p);
+            }
+        }
+        let distance_squared = match simplex.reduce() {
+            Reduced::ContainsOrigin => 0.0,
+            Reduced::Closest(v) => v.length_squared(),
+        };
+        let (on_a, on_b) = simplex.witness();
+        (distance_squared, Witness { on_a, on_b })
+    });
+    newest.min_by(|x, y| x.0.total_cmp(&y.0)).expect("there is a point")
+}

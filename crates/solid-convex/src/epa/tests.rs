@@ -1,0 +1,265 @@
+//! Laws of the penetration depth. Random pairs of all kinds are judged by the oracle in `solid3d`'s tests.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use super::polytope::Polytope;
+use super::start::start;
+use super::{DEPTH_TOLERANCE, Penetration, VERTICES_MAX, expand, penetration};
+use crate::difference::Difference;
+use crate::gjk;
+use crate::{Capsule, Cone, Cuboid, Cylinder, Points, Sphere, Support};
+
+fn shapes() -> Vec<Box<dyn Support>> {
+    vec![
+        Box::new(Sphere::new(0.7).unwrap()),
+        Box::new(Cuboid::new(DVec3::new(1.0, 0.5, 2.0)).unwrap()),
+        Box::new(Cone::new(0.5, 1.5).unwrap()),
+        Box::new(Cylinder::new(0.6, 1.0).unwrap()),
+        Box::new(Capsule::new(0.3, 1.2).unwrap()),
+    ]
+}
+
+/// Placements spread over orientations and distances by a low-discrepancy sequence.
+fn placement(i: u32) -> DAffine3 {
+    let part = |step: f64| (f64::from(i) * step).fract();
+    let rotation =
+        DQuat::from_xyzw(part(0.618) - 0.5, part(0.414) - 0.5, part(0.732) - 0.5, part(0.236) + 0.1);
+    let translation = DVec3::new(part(0.7549), part(0.5698), part(0.3247)) * 1.6 - 0.8;
+    DAffine3::from_rotation_translation(rotation.normalize(), translation)
+}
+
+fn at(x: f64, y: f64, z: f64) -> DAffine3 {
+    DAffine3::from_translation(DVec3::new(x, y, z))
+}
+
+/// The bounds hold the depth, and are as near to each other as they are said to be.
+fn assert_certain(found: &Penetration, size: f64) {
+    assert!(found.lower <= found.depth && found.depth <= found.upper, "{found:?}");
+    assert!(found.upper - found.lower <= 2.0 * DEPTH_TOLERANCE * found.depth + 1e-12 * size, "{found:?}");
+    assert!(found.direction.is_normalized(), "{found:?}");
+}
+
+/// Pairs of all kinds: moving `A` by the depth leaves them touching, by less they still overlap, and the points say the same.
+#[test]
+fn the_translation_leaves_them_touching() {
+    let (mut deep, mut count) = (0, 0);
+    for (i, a) in shapes().iter().enumerate() {
+        for (j, b) in shapes().iter().enumerate() {
+            for k in 0..50 {
+                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
+                count += 1;
+                let found = penetration(&**a, &at_a, &**b, &at_b);
+                let outcome = gjk::intersection(&**a, &at_a, &**b, &at_b);
+                assert_eq!(found.is_some(), outcome.witness().is_some());
+                let Some(found) = found else { continue };
+                deep += 1;
+                assert_certain(&found, 3.0);
+                let moved = |part: f64| {
+                    let way = found.direction * found.depth * part;
+                    DAffine3 { translation: at_a.translation + way, ..at_a }
+                };
+                let distance = |part: f64| gjk::closest_points(&**a, &moved(part), &**b, &at_b).distance;
+                assert!(distance(1.0) <= DEPTH_TOLERANCE * found.depth + 1e-12, "{found:?}");
+                let gap = distance(1.001);
+                assert!(gap >= 0.0009 * found.depth, "{found:?}: {gap:e}");
+                assert_eq!(distance(0.999), 0.0, "{found:?}");
+                let way = at_b.transform_point3(found.points.on_b) - at_a.transform_point3(found.points.on_a);
+                let missed = way.distance(found.direction * found.depth);
+                assert!(missed <= DEPTH_TOLERANCE * 10.0, "{k}: {missed:e} {found:?}");
+            }
+        }
+    }
+    assert!((count * 3 / 10..count * 7 / 10).contains(&deep), "{deep} of {count}: not representative");
+}
+
+#[test]
+fn swapping_mirrors() {
+    for (i, a) in shapes().iter().enumerate() {
+        for (j, b) in shapes().iter().enumerate() {
+            for k in 0..20 {
+                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
+                let Some(found) = penetration(&**a, &at_a, &**b, &at_b) else { continue };
+                let swapped = penetration(&**b, &at_b, &**a, &at_a).unwrap();
+                let apart = (found.depth - swapped.depth).abs();
+                assert!(apart <= DEPTH_TOLERANCE * found.depth, "{found:?}, {swapped:?}");
+                assert!(found.direction.dot(swapped.direction) < -0.99, "{found:?}, {swapped:?}");
+            }
+        }
+    }
+}
+
+/// The known failures of others: no depth for what coincides, a wrong face for boxes on a grid.
+#[test]
+fn coincident_and_concentric_shapes_have_a_depth() {
+    let (unit, block) = (Cuboid::new(DVec3::ONE).unwrap(), Cuboid::new(DVec3::new(2.0, 3.0, 4.0)).unwrap());
+    let here = DAffine3::IDENTITY;
+    let depth = |a: &dyn Support, b: &dyn Support, at_b: DAffine3| {
+        let found = penetration(a, &here, b, &at_b).unwrap();
+        assert_certain(&found, 4.0);
+        found.depth
+    };
+    assert_eq!(depth(&unit, &unit, here), 1.0);
+    assert_eq!(depth(&block, &block, here), 2.0);
+    assert_eq!(depth(&unit, &unit, at(0.75, 0.0, 0.0)), 0.25);
+    assert_eq!(depth(&unit, &unit, at(0.75, 0.75, 0.0)), 0.25);
+    let (slim, flat) = (Cylinder::new(0.5, 3.0).unwrap(), Cylinder::new(3.0, 1.0).unwrap());
+    assert!((depth(&flat, &flat, here) - 1.0).abs() < 1e-15);
+    assert!((depth(&slim, &flat, here) - 2.0).abs() < 1e-15);
+    let (cone, capsule) = (Cone::new(0.5, 1.0).unwrap(), Capsule::new(0.3, 1.0).unwrap());
+    // Its base leaves the box sideways.
+    let across = depth(&cone, &block, at(0.0, 0.25, 0.0));
+    assert!((across - 1.5).abs() < 1.5 * DEPTH_TOLERANCE, "{across}");
+    let ball = Sphere::new(1.0).unwrap();
+    assert_eq!(depth(&capsule, &capsule, here), 0.6);
+    assert_eq!(depth(&ball, &ball, here), 2.0);
+    assert_eq!(depth(&ball, &block, here), 2.0);
+    assert_eq!(depth(&ball, &unit, at(0.0, 0.75, 0.0)), 0.75);
+}
+
+/// What has a difference without thickness has depth 0 along its normal; a flat shape in a solid one does not.
+#[test]
+fn flat_shapes_have_a_depth() {
+    let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let (plate, point) = (Points::new(&triangle).unwrap(), Points::new(&triangle[..1]).unwrap());
+    let edge = Points::new(&triangle[1..]).unwrap();
+    let block = Cuboid::new(DVec3::splat(2.0)).unwrap();
+    for k in 0..50 {
+        let turn = placement(k);
+        let normal = turn.transform_vector3(DVec3::Z);
+        let flat = [
+            penetration(&plate, &turn, &plate, &turn),
+            penetration(&plate, &turn, &plate, &(turn * at(0.2, 0.3, 0.0))),
+            penetration(&edge, &turn, &plate, &turn),
+            penetration(&point, &turn, &plate, &turn),
+        ];
+        for found in flat {
+            let found = found.unwrap();
+            assert_certain(&found, 3.0);
+            assert!(found.depth < 1e-15 && found.direction.dot(normal).abs() > 1.0 - 1e-12, "{k}: {found:?}");
+        }
+        for found in [penetration(&edge, &turn, &edge, &turn), penetration(&point, &turn, &point, &turn)] {
+            let found = found.unwrap();
+            assert_certain(&found, 3.0);
+            let along = turn.transform_vector3(triangle[2] - triangle[1]);
+            assert!(found.depth < 1e-15, "{found:?}");
+            assert!(
+                found.points.on_a == DVec3::ZERO || found.direction.dot(along).abs() < 1e-12,
+                "{found:?}"
+            );
+        }
+        let found = penetration(&point, &(turn * at(0.1, -0.7, 0.2)), &block, &turn).unwrap();
+        assert!((found.depth - 0.3).abs() < 1e-15, "{found:?}");
+        assert!((found.direction + turn.transform_vector3(DVec3::Y)).length() < 1e-14, "{found:?}");
+        let found = penetration(&plate, &(turn * at(-0.1, -0.1, 0.9)), &block, &turn).unwrap();
+        assert!((found.depth - 0.1).abs() < 1e-15, "{found:?}");
+    }
+}
+
+/// Touching: a depth of nothing, and the normal of the common plane.
+#[test]
+fn touching_shapes_have_a_direction() {
+    let block = Cuboid::new(DVec3::new(2.0, 2.0, 2.0)).unwrap();
+    let (ball, plate) = (Sphere::new(1.0).unwrap(), Cuboid::new(DVec3::new(1000.0, 0.002, 1000.0)).unwrap());
+    for k in 0..50 {
+        let turn = placement(k);
+        let shift = turn.translation * 0.7;
+        for (other, height) in [(&block as &dyn Support, 2.0), (&ball, 2.0), (&plate, 1.001)] {
+            let above = turn * at(shift.x, height, shift.z);
+            let Some(found) = penetration(other, &above, &block, &turn) else { continue };
+            assert_certain(&found, 2000.0);
+            assert!(found.depth < 1e-12, "{found:?}");
+            let up = turn.transform_vector3(DVec3::Y);
+            assert!((found.direction - up).length() < 1e-5, "{k}, {height}: {found:?}, {up}");
+        }
+    }
+}
+
+/// Scaling both by a power of two scales the answer, to the bit.
+#[test]
+fn powers_of_two_change_nothing() {
+    for (i, a) in shapes().iter().enumerate() {
+        for k in 0..20 {
+            let b = &shapes()[k as usize % 5];
+            let answer = |power: i32| {
+                let factor = 2f64.powi(power);
+                let scaled = |at: DAffine3| DAffine3 {
+                    matrix3: at.matrix3 * factor,
+                    translation: at.translation * factor,
+                };
+                let (at_a, at_b) = (scaled(placement(k)), scaled(placement(k + i as u32)));
+                let found = penetration(&**a, &at_a, &**b, &at_b)?;
+                let lengths = [found.depth, found.lower, found.upper].map(|length| length / factor);
+                Some((lengths, found.direction, found.points))
+            };
+            let reference = answer(0);
+            for power in [-290, -20, 1, 20, 290] {
+                assert_eq!(answer(power), reference);
+            }
+        }
+    }
+}
+
+/// The polytope stays convex and closed, exactly, whatever points come: grids have many that are coplanar.
+#[test]
+fn the_polytope_is_well_formed() {
+    let mut grown = 0;
+    for k in 0..200u32 {
+        let coordinate = |i: u32| f64::from((i * 7919 + k) % 5) - 2.0;
+        let mut points: Vec<DVec3> =
+            (0..30).map(|i| DVec3::new(coordinate(i), coordinate(i / 3), coordinate(i * i))).collect();
+        if k % 2 == 0 {
+            points.iter_mut().for_each(|p| *p = placement(k).transform_point3(*p));
+        }
+        let (hull, point) = (Points::new(&points).unwrap(), Points::new(&[DVec3::ZERO]).unwrap());
+        let here = DAffine3::IDENTITY;
+        let difference = Difference::new(&hull, &here, &point, &here);
+        let first = difference.support_against(placement(k).translation);
+        let Ok(mut polytope) = start(&difference, &[first]) else { continue };
+        polytope.assert_well_formed();
+        for &p in &points {
+            let direction = p + placement(k + 1).translation * 0.1;
+            grown += usize::from(polytope.insert(&difference, difference.support_against(direction), 0));
+            polytope.assert_well_formed();
+        }
+    }
+    assert!(grown > 500, "{grown}");
+}
+
+/// Concentric ellipsoids of revolution have their least depth in every direction across: no polytope of this many vertices decides
+/// that, and the bounds say so.
+#[test]
+fn the_vertex_limit_is_honest() {
+    let ball = Sphere::new(1.0).unwrap();
+    let egg = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(1.0, 3.0, 1.0)));
+    let difference = Difference::new(&ball, &egg, &ball, &egg);
+    let mut polytope: Polytope = start(&difference, &[difference.support_against(DVec3::X)]).unwrap();
+    expand(&difference, &mut polytope);
+    assert_eq!(polytope.vertex_count(), VERTICES_MAX);
+    polytope.assert_well_formed();
+    let found = penetration(&ball, &egg, &ball, &egg).unwrap();
+    assert!(found.lower <= 2.0 && 2.0 <= found.upper, "{found:?}");
+    assert!(found.upper - found.lower < 0.05 && found.upper - found.lower > 2e-5, "{found:?}");
+}
+
+/// A support mapping that is none: it must not hang nor crash whoever asks it.
+struct Liar(std::sync::atomic::AtomicU32);
+
+impl Support for Liar {
+    fn support(&self, _direction: DVec3) -> DVec3 {
+        placement(self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed)).translation
+    }
+
+    fn reach(&self) -> DVec3 {
+        DVec3::splat(1.5)
+    }
+}
+
+#[test]
+fn a_support_mapping_that_lies_is_survived() {
+    for seed in 0..200 {
+        let liar = Liar(seed.into());
+        penetration(&liar, &DAffine3::IDENTITY, &liar, &placement(seed));
+        let calls = liar.0.load(std::sync::atomic::Ordering::Relaxed) - seed;
+        assert!(calls as usize <= 4 * super::EXPANSIONS_MAX, "{calls} calls");
+    }
+}

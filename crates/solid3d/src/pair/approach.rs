@@ -1,0 +1,112 @@
+//! How two shapes that collide came together: smart response (thesis, sections 2.3 and 6.2).
+//!
+//! The primitives that meet now are looked at as they were in the previous frame: the pair that was nearest, or, when some met
+//! there already, the pair that was deepest. Deviation from SOLID 2.0, which takes the first pair found, and has no normal for
+//! shapes that met already.
+
+use glam::DVec3;
+use solid_convex::{Closest, Penetration, Support, Witness, gjk, unit_scale};
+
+use super::depth::{Deepest, of_common};
+use super::table::{PlacedConvex, axis, closest, meetings, penetration};
+use super::{Placed, Scratch};
+use crate::shape::Class;
+
+/// How two shapes came together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approach {
+    /// Their closest points in the previous frame, or the point of each that was deepest in the other.
+    pub points: Witness,
+    /// The distance of the points; negative when they are the deepest.
+    pub distance: f64,
+    /// The unit vector along which `A` was off `B`, or would have had to leave it. Space: world.
+    pub normal: DVec3,
+}
+
+/// How two shapes that meet now, or did on the way, came together since the previous frame.
+pub(crate) fn approach(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch) -> Approach {
+    let pairs = pairs_to_look_at(now, before, scratch);
+    let nearest = pairs.iter().map(|&pair| (with_primitives(before, pair, closest_points), pair));
+    let nearest = nearest.min_by(|(x, i), (y, j)| x.distance.total_cmp(&y.distance).then(i.cmp(j)));
+    match nearest {
+        Some((closest, _)) if closest.distance > 0.0 => apart(before, closest),
+        Some(_) if !before.iter().any(|placed| is_solid(placed)) => {
+            let mut deepest = Deepest::default();
+            pairs.iter().for_each(|&pair| deepest.take(pair, with_primitives(before, pair, of_common)));
+            deep(deepest.found().expect("there is a pair"))
+        }
+        _ => of_wholes(before, scratch),
+    }
+}
+
+/// The pairs of primitives that meet now. None when the whole shapes are to be looked at: they are convex, one is another than in the
+/// previous frame, one contains the other, or they met on the way.
+fn pairs_to_look_at(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch) -> Vec<[u32; 2]> {
+    let convex = now.iter().all(|placed| matches!(placed.shape.class(), Class::Convex(_)));
+    let same = || now.iter().zip(before).all(|(now, before)| now.shape.has_primitives_of(before.shape));
+    if convex || !same() {
+        return Vec::new();
+    }
+    meetings(now[0], now[1], scratch).0
+}
+
+/// The closest points of the whole shapes, or the deepest.
+fn of_wholes([a, b]: [Placed; 2], scratch: &mut Scratch) -> Approach {
+    let closest = closest(a, b, scratch);
+    if closest.distance > 0.0 {
+        return apart([a, b], closest);
+    }
+    if let Some(found) = penetration(a, b, scratch) {
+        return deep(found);
+    }
+    // Apart by less than the error of the distance.
+    let normal = axis(a, b, scratch).unwrap_or(DVec3::X);
+    Approach { points: closest.points, distance: 0.0, normal }
+}
+
+fn apart([a, b]: [Placed; 2], Closest { distance, points }: Closest) -> Approach {
+    // Far from the world's origin, the difference of world positions would be coarser.
+    let offset = a.placement.translation - b.placement.translation;
+    let of_linear = a.placement.matrix3 * points.on_a - b.placement.matrix3 * points.on_b;
+    let v = of_linear + offset;
+    let unit = v * unit_scale(v.abs().max_element());
+    // Points that are nowhere apart but in the digits of the distance have their direction from the shapes.
+    let normal = unit.try_normalize().unwrap_or(DVec3::X);
+    Approach { points, distance, normal }
+}
+
+fn deep(Penetration { depth, direction, points, .. }: Penetration) -> Approach {
+    Approach { points, distance: -depth, normal: direction }
+}
+
+fn closest_points(a: PlacedConvex, b: PlacedConvex) -> Closest {
+    gjk::closest_points(a.0, a.1, b.0, b.1)
+}
+
+fn is_solid(placed: &Placed) -> bool {
+    matches!(placed.shape.class(), Class::Complex(complex) if complex.is_solid())
+}
+
+/// Calls a function with a primitive of each shape; a convex shape is its only one.
+fn with_primitives<T>(
+    [a, b]: [Placed; 2],
+    [i, j]: [u32; 2],
+    ask: impl FnOnce(PlacedConvex, PlacedConvex) -> T,
+) -> T {
+    let (of_a, of_b);
+    let on_a: &dyn Support = match a.shape.class() {
+        Class::Convex(convex) => convex,
+        Class::Complex(complex) => {
+            of_a = complex.primitive_hull(i);
+            &of_a
+        }
+    };
+    let on_b: &dyn Support = match b.shape.class() {
+        Class::Convex(convex) => convex,
+        Class::Complex(complex) => {
+            of_b = complex.primitive_hull(j);
+            &of_b
+        }
+    };
+    ask((on_a, a.placement), (on_b, b.placement))
+}

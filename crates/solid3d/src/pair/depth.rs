@@ -1,0 +1,105 @@
+//! How deep two shapes are in each other (thesis, section 2.3).
+//!
+//! A convex shape is a body, and so is each primitive of a surface with whatever it meets: a translation that leaves the two
+//! touching is well defined. A surface has no inside to leave; the answer is that for the deepest pair of primitives. A
+//! solid mesh counts as its convex hull, which is the same body when it is convex, and contains it when it is not.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+use solid_convex::{Outcome, Penetration, epa, gjk};
+
+use super::table::{PlacedComplex, PlacedConvex};
+use super::{Mirror, Relation, Scratch, complex_complex, complex_convex};
+
+pub(super) fn convex_convex(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Option<Penetration> {
+    scratch.primitive_tests += 1;
+    epa::penetration(a.0, a.1, b.0, b.1)
+}
+
+pub(super) fn complex_convex(
+    a: PlacedComplex,
+    b: PlacedConvex,
+    scratch: &mut Scratch,
+) -> Option<Penetration> {
+    if a.0.is_solid() {
+        return match complex_convex::intersection(a, b, scratch) {
+            Relation::Separated { .. } => None,
+            Relation::Common(_) => Some(of_common((&a.0.hull(), a.1), b)),
+        };
+    }
+    let mut deepest = Deepest::default();
+    complex_convex::meetings(a, b, scratch, |i| {
+        deepest.take([i, 0], of_common((&a.0.primitive_hull(i), a.1), b));
+    });
+    deepest.found()
+}
+
+pub(super) fn complex_complex(
+    a: PlacedComplex,
+    b: PlacedComplex,
+    scratch: &mut Scratch,
+) -> Option<Penetration> {
+    let solid = a.0.is_solid() || b.0.is_solid();
+    if solid && matches!(complex_complex::intersection(a, b, scratch), Relation::Separated { .. }) {
+        return None;
+    }
+    let (hull_a, hull_b) = (a.0.hull(), b.0.hull());
+    let mut deepest = Deepest::default();
+    match (a.0.is_solid(), b.0.is_solid()) {
+        (true, true) => {}
+        (true, false) => complex_convex::meetings(b, (&hull_a, a.1), scratch, |j| {
+            deepest.take([0, j], of_common((&hull_a, a.1), (&b.0.primitive_hull(j), b.1)));
+        }),
+        (false, true) => complex_convex::meetings(a, (&hull_b, b.1), scratch, |i| {
+            deepest.take([i, 0], of_common((&a.0.primitive_hull(i), a.1), (&hull_b, b.1)));
+        }),
+        (false, false) => {
+            let _ = complex_complex::meetings(a, b, scratch, |i, j| {
+                deepest.take([i, j], of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1)));
+                ControlFlow::<()>::Continue(())
+            });
+        }
+    }
+    // Also when rounding keeps the hull of a solid apart from what it meets.
+    deepest.found().or_else(|| solid.then(|| of_common((&hull_a, a.1), (&hull_b, b.1))))
+}
+
+/// The deepest of several pairs of primitives.
+#[derive(Default)]
+pub(super) struct Deepest(Option<([u32; 2], Penetration)>);
+
+impl Deepest {
+    /// Takes a pair into account. Of equals, that of the least numbers is kept: not the first, for trees may have any order.
+    pub fn take(&mut self, pair: [u32; 2], found: Penetration) {
+        let keeps = self.0.is_some_and(|(other, deepest)| {
+            deepest.depth > found.depth || (deepest.depth == found.depth && other < pair)
+        });
+        if !keeps {
+            self.0 = Some((pair, found));
+        }
+    }
+
+    pub fn found(self) -> Option<Penetration> {
+        self.0.map(|(_, found)| found)
+    }
+}
+
+/// The penetration of two convex objects, placed as these are, that are known to have a point in common. Where exact signs say so and GJK
+/// keeps them apart by the rounding error, they touch.
+pub(super) fn of_common((a, at_a): PlacedConvex, (b, at_b): PlacedConvex) -> Penetration {
+    epa::penetration(a, at_a, b, at_b).unwrap_or_else(|| {
+        let direction = match gjk::intersection(a, at_a, b, at_b) {
+            Outcome::Separated { axis } => axis,
+            Outcome::Touching(_) | Outcome::Intersecting(_) => DVec3::X,
+        };
+        let points = gjk::closest_points(a, at_a, b, at_b).points;
+        Penetration { depth: 0.0, lower: 0.0, upper: 0.0, direction, points }
+    })
+}
+
+impl Mirror for Penetration {
+    fn mirrored(self) -> Self {
+        Penetration { direction: -self.direction, points: self.points.mirrored(), ..self }
+    }
+}
