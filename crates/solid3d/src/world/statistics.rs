@@ -8,7 +8,9 @@ use std::ops::AddAssign;
 pub struct Statistics {
     /// Pairs whose boxes overlap and whose response is not to ignore them.
     pub candidates: u64,
-    /// Candidates that the axis of an earlier test still separated.
+    /// Candidates that were examined. Of the others nothing had changed since they were: what was found then still holds.
+    pub examined: u64,
+    /// Candidates that were examined and that the axis of an earlier test still separated.
     pub cache_hits: u64,
     /// Tests of one box against the eight of a tree's node.
     pub box_tests: u64,
@@ -23,6 +25,7 @@ pub struct Statistics {
 impl AddAssign for Statistics {
     fn add_assign(&mut self, other: Statistics) {
         self.candidates += other.candidates;
+        self.examined += other.examined;
         self.cache_hits += other.cache_hits;
         self.box_tests += other.box_tests;
         self.primitive_tests += other.primitive_tests;
