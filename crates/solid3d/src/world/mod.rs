@@ -13,6 +13,7 @@ mod ordered;
 mod response;
 mod statistics;
 mod test;
+mod threads;
 
 use glam::{DAffine3, DVec3};
 use slotmap::{Key, SlotMap};
@@ -28,13 +29,13 @@ pub use test::TestProgress;
 
 use crate::broad::{BroadPhase, PROXY_MAX, PairId, Proxy};
 use crate::error::{Error, Result};
-use crate::pair::Scratch;
 use crate::placement;
 use crate::shape::Shape;
 use candidates::{Candidates, PairKey};
 use findings::Findings;
 use object::{Object, Staleness};
 use response::ResponseTable;
+use threads::Workers;
 
 /// How many objects there may be: the slot of each is a proxy, and slot 0 is not used.
 const OBJECTS_MAX: usize = PROXY_MAX as usize;
@@ -86,7 +87,10 @@ pub struct World {
     default_changed: bool,
     /// Working memory: the pairs that a test examines.
     to_examine: Vec<PairId>,
-    scratch: Scratch,
+    /// Working memory: what examining them gave.
+    #[cfg(feature = "rayon")]
+    examined: Vec<test::Examined>,
+    workers: Workers,
     statistics: Statistics,
 }
 
@@ -120,7 +124,9 @@ impl World {
             stale: false,
             default_changed: false,
             to_examine: Vec::new(),
-            scratch: Scratch::default(),
+            #[cfg(feature = "rayon")]
+            examined: Vec::new(),
+            workers: Workers::default(),
             statistics: Statistics::default(),
         }
     }

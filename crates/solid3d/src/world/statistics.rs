@@ -22,6 +22,19 @@ pub struct Statistics {
     pub collisions: u64,
 }
 
+#[cfg(feature = "rayon")]
+impl Statistics {
+    /// What `count` candidates will cost if they are like those examined so far, in units of about a box test.
+    pub(super) fn units_for(&self, count: usize) -> u64 {
+        /// What a candidate costs at least, whose cached axis still separates it.
+        const UNITS_PER_CANDIDATE: u64 = 4;
+        /// What the search of two convex shapes for a common point costs.
+        const UNITS_PER_PRIMITIVE_TEST: u64 = 6;
+        let units = self.box_tests + UNITS_PER_PRIMITIVE_TEST * self.primitive_tests;
+        count as u64 * (UNITS_PER_CANDIDATE + units / self.examined.max(1))
+    }
+}
+
 impl AddAssign for Statistics {
     fn add_assign(&mut self, other: Statistics) {
         self.candidates += other.candidates;

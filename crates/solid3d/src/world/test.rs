@@ -6,6 +6,8 @@ use glam::DVec3;
 
 use super::candidates::{Candidate, PairKey};
 use super::object::Object;
+#[cfg(feature = "rayon")]
+use super::threads::{BATCH, Workers};
 use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
 use crate::broad::PairId;
 use crate::error::Result;
@@ -20,8 +22,8 @@ pub struct TestProgress {
 }
 
 /// What examining a candidate gave.
-#[derive(Default)]
-struct Examined {
+#[derive(Debug, Default)]
+pub(super) struct Examined {
     /// Whether its response is not to ignore it.
     matters: bool,
     found: Option<(When, Contact)>,
@@ -78,6 +80,7 @@ impl World {
         self.begin_test();
         self.statistics.collisions += self.findings.len() as u64;
         collisions.clear();
+        collisions.reserve(self.findings.len());
         collisions.extend(self.findings.iter().cloned());
     }
 
@@ -145,10 +148,10 @@ impl World {
         }
         // What depends on the way of a swept object is brought up to date with its box.
         self.refresh();
-        let mut scratch = std::mem::take(&mut self.scratch);
+        let mut workers = std::mem::take(&mut self.workers);
         let (a, b) = self.in_order(a, b);
-        let examined = self.examine(a, b, None, &mut scratch);
-        self.scratch = scratch;
+        let examined = self.examine(a, b, None, workers.own());
+        self.workers = workers;
         let collisions = u64::from(examined.found.is_some());
         self.statistics += Statistics { candidates: 1, collisions, ..examined.work };
         Ok(examined.found.map(|(when, contact)| Collision { a, b, when, contact }))
@@ -174,13 +177,32 @@ impl World {
         self.statistics.examined - before
     }
 
+    /// Examines candidates, and keeps what that gave, in their order.
     fn examine_all(&mut self, pairs: &[PairId]) {
-        let mut scratch = std::mem::take(&mut self.scratch);
+        #[cfg(feature = "rayon")]
+        if Workers::share(self.statistics.units_for(pairs.len())) {
+            return self.examine_on_threads(pairs);
+        }
+        let mut workers = std::mem::take(&mut self.workers);
         for &pair in pairs {
-            let examined = self.examine_candidate(pair, &mut scratch);
+            let examined = self.examine_candidate(pair, workers.own());
             self.note(pair, examined);
         }
-        self.scratch = scratch;
+        self.workers = workers;
+    }
+
+    #[cfg(feature = "rayon")]
+    fn examine_on_threads(&mut self, pairs: &[PairId]) {
+        let mut workers = std::mem::take(&mut self.workers);
+        let mut examined = std::mem::take(&mut self.examined);
+        for batch in pairs.chunks(BATCH) {
+            workers.map(batch, &mut examined, |&pair, scratch| self.examine_candidate(pair, scratch));
+            for (&pair, examined) in batch.iter().zip(examined.drain(..)) {
+                self.note(pair, examined);
+            }
+        }
+        self.examined = examined;
+        self.workers = workers;
     }
 
     fn examine_candidate(&self, pair: PairId, scratch: &mut Scratch) -> Examined {
