@@ -30,6 +30,11 @@ pub(crate) fn checked(placement: &DAffine3) -> Result<&DAffine3> {
     if flat { Err(Error::SingularPlacement { x, y, z }) } else { Ok(placement) }
 }
 
+/// Whether two placements are the same to the bit, of zeros too.
+pub(crate) fn is_same(a: &DAffine3, b: &DAffine3) -> bool {
+    a.to_cols_array().map(f64::to_bits) == b.to_cols_array().map(f64::to_bits)
+}
+
 /// Whether a placement is so ordinary that a few products show it to be good: a third of the time.
 fn plainly_good(placement: &DAffine3) -> bool {
     /// Squares of lengths between which no product below overflows or loses digits.

@@ -19,8 +19,8 @@ use rand::rngs::StdRng;
 use solid_oracle::Convex;
 use solid_oracle::generate::{Regime, random_pair, random_shape, seeded};
 use solid3d::{
-    Boxes, BroadPhaseKind, Collision, Contact, Error, Motion, ObjectId, Response, Shape, Statistics, When,
-    World, WorldOptions, glam, query,
+    Boxes, BroadPhaseKind, Collision, Contact, Error, Event, EventKind, Motion, ObjectId, Response, Shape,
+    Statistics, When, World, WorldOptions, glam, query,
 };
 
 /// What the model knows of an object: all of it, now and in the previous frame.
@@ -161,6 +161,10 @@ struct Stage {
     /// They test the way from the previous frame, too.
     swept: Vec<World>,
     model: Model,
+    /// Every object that ever was, in creation order.
+    created: Vec<ObjectId>,
+    /// What collided when the last frame ended.
+    collided: Vec<(ObjectId, ObjectId)>,
     rng: StdRng,
     /// The side of the cube that the objects are in.
     room: f64,
@@ -185,7 +189,15 @@ fn swept_world(broad_phase: BroadPhaseKind, caching: bool, boxes: Boxes) -> Worl
 impl Stage {
     fn new(worlds: Vec<World>, seed: u64, room: f64) -> Stage {
         println!("seed {seed}");
-        Stage { worlds, swept: Vec::new(), model: Model::default(), rng: seeded(seed), room }
+        Stage {
+            worlds,
+            swept: Vec::new(),
+            model: Model::default(),
+            created: vec![],
+            collided: vec![],
+            rng: seeded(seed),
+            room,
+        }
     }
 
     /// Tells every world the same and returns what the first said; they all say the same.
@@ -229,6 +241,7 @@ impl Stage {
             _ => self.random_thing(),
         };
         let id = self.tell(|world| world.add(&shape, at).unwrap());
+        self.created.push(id);
         let before = (shape.clone(), at);
         self.model.things.push(Thing { id, shape, placement: at, before, soup, size: stretch(&at) });
     }
@@ -326,8 +339,30 @@ impl Stage {
         }
     }
 
+    /// The events, against the collisions of this test and of the last before the frame ended; returns their numbers.
+    fn check_events(&mut self, found: &[Collision]) -> [usize; 3] {
+        let events = self.tell(|world| world.events().collect::<Vec<Event>>());
+        let collides: Vec<_> = found.iter().map(|c| (c.a, c.b)).collect();
+        let mut pairs: Vec<_> = self.collided.iter().chain(&collides).copied().collect();
+        let place = |id| self.created.iter().position(|&other| other == id);
+        pairs.sort_by_key(|&(a, b)| (place(a), place(b)));
+        pairs.dedup();
+        let expected = pairs.into_iter().map(|(a, b)| {
+            let kind = match (self.collided.contains(&(a, b)), collides.contains(&(a, b))) {
+                (false, _) => EventKind::Began,
+                (true, true) => EventKind::Persists,
+                (true, false) => EventKind::Ended,
+            };
+            Event { a, b, kind }
+        });
+        assert_eq!(events, expected.collect::<Vec<Event>>());
+        [EventKind::Began, EventKind::Persists, EventKind::Ended]
+            .map(|kind| events.iter().filter(|event| event.kind == kind).count())
+    }
+
     fn proceed(&mut self) {
         self.tell(World::proceed);
+        self.collided = self.worlds[0].collisions().map(|c| (c.a, c.b)).collect();
         for thing in &mut self.model.things {
             thing.before = (thing.shape.clone(), thing.placement);
         }
@@ -437,7 +472,7 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
         for _ in 0..30 {
             stage.add();
         }
-        let (mut busy, mut pairs, mut collisions) = (0, 0, 0);
+        let (mut busy, mut pairs, mut collisions, mut events) = (0, 0, 0, [0; 3]);
         let mut contacts = HashMap::<u8, u32>::new();
         let frames = 600;
         for _ in 0..frames {
@@ -449,6 +484,11 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
             }
             let found = stage.test();
             let count = stage.check(&found);
+            if !with_swept {
+                // The swept worlds have others.
+                let counts = stage.check_events(&found);
+                events = std::array::from_fn(|i| events[i] + counts[i]);
+            }
             if with_swept {
                 if stage.rng.random_range(0..4) == 0 {
                     stage.set_motion();
@@ -471,6 +511,7 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
             "{collisions} collisions of {pairs} pairs, in {busy} of {frames} frames; kinds {contacts:?}; \
              {on_the_way} on the way"
         );
+        assert!(with_swept || events.iter().all(|&count| count > frames / 10), "{events:?}");
         assert!(busy > frames / 3, "most frames have collisions");
         assert!((0..4).all(|kind| contacts.contains_key(&kind)), "every kind of contact comes up");
         let work: Vec<Statistics> = stage.worlds.iter().map(World::statistics).collect();
@@ -786,4 +827,48 @@ fn boxes_and_caches_lose_no_touch() {
         }
     }
     assert_rate("near touching", hits, tests);
+}
+
+/// Within a frame the last test counts; what comes and goes between two ends of frames is no event.
+#[test]
+fn events_are_those_between_two_ends_of_frames() {
+    let mut world = World::new();
+    let ball = Shape::sphere(1.0).unwrap();
+    let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+    let ids = [0.0, 1.0, 10.0, 20.0].map(|x| world.add(&ball, at(x)).unwrap());
+    let events = |world: &World| world.events().map(|e| (e.a, e.b, e.kind)).collect::<Vec<_>>();
+    assert_eq!(events(&world), []);
+    world.test();
+    assert_eq!(events(&world), [(ids[0], ids[1], EventKind::Began)]);
+    world.test();
+    assert_eq!(events(&world), [(ids[0], ids[1], EventKind::Began)]);
+    world.proceed();
+    assert_eq!(events(&world), [(ids[0], ids[1], EventKind::Persists)]);
+    // Apart, then together again; another pair together, then apart.
+    world.set_placement(ids[1], at(5.0)).unwrap();
+    world.set_placement(ids[3], at(11.0)).unwrap();
+    world.test();
+    let both = [(ids[0], ids[1], EventKind::Ended), (ids[2], ids[3], EventKind::Began)];
+    assert_eq!(events(&world), both);
+    world.set_placement(ids[1], at(1.5)).unwrap();
+    world.set_placement(ids[3], at(20.0)).unwrap();
+    world.test();
+    assert_eq!(events(&world), [(ids[0], ids[1], EventKind::Persists)]);
+    // Removed, and ignored.
+    world.remove(ids[1]).unwrap();
+    assert_eq!(events(&world), [(ids[0], ids[1], EventKind::Ended)]);
+    assert_eq!(world.collisions().count(), 0);
+    world.proceed();
+    assert_eq!(events(&world), []);
+    world.set_placement(ids[3], at(11.0)).unwrap();
+    world.test();
+    world.proceed();
+    world.clear_default_response();
+    world.test();
+    assert_eq!(events(&world), [(ids[2], ids[3], EventKind::Ended)]);
+    world.set_default_response(Response::Simple);
+    // A new object in the slot of the removed one is another.
+    let new = world.add(&ball, at(0.5)).unwrap();
+    world.test();
+    assert_eq!(events(&world), [(ids[0], new, EventKind::Began), (ids[2], ids[3], EventKind::Persists)]);
 }

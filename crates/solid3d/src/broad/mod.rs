@@ -18,6 +18,7 @@
 mod dynamic_tree;
 #[cfg(test)]
 mod measure;
+mod pair_lists;
 mod sweep_and_prune;
 #[cfg(test)]
 mod tests;
@@ -34,6 +35,22 @@ pub type Proxy = u32;
 
 /// The greatest proxy: both engines keep one bit of the word for themselves, and the tree three more for its lanes.
 pub const PROXY_MAX: Proxy = (1 << 28) - 1;
+
+/// Names a pair whose boxes overlap, in one broad phase: a dense small integer, the same from the flush that shows that the
+/// boxes overlap to the one that shows that they no longer do. It may name another pair after that, or after one of
+/// its boxes was removed.
+pub type PairId = u32;
+
+/// A pair whose boxes came to overlap, or ceased to, from one flush to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PairChange {
+    /// The pair.
+    pub pair: PairId,
+    /// Its boxes, the smaller proxy first.
+    pub proxies: [Proxy; 2],
+    /// Whether they overlap now.
+    pub overlaps: bool,
+}
 
 /// Finds all pairs of boxes that overlap among moving boxes.
 ///
@@ -82,17 +99,42 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
     /// If something changed since the last [`flush`](Self::flush): the pairs would be neither the old nor the new.
     fn for_each_pair(&self, visit: &mut dyn FnMut(Proxy, Proxy));
 
-    /// Visits the proxies whose boxes overlap that of `proxy`, each once, in unspecified order.
+    /// Visits the proxies whose boxes overlap that of `proxy`, each once, in unspecified order. The cost follows their number.
     ///
     /// # Panics
     /// As [`for_each_pair`](Self::for_each_pair).
-    fn for_each_partner(&self, proxy: Proxy, visit: &mut dyn FnMut(Proxy)) {
-        self.for_each_pair(&mut |a, b| match (a == proxy, b == proxy) {
-            (true, _) => visit(b),
-            (_, true) => visit(a),
-            _ => {}
-        });
-    }
+    fn for_each_partner(&self, proxy: Proxy, visit: &mut dyn FnMut(Proxy));
+
+    /// What the last [`flush`](Self::flush) changed, in an order in which it can be replayed: a [`PairId`] that is used anew
+    /// ends before it begins. Pairs of a box that was removed ended with it and are not told.
+    ///
+    /// ```
+    /// use solid3d::broad::{BroadPhase, DynamicTree};
+    /// use solid3d::{Aabb, glam::DVec3};
+    /// let mut broad = DynamicTree::default();
+    /// broad.insert(4, Aabb::new(DVec3::ZERO, DVec3::ONE));
+    /// broad.insert(2, Aabb::new(DVec3::ZERO, DVec3::ONE));
+    /// broad.flush();
+    /// let change = broad.changes()[0];
+    /// assert_eq!((change.proxies, change.overlaps), ([2, 4], true));
+    /// broad.flush();
+    /// assert!(broad.changes().is_empty());
+    /// ```
+    fn changes(&self) -> &[PairChange];
+
+    /// Visits the pairs of a box that overlapped at the last [`flush`](Self::flush), except those with boxes removed since, and
+    /// the other box of each. The cost follows their number.
+    fn for_each_pair_of(&self, proxy: Proxy, visit: &mut dyn FnMut(PairId, Proxy));
+
+    /// The pair of two boxes, if they overlapped at the last [`flush`](Self::flush). The cost follows the number of boxes near
+    /// the one of the two that has fewer.
+    fn pair(&self, a: Proxy, b: Proxy) -> Option<PairId>;
+
+    /// The box of a proxy in use.
+    ///
+    /// # Panics
+    /// If the proxy is above every one ever used.
+    fn bounds(&self, proxy: Proxy) -> &Aabb;
 
     /// The work done since the engine was made.
     fn counters(&self) -> Counters;

@@ -1,138 +1,163 @@
-//! The pairs that a test examines, with what is cached for each.
-
-use std::ops::Bound;
+//! The pairs that a test examines, with what is kept of each from test to test.
+//!
+//! A candidate is made when the boxes of two objects come to overlap and forgotten when they cease to. What its last examination
+//! said stands until one of the two objects, its previous frame or the response of the pair changes: then the candidate is put
+//! into the queue, which the next test examines. So the cost of a test follows what changed.
 
 use glam::DVec3;
 
-use super::{ObjectId, Response, World};
-use crate::broad::Proxy;
+use super::findings::{FindingId, Findings};
+use super::object::Staleness;
+use super::{Contact, ObjectId, World};
+use crate::broad::{PairChange, PairId};
 
 /// Two objects by their places in the order of pairs, the earlier first: the order of the results.
 pub(super) type PairKey = (u64, u64);
 
-/// A pair whose boxes overlap and that is not ignored.
+/// A pair whose boxes overlap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
-    pub key: PairKey,
+    /// In the order of pairs.
     pub a: ObjectId,
     pub b: ObjectId,
     /// The axis that separated the pair when it was last examined.
     pub axis: Option<DVec3>,
+    /// Its collision, if it had one when it was last examined.
+    pub found: Option<FindingId>,
+    /// Whether its response was not to ignore it when it was last examined.
+    pub matters: bool,
+    /// Whether it waits to be examined.
+    pub queued: bool,
+}
+
+/// All candidates.
+#[derive(Debug, Default)]
+pub(super) struct Candidates {
+    /// By the broad phase's pair.
+    slots: Vec<Option<Candidate>>,
+    /// Pairs to be examined, some of them twice; some may be none any more.
+    queue: Vec<PairId>,
+    /// How many matter.
+    pub count: u64,
+}
+
+impl Candidates {
+    /// Adds a candidate, to be examined.
+    fn begin(&mut self, pair: PairId, a: ObjectId, b: ObjectId) {
+        let slot = pair as usize;
+        if slot >= self.slots.len() {
+            self.slots.resize(slot + 1, None);
+        }
+        let candidate = Candidate { a, b, axis: None, found: None, matters: false, queued: true };
+        self.slots[slot] = Some(candidate);
+        self.queue.push(pair);
+    }
+
+    /// Forgets a candidate and its collision.
+    pub fn end(&mut self, pair: PairId, findings: &mut Findings) {
+        if let Some(candidate) = self.slots[pair as usize].take() {
+            self.count -= u64::from(candidate.matters);
+            if let Some(found) = candidate.found {
+                findings.remove(found);
+            }
+        }
+    }
+
+    /// Has a candidate examined by the next test.
+    pub fn enqueue(&mut self, pair: PairId) {
+        if let Some(candidate) = &mut self.slots[pair as usize]
+            && !std::mem::replace(&mut candidate.queued, true)
+        {
+            self.queue.push(pair);
+        }
+    }
+
+    /// Has every candidate examined by the next test.
+    pub fn enqueue_all(&mut self) {
+        for pair in 0..self.slots.len() as PairId {
+            self.enqueue(pair);
+        }
+    }
+
+    /// Forgets what was learned about pairs that may help to examine them.
+    pub fn forget_axes(&mut self) {
+        self.slots.iter_mut().flatten().for_each(|candidate| candidate.axis = None);
+    }
+
+    /// Moves the queue to `pairs`, each pair once.
+    pub fn take_queue(&mut self, pairs: &mut Vec<PairId>) {
+        pairs.clear();
+        for pair in self.queue.drain(..) {
+            if let Some(candidate) = &mut self.slots[pair as usize]
+                && std::mem::replace(&mut candidate.queued, false)
+            {
+                pairs.push(pair);
+            }
+        }
+    }
+
+    pub fn get(&self, pair: PairId) -> &Candidate {
+        self.slots[pair as usize].as_ref().expect("pairs in the queue are candidates")
+    }
+
+    pub fn get_mut(&mut self, pair: PairId) -> &mut Candidate {
+        self.slots[pair as usize].as_mut().expect("pairs in the queue are candidates")
+    }
 }
 
 impl World {
-    /// Brings the candidates up to date.
+    /// Brings the candidates up to date, and queues those about which something changed.
     pub(super) fn refresh(&mut self) {
         if !std::mem::replace(&mut self.stale, false) {
             return;
         }
-        self.response_changed = false;
-        self.late.clear();
-        let moved = std::mem::take(&mut self.moved);
-        self.update_broad(&moved);
-        let old = std::mem::take(&mut self.candidates);
-        let mut candidates = Vec::with_capacity(old.len());
-        self.broad.for_each_pair(&mut |p, q| candidates.extend(self.candidate(p, q)));
-        candidates.sort_unstable_by_key(|candidate| candidate.key);
-        carry_over(&old, &mut candidates);
-        self.candidates = candidates;
-    }
-
-    /// Sees to it that a test that pauses does not miss the pairs beyond `last` that came to overlap since: at the cost of what
-    /// moved, not of all candidates. Those that no longer are candidates are passed over when their turn comes.
-    pub(super) fn refresh_beyond(&mut self, last: PairKey) {
-        if self.response_changed {
-            return self.refresh();
+        self.update_broad();
+        let Self { broad, candidates, findings, objects, by_proxy, stirred, .. } = self;
+        for &PairChange { pair, proxies, overlaps } in broad.changes() {
+            if overlaps {
+                let [a, b] = proxies.map(|proxy| by_proxy[proxy as usize]);
+                let (a, b) = if objects[a].order <= objects[b].order { (a, b) } else { (b, a) };
+                candidates.begin(pair, a, b);
+            } else {
+                candidates.end(pair, findings);
+            }
         }
-        let moved = std::mem::take(&mut self.moved);
-        if moved.is_empty() {
-            return;
-        }
-        self.update_broad(&moved);
-        let mut late = std::mem::take(&mut self.late);
-        for id in moved.into_iter().filter(|&id| self.contains(id)) {
-            let proxy = super::proxy(id);
-            self.broad.for_each_partner(proxy, &mut |partner| {
-                let candidate = self.candidate(proxy, partner).filter(|candidate| candidate.key > last);
-                if let Some(candidate) = candidate.filter(|candidate| self.place_of(candidate.key).is_err()) {
-                    late.insert(candidate.key, candidate);
+        for id in stirred.drain(..) {
+            let Some(object) = objects.get_mut(id) else { continue };
+            let staleness = std::mem::take(&mut object.staleness);
+            broad.for_each_pair_of(super::proxy(id), &mut |pair, _| {
+                let looks_back = || match candidates.get(pair).found {
+                    Some(found) => matches!(findings.collision(found).contact, Contact::Smart { .. }),
+                    None => false,
+                };
+                if staleness > Staleness::Previous || looks_back() {
+                    candidates.enqueue(pair);
                 }
             });
         }
-        self.late = late;
-    }
-
-    /// The first candidate beyond `last`.
-    pub(super) fn next_candidate(&self, last: Option<PairKey>) -> Option<Candidate> {
-        let next = self.candidates.partition_point(|candidate| Some(candidate.key) <= last);
-        let early = self.candidates.get(next);
-        let beyond = (last.map_or(Bound::Unbounded, Bound::Excluded), Bound::Unbounded);
-        let late = self.late.range(beyond).next().map(|(_, candidate)| candidate);
-        match (early, late) {
-            (Some(early), Some(late)) => Some(if late.key < early.key { *late } else { *early }),
-            (early, late) => early.or(late).copied(),
+        if std::mem::take(&mut self.default_changed) {
+            candidates.enqueue_all();
         }
-    }
-
-    /// Whether a candidate still is one, when the world may have changed since the candidates were found.
-    pub(super) fn is_candidate(&self, candidate: &Candidate) -> bool {
-        !self.stale
-            || match (self.objects.get(candidate.a), self.objects.get(candidate.b)) {
-                (Some(a), Some(b)) => a.bounds.overlaps(&b.bounds),
-                _ => false,
-            }
-    }
-
-    /// Notes the axis that separates a candidate.
-    pub(super) fn cache_axis(&mut self, key: PairKey, axis: Option<DVec3>) {
-        match self.place_of(key) {
-            Ok(place) => self.candidates[place].axis = axis,
-            Err(_) => {
-                self.late.entry(key).and_modify(|candidate| candidate.axis = axis);
-            }
-        }
-    }
-
-    fn place_of(&self, key: PairKey) -> std::result::Result<usize, usize> {
-        self.candidates.binary_search_by_key(&key, |candidate| candidate.key)
     }
 
     /// Gives the broad phase the boxes of what moved.
-    fn update_broad(&mut self, moved: &[ObjectId]) {
-        for &id in moved {
-            if let Some(object) = self.objects.get_mut(id) {
-                object.moved = false;
-                object.update_bounds();
-                self.broad.update(super::proxy(id), object.bounds);
+    fn update_broad(&mut self) {
+        let Self { broad, objects, stirred, .. } = self;
+        for &id in stirred.iter() {
+            if let Some(object) = objects.get_mut(id).filter(|object| object.staleness == Staleness::Bounds) {
+                broad.update(super::proxy(id), object.update_bounds());
             }
         }
-        self.broad.flush();
+        broad.flush();
     }
 
-    /// The candidate that two overlapping boxes make, unless it is to be ignored.
-    fn candidate(&self, p: Proxy, q: Proxy) -> Option<Candidate> {
-        let candidate = self.candidate_of(self.by_proxy[p as usize], self.by_proxy[q as usize]);
-        (self.responses.of(candidate.a, candidate.b) != Response::Ignore).then_some(candidate)
+    /// Two objects of the world in the order of pairs.
+    pub(super) fn in_order(&self, a: ObjectId, b: ObjectId) -> (ObjectId, ObjectId) {
+        if self.objects[a].order <= self.objects[b].order { (a, b) } else { (b, a) }
     }
 
-    /// Two objects of the world as a candidate, in the order of pairs.
-    pub(super) fn candidate_of(&self, a: ObjectId, b: ObjectId) -> Candidate {
-        let key = (self.objects[a].order, self.objects[b].order);
-        if key.0 <= key.1 {
-            Candidate { key, a, b, axis: None }
-        } else {
-            Candidate { key: (key.1, key.0), a: b, b: a, axis: None }
-        }
-    }
-}
-
-/// Takes over what is cached for pairs that were candidates before. Both are sorted.
-fn carry_over(old: &[Candidate], new: &mut [Candidate]) {
-    let mut old = old.iter().peekable();
-    for candidate in new {
-        while old.next_if(|earlier| earlier.key < candidate.key).is_some() {}
-        if let Some(earlier) = old.next_if(|earlier| earlier.key == candidate.key) {
-            candidate.axis = earlier.axis;
-        }
+    /// The place of a pair in the order; the earlier object first.
+    pub(super) fn key(&self, a: ObjectId, b: ObjectId) -> PairKey {
+        (self.objects[a].order, self.objects[b].order)
     }
 }

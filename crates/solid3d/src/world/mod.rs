@@ -4,19 +4,22 @@
 
 mod candidates;
 mod collision;
+mod event;
+mod findings;
 mod motion;
 mod object;
 mod options;
+mod ordered;
 mod response;
 mod statistics;
 mod test;
-
-use std::collections::BTreeMap;
+mod threads;
 
 use glam::{DAffine3, DVec3};
 use slotmap::{Key, SlotMap};
 
 pub use collision::{Collision, Contact};
+pub use event::{Event, EventKind};
 pub use motion::{Motion, When};
 pub use object::ObjectId;
 pub use options::{Boxes, WorldOptions};
@@ -24,14 +27,15 @@ pub use response::Response;
 pub use statistics::Statistics;
 pub use test::TestProgress;
 
-use crate::broad::{BroadPhase, PROXY_MAX, Proxy};
+use crate::broad::{BroadPhase, PROXY_MAX, PairId, Proxy};
 use crate::error::{Error, Result};
-use crate::pair::Scratch;
 use crate::placement;
 use crate::shape::Shape;
-use candidates::{Candidate, PairKey};
-use object::Object;
+use candidates::{Candidates, PairKey};
+use findings::Findings;
+use object::{Object, Staleness};
 use response::ResponseTable;
+use threads::Workers;
 
 /// How many objects there may be: the slot of each is a proxy, and slot 0 is not used.
 const OBJECTS_MAX: usize = PROXY_MAX as usize;
@@ -71,19 +75,22 @@ pub struct World {
     /// Of objects that are added.
     motion: Motion,
     caching: bool,
-    /// Objects whose box in the broad phase is out of date.
-    moved: Vec<ObjectId>,
+    /// Objects about which something changed since the candidates were brought up to date, each once; some may have been removed.
+    stirred: Vec<ObjectId>,
     /// Objects whose previous frame differs from the current one.
     displaced: Vec<ObjectId>,
-    /// The pairs to examine, in creation order, with what is cached for each.
-    candidates: Vec<Candidate>,
-    /// Pairs that came to overlap since `candidates` were found, during a test that pauses.
-    late: BTreeMap<PairKey, Candidate>,
-    /// Whether something changed since `candidates` were found.
+    candidates: Candidates,
+    findings: Findings,
+    /// Whether something changed since the candidates were brought up to date.
     stale: bool,
-    /// Whether a response did, so that pairs may be missing among them.
-    response_changed: bool,
-    scratch: Scratch,
+    /// Whether the default response did.
+    default_changed: bool,
+    /// Working memory: the pairs that a test examines.
+    to_examine: Vec<PairId>,
+    /// Working memory: what examining them gave.
+    #[cfg(feature = "rayon")]
+    examined: Vec<test::Examined>,
+    workers: Workers,
     statistics: Statistics,
 }
 
@@ -110,13 +117,16 @@ impl World {
             boxes: options.boxes,
             motion: options.motion,
             caching: options.caching,
-            moved: Vec::new(),
+            stirred: Vec::new(),
             displaced: Vec::new(),
-            candidates: Vec::new(),
-            late: BTreeMap::new(),
+            candidates: Candidates::default(),
+            findings: Findings::default(),
             stale: false,
-            response_changed: false,
-            scratch: Scratch::default(),
+            default_changed: false,
+            to_examine: Vec::new(),
+            #[cfg(feature = "rayon")]
+            examined: Vec::new(),
+            workers: Workers::default(),
             statistics: Statistics::default(),
         }
     }
@@ -148,11 +158,10 @@ impl World {
             });
         }
         let mut object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
-        object.update_bounds();
-        let bounds = object.bounds;
+        let bounds = object.update_bounds();
         let id = self.objects.insert(object);
         self.added += 1;
-        self.update_bounds(id);
+        self.stale = true;
         let proxy = proxy(id);
         if self.by_proxy.len() <= proxy as usize {
             self.by_proxy.resize(proxy as usize + 1, ObjectId::default());
@@ -165,11 +174,10 @@ impl World {
     /// Removes an object, with the responses set for it and for its pairs.
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         let object = self.objects.remove(id).ok_or(Error::UnknownObject { argument: "object", id })?;
-        self.responses.forget(id, &object.pair_partners);
-        for partner in object.pair_partners {
-            self.objects[partner].pair_partners.retain(|&other| other != id);
-        }
-        self.broad.remove(proxy(id));
+        self.forget_responses(id, object.pair_responses);
+        let Self { broad, candidates, findings, .. } = self;
+        broad.for_each_pair_of(proxy(id), &mut |pair, _| candidates.end(pair, findings));
+        broad.remove(proxy(id));
         self.stale = true;
         Ok(())
     }
@@ -209,8 +217,12 @@ impl World {
     /// Places an object: any affine map that is finite and not singular.
     pub fn set_placement(&mut self, id: ObjectId, placement: DAffine3) -> Result<()> {
         placement::checked(&placement)?;
-        self.object_mut(id)?.placement = placement;
-        self.touch(id);
+        let object = self.object_mut(id)?;
+        // To the bit, for the sign of a zero may show in an answer.
+        if !placement::is_same(&object.placement, &placement) {
+            object.placement = placement;
+            self.touch(id);
+        }
         Ok(())
     }
 
@@ -234,29 +246,36 @@ impl World {
         Ok(())
     }
 
-    /// Ends the frame: what is now becomes the previous frame, of smart response and of [`Motion::Swept`]. Cost: follows what
-    /// moved.
+    /// Ends the frame: what is now becomes the previous frame, of smart response, of [`Motion::Swept`] and of
+    /// [events](World::events). Cost: follows what moved.
     pub fn proceed(&mut self) {
-        for id in std::mem::take(&mut self.displaced) {
-            if let Some(object) = self.objects.get_mut(id) {
-                let had_way = object.has_way();
-                object.proceed();
-                if had_way {
-                    self.update_bounds(id);
-                }
+        let mut displaced = std::mem::take(&mut self.displaced);
+        for id in displaced.drain(..) {
+            if self.contains(id) {
+                self.end_frame_of(id);
             }
         }
+        self.displaced = displaced;
+        self.findings.proceed();
     }
 
     /// Ends the frame for one object alone: it is then as if it had just been added, as it is.
     pub fn proceed_object(&mut self, id: ObjectId) -> Result<()> {
+        self.object(id)?;
         // It stays in `displaced`, where a second entry or none to do is harmless.
-        self.object_mut(id)?.proceed();
+        self.end_frame_of(id);
         Ok(())
     }
 
-    /// Lets tests use what earlier tests found out about a pair: its separating axis. On by default. Answers are the same
-    /// with and without, to the bit.
+    fn end_frame_of(&mut self, id: ObjectId) {
+        let object = &mut self.objects[id];
+        let had_way = object.has_way();
+        object.proceed();
+        self.stir(id, if had_way { Staleness::Bounds } else { Staleness::Previous });
+    }
+
+    /// Lets tests use what earlier tests found out about a pair: its separating axis, and all of it while nothing about the pair
+    /// changed. On by default. Answers are the same with and without, to the bit.
     pub fn enable_caching(&mut self) {
         self.caching = true;
     }
@@ -264,7 +283,7 @@ impl World {
     /// Makes each test start from nothing; see [`enable_caching`](World::enable_caching).
     pub fn disable_caching(&mut self) {
         self.caching = false;
-        self.candidates.iter_mut().for_each(|candidate| candidate.axis = None);
+        self.candidates.forget_axes();
     }
 
     /// The work done since the world was made.
@@ -289,14 +308,16 @@ impl World {
             }
             self.displaced.push(id);
         }
-        self.update_bounds(id);
+        self.stir(id, Staleness::Bounds);
     }
 
-    /// Notes that the broad phase has another box of an object in the world than it should.
-    fn update_bounds(&mut self, id: ObjectId) {
-        if !std::mem::replace(&mut self.objects[id].moved, true) {
-            self.moved.push(id);
+    /// Notes what of an object in the world is out of date.
+    fn stir(&mut self, id: ObjectId, what: Staleness) {
+        let staleness = &mut self.objects[id].staleness;
+        if *staleness == Staleness::Fresh {
+            self.stirred.push(id);
         }
+        *staleness = what.max(*staleness);
         self.stale = true;
     }
 }
@@ -319,10 +340,35 @@ mod tests {
         for _ in 0..10 {
             let goes = world.add(&ball, DAffine3::IDENTITY)?;
             world.set_pair_response(stays, goes, Response::Simple)?;
-            assert_eq!(world.objects[stays].pair_partners, [goes]);
+            assert_eq!((world.objects[stays].pair_responses, world.responses.pair_count()), (1, 1));
             world.remove(goes)?;
-            assert!(world.objects[stays].pair_partners.is_empty());
+            assert_eq!((world.objects[stays].pair_responses, world.responses.pair_count()), (0, 0));
         }
+        Ok(())
+    }
+
+    /// The same with many at a time: what is left behind is a share of what is there, and `stirred` holds each once.
+    #[test]
+    fn what_removed_objects_leave_is_bounded() -> Result<()> {
+        let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        let hub = world.add(&ball, DAffine3::IDENTITY)?;
+        let spokes: Vec<_> = (1..=1000)
+            .map(|i| world.add(&ball, DAffine3::from_translation(DVec3::X * 3.0 * f64::from(i))).unwrap())
+            .collect();
+        for &spoke in &spokes {
+            world.set_pair_response(hub, spoke, Response::Simple)?;
+        }
+        for (removed, &spoke) in (1..).zip(&spokes) {
+            world.remove(spoke)?;
+            assert!(world.responses.pair_count() <= 2 * (spokes.len() - removed));
+        }
+        assert_eq!(world.objects[hub].pair_responses, 0);
+        for _ in 0..100 {
+            world.set_placement(hub, DAffine3::from_translation(DVec3::Y))?;
+            world.proceed();
+            world.set_placement(hub, DAffine3::IDENTITY)?;
+        }
+        assert_eq!(world.stirred.len(), 1);
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! Fast objects: what is tested between two frames (thesis, section 2.2.2).
 
+use super::object::Staleness;
 use super::{ObjectId, World};
 use crate::error::Result;
 
@@ -58,7 +59,7 @@ impl World {
     /// [`proceed`](World::proceed).
     pub fn set_motion(&mut self, id: ObjectId, motion: Motion) -> Result<()> {
         self.object_mut(id)?.motion = motion;
-        self.update_bounds(id);
+        self.stir(id, Staleness::Bounds);
         Ok(())
     }
 

@@ -17,6 +17,20 @@ slotmap::new_key_type! {
 /// The bits of a place in the creation order: more than any machine will count to.
 const RANK_SHIFT: u32 = 56;
 
+/// What of an object is out of date in the candidates: each includes those before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Staleness {
+    /// Nothing.
+    #[default]
+    Fresh,
+    /// What depends on its previous frame.
+    Previous,
+    /// All that was found about its pairs.
+    Pairs,
+    /// Its box in the broad phase.
+    Bounds,
+}
+
 /// An object.
 #[derive(Debug)]
 pub(super) struct Object {
@@ -32,18 +46,16 @@ pub(super) struct Object {
     pub spare: Option<Shape>,
     /// Whether its way from the previous frame is tested.
     pub motion: Motion,
-    /// How its vertices moved since the previous frame; see [`deformation`]. Up to date unless `moved`, when swept.
+    /// How its vertices moved since the previous frame; see [`deformation`]. Up to date unless the bounds are stale.
     deformation: Aabb,
     /// The radius about the local origin, when its box in the broad phase is to have a fixed size.
     radius: Option<f64>,
-    /// The box in the broad phase.
-    pub bounds: Aabb,
-    /// Whether the broad phase has another box.
-    pub moved: bool,
+    /// What of it is out of date.
+    pub staleness: Staleness,
     /// Whether the previous frame is another.
     pub displaced: bool,
-    /// The objects with which it has a pair response; all are in the world.
-    pub pair_partners: Vec<ObjectId>,
+    /// How many pair responses were set for it and not reset; some may be for objects that were removed since.
+    pub pair_responses: u32,
 }
 
 impl Object {
@@ -66,10 +78,9 @@ impl Object {
             shape,
             placement,
             spare: None,
-            bounds: Aabb::EMPTY,
-            moved: false,
+            staleness: Staleness::Fresh,
             displaced: false,
-            pair_partners: Vec::new(),
+            pair_responses: 0,
         }
     }
 
@@ -109,14 +120,14 @@ impl Object {
         if self.was_deformed() { &self.previous_shape } else { &self.shape }
     }
 
-    /// Brings the box for the broad phase up to date, which contains the object on its way.
-    pub fn update_bounds(&mut self) {
+    /// Brings what depends on the way up to date; gives the box for the broad phase, which contains the object on its way.
+    pub fn update_bounds(&mut self) -> Aabb {
         self.deformation = if self.has_way() { deformation(self.shape_on_way(), &self.shape) } else { STILL };
-        self.bounds = if self.has_way() {
+        if self.has_way() {
             moving_bounds(&self.moving(), |placed| self.bounds_of(placed))
         } else {
             self.bounds_of(self.placed())
-        };
+        }
     }
 
     fn bounds_of(&self, placed: Placed) -> Aabb {

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use slotmap::SecondaryMap;
 
+use super::object::Staleness;
 use super::{ObjectId, World};
 use crate::error::{Error, Result};
 
@@ -30,13 +31,15 @@ pub enum Response {
 pub(super) struct ResponseTable {
     default: Response,
     objects: SecondaryMap<ObjectId, Response>,
-    /// The lesser id first.
+    /// The lesser id first. Ids never come back, so pairs of objects that are gone do no harm until they are dropped.
     pairs: HashMap<(ObjectId, ObjectId), Response>,
+    /// No fewer than the pairs of objects that are gone, and at most twice as many.
+    forgotten: usize,
 }
 
 impl ResponseTable {
     pub fn new(default: Response) -> Self {
-        ResponseTable { default, objects: SecondaryMap::new(), pairs: HashMap::new() }
+        ResponseTable { default, objects: SecondaryMap::new(), pairs: HashMap::new(), forgotten: 0 }
     }
 
     /// The response for a pair, of which `first` comes first.
@@ -46,13 +49,15 @@ impl ResponseTable {
         pair.or_else(object).copied().unwrap_or(self.default)
     }
 
-    /// Drops what was set for an object and for its pairs.
-    pub fn forget(&mut self, id: ObjectId, partners: &[ObjectId]) {
-        self.objects.remove(id);
-        for &partner in partners {
-            self.pairs.remove(&ordered(id, partner));
-        }
+    /// Drops the pairs with an object that is gone; gives those that stay.
+    fn retain_pairs(
+        &mut self,
+        is_there: impl Fn(ObjectId) -> bool,
+    ) -> impl Iterator<Item = (ObjectId, ObjectId)> {
+        self.pairs.retain(|&(a, b), _| is_there(a) && is_there(b));
+        self.forgotten = 0;
         self.give_back();
+        self.pairs.keys().copied()
     }
 
     /// Gives memory back when nothing is left in it.
@@ -60,6 +65,11 @@ impl ResponseTable {
         if self.pairs.is_empty() {
             self.pairs.shrink_to_fit();
         }
+    }
+
+    #[cfg(test)]
+    pub fn pair_count(&self) -> usize {
+        self.pairs.len()
     }
 }
 
@@ -91,7 +101,7 @@ impl World {
     /// Sets the response for pairs that have none of their own.
     pub fn set_default_response(&mut self, response: Response) {
         self.responses.default = response;
-        (self.stale, self.response_changed) = (true, true);
+        (self.stale, self.default_changed) = (true, true);
     }
 
     /// Makes pairs without a response of their own be ignored.
@@ -103,7 +113,7 @@ impl World {
     pub fn set_object_response(&mut self, id: ObjectId, response: Response) -> Result<()> {
         self.object(id)?;
         self.responses.objects.insert(id, response);
-        (self.stale, self.response_changed) = (true, true);
+        self.stir(id, Staleness::Pairs);
         Ok(())
     }
 
@@ -116,7 +126,7 @@ impl World {
     pub fn reset_object_response(&mut self, id: ObjectId) -> Result<()> {
         self.object(id)?;
         self.responses.objects.remove(id);
-        (self.stale, self.response_changed) = (true, true);
+        self.stir(id, Staleness::Pairs);
         Ok(())
     }
 
@@ -124,10 +134,10 @@ impl World {
     pub fn set_pair_response(&mut self, a: ObjectId, b: ObjectId, response: Response) -> Result<()> {
         self.check_pair(a, b)?;
         if self.responses.pairs.insert(ordered(a, b), response).is_none() {
-            self.objects[a].pair_partners.push(b);
-            self.objects[b].pair_partners.push(a);
+            self.objects[a].pair_responses += 1;
+            self.objects[b].pair_responses += 1;
         }
-        (self.stale, self.response_changed) = (true, true);
+        self.stir_pair(a, b);
         Ok(())
     }
 
@@ -140,19 +150,43 @@ impl World {
     pub fn reset_pair_response(&mut self, a: ObjectId, b: ObjectId) -> Result<()> {
         self.check_pair(a, b)?;
         if self.responses.pairs.remove(&ordered(a, b)).is_some() {
-            self.objects[a].pair_partners.retain(|&partner| partner != b);
-            self.objects[b].pair_partners.retain(|&partner| partner != a);
+            self.objects[a].pair_responses -= 1;
+            self.objects[b].pair_responses -= 1;
             self.responses.give_back();
         }
-        (self.stale, self.response_changed) = (true, true);
+        self.stir_pair(a, b);
         Ok(())
     }
 
     /// The response that holds for a pair.
     pub fn response(&self, a: ObjectId, b: ObjectId) -> Result<Response> {
         self.check_pair(a, b)?;
-        let a_first = self.objects[a].order < self.objects[b].order;
-        Ok(if a_first { self.responses.of(a, b) } else { self.responses.of(b, a) })
+        let (first, second) = self.in_order(a, b);
+        Ok(self.responses.of(first, second))
+    }
+
+    /// Has a pair examined again, if its boxes overlap.
+    fn stir_pair(&mut self, a: ObjectId, b: ObjectId) {
+        if let Some(pair) = self.broad.pair(super::proxy(a), super::proxy(b)) {
+            self.candidates.enqueue(pair);
+        }
+    }
+
+    /// Drops what was set for an object that is gone, and for its pairs: at the latest when they are half of all pairs. So the
+    /// cost is constant on average, also for one that had a response with every other.
+    pub(super) fn forget_responses(&mut self, id: ObjectId, pairs: u32) {
+        self.responses.objects.remove(id);
+        self.responses.forgotten += pairs as usize;
+        if 2 * self.responses.forgotten <= self.responses.pairs.len() || pairs == 0 {
+            return;
+        }
+        let Self { responses, objects, .. } = self;
+        // Some of what was counted is of objects that were gone before.
+        objects.values_mut().for_each(|object| object.pair_responses = 0);
+        let staying: Vec<_> = responses.retain_pairs(|id| objects.contains_key(id)).collect();
+        for id in staying.into_iter().flat_map(|(a, b)| [a, b]) {
+            objects[id].pair_responses += 1;
+        }
     }
 
     fn check_pair(&self, a: ObjectId, b: ObjectId) -> Result<()> {

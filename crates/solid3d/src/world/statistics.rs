@@ -8,7 +8,9 @@ use std::ops::AddAssign;
 pub struct Statistics {
     /// Pairs whose boxes overlap and whose response is not to ignore them.
     pub candidates: u64,
-    /// Candidates that the axis of an earlier test still separated.
+    /// Candidates that were examined. Of the others nothing had changed since they were: what was found then still holds.
+    pub examined: u64,
+    /// Candidates that were examined and that the axis of an earlier test still separated.
     pub cache_hits: u64,
     /// Tests of one box against the eight of a tree's node.
     pub box_tests: u64,
@@ -20,9 +22,23 @@ pub struct Statistics {
     pub collisions: u64,
 }
 
+#[cfg(feature = "rayon")]
+impl Statistics {
+    /// What `count` candidates will cost if they are like those examined so far, in units of about a box test.
+    pub(super) fn units_for(&self, count: usize) -> u64 {
+        /// What a candidate costs at least, whose cached axis still separates it.
+        const UNITS_PER_CANDIDATE: u64 = 4;
+        /// What the search of two convex shapes for a common point costs.
+        const UNITS_PER_PRIMITIVE_TEST: u64 = 6;
+        let units = self.box_tests + UNITS_PER_PRIMITIVE_TEST * self.primitive_tests;
+        count as u64 * (UNITS_PER_CANDIDATE + units / self.examined.max(1))
+    }
+}
+
 impl AddAssign for Statistics {
     fn add_assign(&mut self, other: Statistics) {
         self.candidates += other.candidates;
+        self.examined += other.examined;
         self.cache_hits += other.cache_hits;
         self.box_tests += other.box_tests;
         self.primitive_tests += other.primitive_tests;

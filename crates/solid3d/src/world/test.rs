@@ -6,7 +6,10 @@ use glam::DVec3;
 
 use super::candidates::{Candidate, PairKey};
 use super::object::Object;
+#[cfg(feature = "rayon")]
+use super::threads::{BATCH, Workers};
 use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
+use crate::broad::PairId;
 use crate::error::Result;
 use crate::pair::swept::{self, Encounter, Moving};
 use crate::pair::{self, Relation, Scratch};
@@ -19,7 +22,10 @@ pub struct TestProgress {
 }
 
 /// What examining a candidate gave.
-struct Examined {
+#[derive(Debug, Default)]
+pub(super) struct Examined {
+    /// Whether its response is not to ignore it.
+    matters: bool,
     found: Option<(When, Contact)>,
     axis: Option<DVec3>,
     work: Statistics,
@@ -31,7 +37,8 @@ impl World {
     /// way from the previous ones. In the order in which the objects were created: by the first object
     /// of a pair, then by the second.
     ///
-    /// Pairs are examined when their response is not [`Response::Ignore`] and their boxes overlap. With the feature `rayon` on
+    /// Pairs are examined when their response is not [`Response::Ignore`], their boxes overlap, and something about them changed
+    /// since they last were: the cost follows what changed, but for the copy of the result. With the feature `rayon` on
     /// the threads of the current pool; the results are the same bits for any number of threads, with and without caching, and
     /// for either broad phase.
     ///
@@ -47,16 +54,34 @@ impl World {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn test(&mut self) -> Vec<Collision> {
-        self.refresh();
-        let mut candidates = std::mem::take(&mut self.candidates);
-        let found = self.examine_all(&mut candidates);
-        self.candidates = candidates;
         let mut collisions = Vec::new();
-        for (of_chunk, work) in found {
-            collisions.extend(of_chunk);
-            self.statistics += work;
-        }
+        self.test_into(&mut collisions);
         collisions
+    }
+
+    /// Like [`test`](World::test), but puts the collisions into a vector, in place of what was there: a caller that keeps it, in a
+    /// world in which as much happens as before, makes tests that allocate nothing. Only [`Response::Curve`] does, for each
+    /// curve. [`collisions`](World::collisions) are then also there to be looked at without a copy.
+    ///
+    /// ```
+    /// use solid3d::{Shape, World, glam::DAffine3};
+    /// let mut world = World::new();
+    /// let ball = Shape::sphere(1.0)?;
+    /// let [a, b] = [0, 1].map(|_| world.add(&ball, DAffine3::IDENTITY).unwrap());
+    /// let mut collisions = Vec::new();
+    /// for frame in 0..3 {
+    ///     world.test_into(&mut collisions);
+    ///     assert_eq!((collisions.len(), collisions[0].a, collisions[0].b), (1, a, b));
+    ///     world.proceed();
+    /// }
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn test_into(&mut self, collisions: &mut Vec<Collision>) {
+        self.begin_test();
+        self.statistics.collisions += self.findings.len() as u64;
+        collisions.clear();
+        collisions.reserve(self.findings.len());
+        collisions.extend(self.findings.iter().cloned());
     }
 
     /// Like [`test`](World::test), but calls `respond` with each collision as it is found, and lets it change the world: move,
@@ -106,22 +131,13 @@ impl World {
     /// ```
     pub fn test_next(&mut self, progress: &mut TestProgress) -> Option<Collision> {
         match progress.last {
-            None => self.refresh(),
-            Some(last) => self.refresh_beyond(last),
+            None => self.begin_test(),
+            Some(_) => self.statistics.candidates += self.examine_changed(),
         }
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let mut collision = None;
-        while let Some(candidate) = self.next_candidate(progress.last).filter(|_| collision.is_none()) {
-            progress.last = Some(candidate.key);
-            if self.is_candidate(&candidate) {
-                let examined = self.examine(&candidate, &mut scratch);
-                self.cache_axis(candidate.key, examined.axis);
-                self.statistics += examined.work;
-                collision = candidate.collision(examined.found);
-            }
-        }
-        self.scratch = scratch;
-        collision
+        let (key, collision) = self.findings.beyond(progress.last)?;
+        progress.last = Some(key);
+        self.statistics.collisions += 1;
+        Some(collision.clone())
     }
 
     /// Whether two objects collide, and how, as [`test`](World::test) would report them; `None` also when their response is
@@ -130,63 +146,113 @@ impl World {
         if self.response(a, b)? == Response::Ignore {
             return Ok(None);
         }
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let candidate = self.candidate_of(a, b);
-        let examined = self.examine(&candidate, &mut scratch);
-        self.scratch = scratch;
-        self.statistics += examined.work;
-        Ok(candidate.collision(examined.found))
+        // What depends on the way of a swept object is brought up to date with its box.
+        self.refresh();
+        let mut workers = std::mem::take(&mut self.workers);
+        let (a, b) = self.in_order(a, b);
+        let examined = self.examine(a, b, None, workers.own());
+        self.workers = workers;
+        let collisions = u64::from(examined.found.is_some());
+        self.statistics += Statistics { candidates: 1, collisions, ..examined.work };
+        Ok(examined.found.map(|(when, contact)| Collision { a, b, when, contact }))
     }
 
-    /// Examines candidates, chunk by chunk: what collides, in their order, and the work. Notes the axes that separate the others.
-    #[cfg(not(feature = "rayon"))]
-    fn examine_all(&mut self, candidates: &mut [Candidate]) -> Vec<(Vec<Collision>, Statistics)> {
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let found = self.examine_chunk(candidates, &mut scratch);
-        self.scratch = scratch;
-        vec![found]
+    /// Brings the findings up to date, and counts the candidates.
+    fn begin_test(&mut self) {
+        if !self.caching {
+            self.candidates.enqueue_all();
+        }
+        self.examine_changed();
+        self.statistics.candidates += self.candidates.count;
+    }
+
+    /// Examines the candidates about which something changed; gives how many.
+    fn examine_changed(&mut self) -> u64 {
+        self.refresh();
+        let before = self.statistics.examined;
+        let mut pairs = std::mem::take(&mut self.to_examine);
+        self.candidates.take_queue(&mut pairs);
+        self.examine_all(&pairs);
+        self.to_examine = pairs;
+        self.statistics.examined - before
+    }
+
+    /// Examines candidates, and keeps what that gave, in their order.
+    fn examine_all(&mut self, pairs: &[PairId]) {
+        #[cfg(feature = "rayon")]
+        if Workers::share(self.statistics.units_for(pairs.len())) {
+            return self.examine_on_threads(pairs);
+        }
+        let mut workers = std::mem::take(&mut self.workers);
+        for &pair in pairs {
+            let examined = self.examine_candidate(pair, workers.own());
+            self.note(pair, examined);
+        }
+        self.workers = workers;
     }
 
     #[cfg(feature = "rayon")]
-    fn examine_all(&mut self, candidates: &mut [Candidate]) -> Vec<(Vec<Collision>, Statistics)> {
-        use rayon::prelude::*;
-        /// Fewer pairs than this are not worth waking a thread.
-        const CHUNK: usize = 16;
-        let chunks = candidates.par_chunks_mut(CHUNK);
-        chunks.map_init(Scratch::default, |scratch, chunk| self.examine_chunk(chunk, scratch)).collect()
-    }
-
-    fn examine_chunk(
-        &self,
-        candidates: &mut [Candidate],
-        scratch: &mut Scratch,
-    ) -> (Vec<Collision>, Statistics) {
-        let (mut collisions, mut work) = (Vec::new(), Statistics::default());
-        for candidate in candidates {
-            let examined = self.examine(candidate, scratch);
-            candidate.axis = examined.axis;
-            work += examined.work;
-            collisions.extend(candidate.collision(examined.found));
+    fn examine_on_threads(&mut self, pairs: &[PairId]) {
+        let mut workers = std::mem::take(&mut self.workers);
+        let mut examined = std::mem::take(&mut self.examined);
+        for batch in pairs.chunks(BATCH) {
+            workers.map(batch, &mut examined, |&pair, scratch| self.examine_candidate(pair, scratch));
+            for (&pair, examined) in batch.iter().zip(examined.drain(..)) {
+                self.note(pair, examined);
+            }
         }
-        (collisions, work)
+        self.examined = examined;
+        self.workers = workers;
     }
 
-    /// Whether a candidate collides; a function of the two objects alone.
-    fn examine(&self, candidate: &Candidate, scratch: &mut Scratch) -> Examined {
-        let mut work = Statistics { candidates: 1, ..Statistics::default() };
-        let (a, b) = (&self.objects[candidate.a], &self.objects[candidate.b]);
+    fn examine_candidate(&self, pair: PairId, scratch: &mut Scratch) -> Examined {
+        let &Candidate { a, b, axis, .. } = self.candidates.get(pair);
+        self.examine(a, b, axis, scratch)
+    }
+
+    /// Keeps what examining a candidate gave.
+    fn note(&mut self, pair: PairId, examined: Examined) {
+        self.statistics += examined.work;
+        let &Candidate { a, b, found, matters, .. } = self.candidates.get(pair);
+        let found = match (found, examined.found) {
+            (None, None) => None,
+            (None, Some((when, contact))) => {
+                Some(self.findings.add(self.key(a, b), Collision { a, b, when, contact }))
+            }
+            (Some(id), None) => {
+                self.findings.remove(id);
+                None
+            }
+            (Some(id), Some((when, contact))) => {
+                self.findings.replace(id, when, contact);
+                Some(id)
+            }
+        };
+        self.candidates.count += u64::from(examined.matters);
+        self.candidates.count -= u64::from(matters);
+        let candidate = self.candidates.get_mut(pair);
+        (candidate.found, candidate.axis, candidate.matters) = (found, examined.axis, examined.matters);
+    }
+
+    /// Whether two objects collide, of which `a` comes first; a function of the two, their response and the axis alone.
+    fn examine(&self, a: ObjectId, b: ObjectId, axis: Option<DVec3>, scratch: &mut Scratch) -> Examined {
+        let response = self.responses.of(a, b);
+        if response == Response::Ignore {
+            return Examined::default();
+        }
+        let mut work = Statistics { examined: 1, ..Statistics::default() };
+        let (a, b) = (&self.objects[a], &self.objects[b]);
         let way = (a.has_way() || b.has_way()).then(|| [a.moving(), b.moving()]);
         let still_separated = |&axis: &DVec3| match &way {
             None => pair::still_separated(axis, a.placed(), b.placed()),
             Some([a, b]) => swept::still_separated(axis, a, b),
         };
-        let cached = candidate.axis.filter(|_| self.caching);
+        let cached = axis.filter(|_| self.caching);
         if let Some(axis) = cached.filter(still_separated) {
             work.cache_hits = 1;
-            return Examined { found: None, axis: Some(axis), work };
+            return Examined { matters: true, found: None, axis: Some(axis), work };
         }
         let before = scratch.work();
-        let response = self.responses.of(candidate.a, candidate.b);
         let (found, axis) = match (pair::intersection(a.placed(), b.placed(), scratch), &way) {
             (Relation::Common(witness), _) => {
                 let contact = match response {
@@ -203,10 +269,9 @@ impl World {
                 on_the_way([a, b], way, response, scratch)
             }
         };
-        work.collisions = u64::from(found.is_some());
         let after = scratch.work();
         (work.box_tests, work.primitive_tests) = (after.0 - before.0, after.1 - before.1);
-        Examined { found, axis: axis.filter(|_| self.caching), work }
+        Examined { matters: true, found, axis: axis.filter(|_| self.caching), work }
     }
 }
 
@@ -234,12 +299,6 @@ fn on_the_way(
 fn smart([a, b]: [&Object; 2], scratch: &mut Scratch) -> Contact {
     let now = [a.placed(), b.placed()];
     Contact::smart(now, [a.previously_placed(), b.previously_placed()], scratch)
-}
-
-impl Candidate {
-    fn collision(&self, found: Option<(When, Contact)>) -> Option<Collision> {
-        found.map(|(when, contact)| Collision { a: self.a, b: self.b, when, contact })
-    }
 }
 
 #[cfg(test)]
@@ -278,6 +337,95 @@ mod tests {
             many_visits <= 20 * few_visits,
             "{few_visits} node visits for 500 balls, {many_visits} for 4000"
         );
+    }
+
+    /// A frame of movers, each next to one ball at rest, in a world of others at rest that collide in twos: what it cost.
+    fn frame_of_movers(movers: usize, resting: usize) -> (Statistics, u64) {
+        let mut world = World::new();
+        let ball = Shape::sphere(0.5).unwrap();
+        let place = |i: usize, row: f64| DVec3::new(3.0 * (i % 300) as f64, 3.0 * (i / 300) as f64, row);
+        let at = |point: DVec3| DAffine3::from_translation(point);
+        let ids: Vec<_> = (0..movers).map(|i| world.add(&ball, at(place(i, 0.0))).unwrap()).collect();
+        for i in 0..movers {
+            world.add(&ball, at(place(i, 1.1))).unwrap();
+        }
+        for i in 0..resting / 2 {
+            world.add(&ball, at(place(i, 5.0))).unwrap();
+            world.add(&ball, at(place(i, 5.9))).unwrap();
+        }
+        let mut last = (Statistics::default(), 0);
+        for frame in 0..20 {
+            let before = (world.statistics(), world.broad.counters());
+            for (i, &id) in ids.iter().enumerate() {
+                world.set_placement(id, at(place(i, if frame % 2 == 0 { 0.05 } else { 0.15 }))).unwrap();
+            }
+            let collisions = world.test();
+            assert_eq!(collisions.len(), resting / 2 + if frame % 2 == 0 { 0 } else { movers });
+            world.proceed();
+            let (work, broad) = (world.statistics(), world.broad.counters());
+            let frame_work = Statistics {
+                candidates: work.candidates - before.0.candidates,
+                examined: work.examined - before.0.examined,
+                primitive_tests: work.primitive_tests - before.0.primitive_tests,
+                ..Statistics::default()
+            };
+            last = (
+                frame_work,
+                broad.node_visits + broad.reinsertions - before.1.node_visits - before.1.reinsertions,
+            );
+        }
+        last
+    }
+
+    /// Law: the cost of a frame follows what moved.
+    #[test]
+    fn a_thousand_movers_among_many_cost_what_a_thousand_cost() {
+        let (movers, resting) = (1000, 100_000);
+        let (alone, visits_alone) = frame_of_movers(movers, 0);
+        let (among, visits_among) = frame_of_movers(movers, resting);
+        assert_eq!((alone.examined, among.examined), (movers as u64, movers as u64));
+        assert_eq!(alone.primitive_tests, among.primitive_tests);
+        assert_eq!(among.candidates, alone.candidates + resting as u64 / 2);
+        assert!(
+            visits_among <= 2 * visits_alone + 100,
+            "{visits_alone} visits alone, {visits_among} among many"
+        );
+    }
+
+    /// What is at rest is examined once: also when placed anew where it is, and when the frame ends.
+    #[test]
+    fn what_is_at_rest_is_not_examined_again() {
+        let (mut world, ids) = row(100);
+        world.set_default_response(Response::Smart);
+        world.test();
+        assert_eq!(world.statistics().examined, 99);
+        for frame in 2..10 {
+            world.proceed();
+            for &id in &ids {
+                world.set_placement(id, world.placement(id).unwrap()).unwrap();
+            }
+            assert_eq!(world.test().len(), 99);
+            assert_eq!((world.statistics().examined, world.statistics().candidates), (99, 99 * frame));
+        }
+        // One that moved is examined with its neighbours; and once more when where it was is where it is.
+        let moved = world.placement(ids[50]).unwrap() * DAffine3::from_translation(DVec3::Y * 0.1);
+        world.set_placement(ids[50], moved).unwrap();
+        for examined in [101, 103, 103] {
+            world.test();
+            assert_eq!(world.statistics().examined, examined);
+            world.proceed();
+        }
+        // Responses concern those that they are set for.
+        world.set_pair_response(ids[3], ids[4], Response::Simple).unwrap();
+        world.set_pair_response(ids[3], ids[90], Response::Simple).unwrap();
+        world.test();
+        assert_eq!(world.statistics().examined, 104);
+        world.set_object_response(ids[7], Response::Witness).unwrap();
+        world.test();
+        assert_eq!(world.statistics().examined, 106);
+        world.disable_caching();
+        world.test();
+        assert_eq!(world.statistics().examined, 106 + 99);
     }
 
     #[test]

@@ -6,25 +6,27 @@
 //! decided again for the pairs of the boxes that moved. (Deciding it for all pairs whenever they are visited took most of
 //! the frame where little moves: 0.75 instead of 0.35 ms for 100,000 boxes of which 1 % move.)
 //!
-//! When more than one in [`REBUILD_AT_ONE_IN`] boxes leave in one frame, the whole tree is built anew and one traversal
-//! of the tree against itself finds all pairs; that is then cheaper. Either path gives the same pairs.
+//! When more than one in [`REBUILD_AT_ONE_IN`] boxes leave in one frame, the whole tree is built anew: that is cheaper than to
+//! place them one by one, and a tree that was just built answers faster. Either path gives the same pairs.
 
 mod build;
 mod fat_box;
 mod node;
-mod pair_pool;
 mod tree;
 
-use super::{BroadPhase, Counters, Proxy, assert_valid};
+use super::pair_lists::PairLists;
+use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid};
 use crate::bounds::Aabb;
 use build::Builder;
 use fat_box::FatBox;
-use pair_pool::PairPool;
 use tree::{DEPTH_MAX, ROOT, Tree};
 
 /// Everything is built anew when more than one in this many boxes leave their fat boxes in one frame.
 /// Measured: 10, 5 and 3 give means within 10 % of one another where all boxes move.
 const REBUILD_AT_ONE_IN: usize = 10;
+
+/// Fewer boxes than this are placed one by one whatever their share: a small tree is changed faster than built.
+const REBUILD_MIN: usize = 32;
 
 /// Where more than one in this many boxes moved, one pass over all pairs is cheaper than a walk along their lists.
 const REFRESH_ALL_AT_ONE_IN: usize = 4;
@@ -54,7 +56,11 @@ pub struct DynamicTree {
     status: Vec<Status>,
     tree: Tree,
     /// The pairs of fat boxes in the tree that overlap, exactly, except of queued proxies until the next flush.
-    pairs: PairPool,
+    pairs: PairLists,
+    /// By proxy: the last mark that `pair_queued` gave it, as a partner that a box has already.
+    known: Vec<u32>,
+    /// The last mark given; the first is 1.
+    mark: u32,
     /// Proxies whose fat boxes are not in the tree as they are, each once; some may have been removed since.
     queue: Vec<Proxy>,
     /// Proxies whose tight boxes changed since the last flush, each once; some may have been removed since.
@@ -67,7 +73,6 @@ pub struct DynamicTree {
     counters: Counters,
     builder: Builder,
     stack: Vec<u32>,
-    pair_stack: Vec<(u32, u32)>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -105,18 +110,6 @@ impl DynamicTree {
         self.counters.rebuilds += 1;
     }
 
-    /// Brings all pairs up to date by one traversal of a new tree.
-    fn flush_all(&mut self) {
-        self.rebuild();
-        for proxy in self.queue.drain(..) {
-            self.status[proxy as usize].queued = false;
-        }
-        let Self { tight, tree, pairs, pair_stack, stack, .. } = self;
-        pairs.clear();
-        self.counters.node_visits +=
-            tree.overlapping_pairs(pair_stack, stack, |a, b| pairs.insert(a, b, overlap(tight, a, b)));
-    }
-
     /// Decides again which tight boxes overlap, among the pairs of boxes that moved.
     fn refresh_moved(&mut self) {
         let Self { tight, pairs, moved, .. } = self;
@@ -124,18 +117,27 @@ impl DynamicTree {
             pairs.refresh_all(|a, b| overlap(tight, a, b));
         } else {
             for &proxy in moved.iter() {
-                pairs.refresh_of(proxy, |a, b| overlap(tight, a, b));
+                pairs.refresh_of(proxy, |partner| overlap(tight, proxy, partner));
             }
+        }
+        pairs.settle(|_| true);
+    }
+
+    /// Takes out the pairs of the queued boxes whose fat boxes are apart now.
+    fn part_queued(&mut self) {
+        let Self { fat, pairs, queue, .. } = self;
+        for &proxy in queue.iter() {
+            let b = fat[proxy as usize];
+            pairs.retain_of(proxy, |partner| fat[partner as usize].overlaps(&b));
         }
     }
 
-    /// Brings the pairs of the queued boxes up to date, one by one.
-    fn flush_queued(&mut self) {
+    /// Places the queued boxes in the tree, one by one.
+    fn place_queued(&mut self) {
         let mut too_deep = false;
         for &proxy in &self.queue {
             let fat = self.fat[proxy as usize];
             let status = &mut self.status[proxy as usize];
-            self.pairs.remove_all_of(proxy);
             if status.in_tree && self.tree.leaf_box(proxy).overlaps(&fat) {
                 // It drifts: it may hang where it hung.
                 self.tree.set_box(proxy, &fat);
@@ -149,20 +151,29 @@ impl DynamicTree {
         }
         self.changes += self.queue.len();
         self.counters.reinsertions += self.queue.len() as u64;
-        if too_deep || self.changes > self.alive {
+        if too_deep || self.changes > self.alive.max(REBUILD_MIN) {
             self.rebuild();
         }
-        let Self { tight, tree, pairs, status, stack, .. } = self;
-        for &proxy in &self.queue {
-            // Of two queued boxes the one that comes last finds the pair: the first is marked as done by then.
-            status[proxy as usize].queued = false;
-            self.counters.node_visits += tree.query(ROOT, &self.fat[proxy as usize], stack, |other| {
-                if other != proxy && !status[other as usize].queued {
+    }
+
+    /// Finds the pairs of the queued boxes that are not there yet.
+    fn pair_queued(&mut self) {
+        let Self { tight, fat, tree, pairs, queue, known, mark, stack, .. } = self;
+        for &proxy in queue.iter() {
+            *mark = mark.checked_add(1).unwrap_or_else(|| {
+                known.fill(0);
+                1
+            });
+            // Of two queued boxes the one that comes first finds the pair; the other knows it then.
+            pairs.for_each_partner_of(proxy, |partner| known[partner as usize] = *mark);
+            known[proxy as usize] = *mark;
+            self.counters.node_visits += tree.query(ROOT, &fat[proxy as usize], stack, |other| {
+                if known[other as usize] != *mark {
                     pairs.insert(proxy, other, overlap(tight, proxy, other));
                 }
             });
         }
-        self.queue.clear();
+        pairs.settle(|_| true);
     }
 }
 
@@ -180,6 +191,7 @@ impl BroadPhase for DynamicTree {
             self.status.resize(slot + 1, Status::default());
             self.tree.grow(slot + 1);
             self.pairs.grow(slot + 1);
+            self.known.resize(slot + 1, 0);
         }
         assert!(!self.status[slot].alive, "proxy {proxy} is already in use");
         self.status[slot].alive = true;
@@ -213,7 +225,7 @@ impl BroadPhase for DynamicTree {
         status.alive = false;
         if std::mem::take(&mut status.in_tree) {
             self.tree.remove(proxy);
-            self.pairs.remove_all_of(proxy);
+            self.pairs.remove_all_of(proxy, |_| {});
             self.changes += 1;
         }
         self.alive -= 1;
@@ -221,17 +233,27 @@ impl BroadPhase for DynamicTree {
     }
 
     fn flush(&mut self) {
-        self.dirty = false;
+        self.pairs.begin();
+        if !std::mem::take(&mut self.dirty) {
+            return;
+        }
+        self.refresh_moved();
         let status = &mut self.status;
         self.queue.retain(|&proxy| {
             status[proxy as usize].queued = status[proxy as usize].alive;
             status[proxy as usize].alive
         });
-        if self.queue.len() * REBUILD_AT_ONE_IN > self.alive {
-            self.flush_all();
-        } else {
-            self.refresh_moved();
-            self.flush_queued();
+        if !self.queue.is_empty() {
+            self.part_queued();
+            if self.queue.len() > REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN) {
+                self.rebuild();
+            } else {
+                self.place_queued();
+            }
+            self.pair_queued();
+        }
+        for proxy in self.queue.drain(..) {
+            self.status[proxy as usize].queued = false;
         }
         for proxy in self.moved.drain(..) {
             self.status[proxy as usize].moved = false;
@@ -240,20 +262,28 @@ impl BroadPhase for DynamicTree {
 
     fn for_each_pair(&self, visit: &mut dyn FnMut(Proxy, Proxy)) {
         assert!(!self.dirty, "boxes changed since the last flush");
-        self.pairs.for_each(|a, b, overlaps| {
-            if overlaps {
-                visit(a, b);
-            }
-        });
+        self.pairs.for_each(|_, [a, b]| visit(a, b));
     }
 
     fn for_each_partner(&self, proxy: Proxy, visit: &mut dyn FnMut(Proxy)) {
         assert!(!self.dirty, "boxes changed since the last flush");
-        self.pairs.for_each_of(proxy, |partner, overlaps| {
-            if overlaps {
-                visit(partner);
-            }
-        });
+        self.pairs.for_each_overlap_of(proxy, |_, partner| visit(partner));
+    }
+
+    fn changes(&self) -> &[PairChange] {
+        self.pairs.changes()
+    }
+
+    fn for_each_pair_of(&self, proxy: Proxy, visit: &mut dyn FnMut(PairId, Proxy)) {
+        self.pairs.for_each_shown_of(proxy, visit);
+    }
+
+    fn pair(&self, a: Proxy, b: Proxy) -> Option<PairId> {
+        self.pairs.find_shown(a, b)
+    }
+
+    fn bounds(&self, proxy: Proxy) -> &Aabb {
+        &self.tight[proxy as usize]
     }
 
     fn counters(&self) -> Counters {
@@ -274,7 +304,7 @@ impl BroadPhase for DynamicTree {
                 assert!(status.queued || status.in_tree && self.tree.leaf_box(proxy) == fat);
             }
         }
-        self.pairs.for_each(|a, b, overlaps| {
+        self.pairs.for_each_known(|[a, b], overlaps| {
             assert!(self.dirty || overlaps == overlap(&self.tight, a, b), "pair ({a}, {b}): {overlaps}");
             let (s, t) = (self.status[a as usize], self.status[b as usize]);
             assert!(s.in_tree && t.in_tree, "pair ({a}, {b}) of a box that is not there");

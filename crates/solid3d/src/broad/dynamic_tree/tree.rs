@@ -154,46 +154,6 @@ impl Tree {
         visits
     }
 
-    /// Visits all pairs of leaves whose boxes overlap, each once, by one traversal of the tree against itself; gives the
-    /// number of box-against-eight tests. `stack` and `scratch` are scratch.
-    pub fn overlapping_pairs(
-        &self,
-        stack: &mut Vec<(u32, u32)>,
-        scratch: &mut Vec<u32>,
-        mut visit: impl FnMut(Proxy, Proxy),
-    ) -> u64 {
-        let mut visits = 0;
-        stack.clear();
-        stack.push((ROOT, ROOT));
-        while let Some((first, second)) = stack.pop() {
-            let (a, b) = (&self.nodes[first as usize], &self.nodes[second as usize]);
-            for lane_a in 0..a.count() {
-                visits += 1;
-                let box_a = a.lane_box(lane_a);
-                let mut mask = b.overlap_mask(&box_a);
-                if first == second {
-                    mask &= !1 << lane_a;
-                    if let Kind::Node(below) = a.child(lane_a) {
-                        stack.push((below, below));
-                    }
-                }
-                for lane_b in lanes(mask) {
-                    match (a.child(lane_a), b.child(lane_b)) {
-                        (Kind::Leaf(p), Kind::Leaf(q)) => visit(p, q),
-                        (Kind::Node(m), Kind::Node(n)) => stack.push((m, n)),
-                        (Kind::Leaf(p), Kind::Node(n)) => {
-                            visits += self.query(n, &box_a, scratch, |q| visit(p, q));
-                        }
-                        (Kind::Node(m), Kind::Leaf(q)) => {
-                            visits += self.query(m, &b.lane_box(lane_b), scratch, |p| visit(p, q));
-                        }
-                    }
-                }
-            }
-        }
-        visits
-    }
-
     /// Checks boxes, links and depth; gives the number of leaves.
     pub fn validate(&self) -> usize {
         let (mut leaves, mut seen) = (0, 0);

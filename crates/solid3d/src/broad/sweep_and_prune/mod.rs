@@ -16,7 +16,7 @@
 mod endpoint;
 mod pair_set;
 
-use super::{BroadPhase, Counters, Proxy, assert_valid};
+use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid};
 use crate::bounds::Aabb;
 use endpoint::{Endpoint, Sequence, Side};
 use pair_set::PairSet;
@@ -60,7 +60,7 @@ pub struct SweepAndPrune {
     states: Vec<State>,
     /// The three sorted sequences, over exactly the proxies `Present`, `Gone` and `Stale`.
     sequences: [Sequence; 3],
-    /// The pairs of `Present` boxes that overlap, exactly; pairs of `Gone` or `Stale` ones are rubbish until flushed.
+    /// The pairs of `Present` boxes that overlap, exactly; none of others does.
     pairs: PairSet,
     /// Proxies that were made `New` or `Stale`, perhaps more than once, since the last flush.
     pending: Vec<Proxy>,
@@ -83,7 +83,7 @@ impl SweepAndPrune {
     /// Swaps the six endpoints of a `Present` box to their places.
     fn move_endpoints(&mut self, proxy: Proxy, bounds: Aabb) {
         let old = std::mem::replace(&mut self.boxes[proxy as usize], bounds);
-        let Self { boxes, sequences, pairs, .. } = self;
+        let Self { boxes, states, sequences, pairs, .. } = self;
         let mut swaps = 0;
         for (axis, sequence) in sequences.iter_mut().enumerate() {
             // Growing moves come before shrinking ones. So the box's own endpoints never pass each other, and
@@ -91,7 +91,7 @@ impl SweepAndPrune {
             let (lower, upper) = (bounds.min[axis], bounds.max[axis]);
             let mut begin = |q: Proxy| {
                 // All coordinates of both boxes are in place here, so this decision is final for this move.
-                if bounds.overlaps(&boxes[q as usize]) {
+                if states[q as usize] == State::Present && bounds.overlaps(&boxes[q as usize]) {
                     pairs.insert(proxy, q);
                 }
             };
@@ -113,14 +113,13 @@ impl SweepAndPrune {
         self.counters.swaps += swaps;
     }
 
-    /// Takes the endpoints and pairs of `Gone` and `Stale` proxies out.
+    /// Takes the endpoints of `Gone` and `Stale` proxies out.
     fn compact(&mut self) {
-        let Self { states, sequences, pairs, .. } = self;
+        let Self { states, sequences, .. } = self;
         let stays = |p: Proxy| states[p as usize] == State::Present;
         for sequence in sequences.iter_mut() {
             sequence.retain(stays);
         }
-        pairs.retain(|a, b| stays(a) && stays(b));
         for state in states.iter_mut() {
             match *state {
                 State::Gone => *state = State::Absent,
@@ -215,6 +214,7 @@ impl BroadPhase for SweepAndPrune {
         if slot >= self.boxes.len() {
             self.boxes.resize(slot + 1, Aabb::EMPTY);
             self.states.resize(slot + 1, State::Absent);
+            self.pairs.grow(slot + 1);
         }
         match self.states[slot] {
             State::Absent => self.states[slot] = State::New,
@@ -236,6 +236,7 @@ impl BroadPhase for SweepAndPrune {
                 if self.boxes[proxy as usize] != bounds {
                     self.boxes[proxy as usize] = bounds;
                     self.states[proxy as usize] = State::Stale;
+                    self.pairs.end_all_of(proxy);
                     self.pending.push(proxy);
                     self.to_compact = true;
                 }
@@ -250,6 +251,7 @@ impl BroadPhase for SweepAndPrune {
             State::New => self.states[proxy as usize] = State::Absent,
             State::Present | State::Stale => {
                 self.states[proxy as usize] = State::Gone;
+                self.pairs.remove_all_of(proxy);
                 self.to_compact = true;
             }
             State::Absent | State::Gone => panic!("proxy {proxy} is not in use"),
@@ -265,6 +267,7 @@ impl BroadPhase for SweepAndPrune {
             self.admit_pending();
         }
         self.swaps_in_frame = 0;
+        self.pairs.settle();
     }
 
     fn for_each_pair(&self, visit: &mut dyn FnMut(Proxy, Proxy)) {
@@ -272,11 +275,33 @@ impl BroadPhase for SweepAndPrune {
         self.pairs.for_each(visit);
     }
 
+    fn for_each_partner(&self, proxy: Proxy, visit: &mut dyn FnMut(Proxy)) {
+        assert!(self.pending.is_empty() && !self.to_compact, "boxes changed since the last flush");
+        self.pairs.for_each_overlap_of(proxy, visit);
+    }
+
+    fn changes(&self) -> &[PairChange] {
+        self.pairs.lists.changes()
+    }
+
+    fn for_each_pair_of(&self, proxy: Proxy, visit: &mut dyn FnMut(PairId, Proxy)) {
+        self.pairs.lists.for_each_shown_of(proxy, visit);
+    }
+
+    fn pair(&self, a: Proxy, b: Proxy) -> Option<PairId> {
+        self.pairs.lists.find_shown(a, b)
+    }
+
+    fn bounds(&self, proxy: Proxy) -> &Aabb {
+        &self.boxes[proxy as usize]
+    }
+
     fn counters(&self) -> Counters {
         self.counters
     }
 
     fn validate(&self) {
+        self.pairs.validate();
         let has_endpoints =
             |p: Proxy| matches!(self.states[p as usize], State::Present | State::Gone | State::Stale);
         let expected = (0..self.states.len() as Proxy).filter(|&p| has_endpoints(p)).count();
@@ -302,10 +327,8 @@ impl BroadPhase for SweepAndPrune {
         self.pairs.for_each(&mut |a, b| {
             assert!(a < b);
             let present = self.state(a) == State::Present && self.state(b) == State::Present;
-            assert!(present || self.to_compact, "pair ({a}, {b}) of a box that is not there");
-            if present {
-                assert!(self.boxes[a as usize].overlaps(&self.boxes[b as usize]), "pair ({a}, {b}) is apart");
-            }
+            assert!(present, "pair ({a}, {b}) of a box that is not there");
+            assert!(self.boxes[a as usize].overlaps(&self.boxes[b as usize]), "pair ({a}, {b}) is apart");
         });
         let in_use = self.states.iter().filter(|s| !matches!(s, State::Absent | State::Gone)).count();
         assert_eq!(in_use as u64, self.alive);

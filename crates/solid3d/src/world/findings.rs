@@ -1,0 +1,118 @@
+//! What the last test found, in order, and what changed since the last frame ended.
+
+use super::ordered::Ordered;
+use super::{Collision, Contact, Event, EventKind, ObjectId, PairKey, When};
+
+/// A collision in the findings.
+pub(super) type FindingId = u32;
+
+#[derive(Debug)]
+struct Finding {
+    key: PairKey,
+    collision: Collision,
+}
+
+/// The collisions, kept from test to test: what is told is what changed.
+#[derive(Debug, Default)]
+pub(super) struct Findings {
+    order: Ordered<FindingId>,
+    findings: Vec<Finding>,
+    /// Places in `findings` that are free.
+    unused: Vec<FindingId>,
+    /// Pairs that collide and did not when the last frame ended.
+    began: Ordered<()>,
+    /// Pairs that do not collide and did when the last frame ended.
+    ended: Ordered<(ObjectId, ObjectId)>,
+}
+
+impl Findings {
+    pub fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Adds a collision of a pair that had none.
+    pub fn add(&mut self, key: PairKey, collision: Collision) -> FindingId {
+        if self.ended.remove(key).is_none() {
+            self.began.insert(key, ());
+        }
+        let finding = Finding { key, collision };
+        let id = match self.unused.pop() {
+            Some(id) => {
+                self.findings[id as usize] = finding;
+                id
+            }
+            None => {
+                self.findings.push(finding);
+                self.findings.len() as FindingId - 1
+            }
+        };
+        self.order.insert(key, id);
+        id
+    }
+
+    /// The same pair collides in another way.
+    pub fn replace(&mut self, id: FindingId, when: When, contact: Contact) {
+        let collision = &mut self.findings[id as usize].collision;
+        (collision.when, collision.contact) = (when, contact);
+    }
+
+    pub fn collision(&self, id: FindingId) -> &Collision {
+        &self.findings[id as usize].collision
+    }
+
+    /// Takes out a collision that is no more.
+    pub fn remove(&mut self, id: FindingId) {
+        let Finding { key, collision } = &mut self.findings[id as usize];
+        // What a curve holds is not kept in an unused place.
+        collision.contact = Contact::Simple;
+        self.order.remove(*key);
+        if self.began.remove(*key).is_none() {
+            self.ended.insert(*key, (collision.a, collision.b));
+        }
+        self.unused.push(id);
+    }
+
+    /// The collisions, in order.
+    pub fn iter(&self) -> impl Iterator<Item = &Collision> {
+        self.order.iter().map(|(_, id)| self.collision(id))
+    }
+
+    /// The first collision beyond a pair.
+    pub fn beyond(&self, last: Option<PairKey>) -> Option<(PairKey, &Collision)> {
+        self.order.beyond(last).map(|(key, id)| (key, self.collision(id)))
+    }
+
+    /// Ends the frame.
+    pub fn proceed(&mut self) {
+        self.began.clear();
+        self.ended.clear();
+    }
+
+    /// What became of every pair that collides or did when the last frame ended.
+    pub fn events(&self) -> impl Iterator<Item = Event> {
+        let mut began = self.began.iter().map(|(key, ())| key).peekable();
+        let colliding = self.order.iter().map(move |(key, id)| {
+            let kind = match began.next_if_eq(&key) {
+                Some(_) => EventKind::Began,
+                None => EventKind::Persists,
+            };
+            let Collision { a, b, .. } = *self.collision(id);
+            (key, Event { a, b, kind })
+        });
+        let ended = self.ended.iter().map(|(key, (a, b))| (key, Event { a, b, kind: EventKind::Ended }));
+        merged(colliding, ended).map(|(_, event)| event)
+    }
+}
+
+/// Two sequences in ascending order as one.
+fn merged<T>(
+    first: impl Iterator<Item = (PairKey, T)>,
+    second: impl Iterator<Item = (PairKey, T)>,
+) -> impl Iterator<Item = (PairKey, T)> {
+    let (mut first, mut second) = (first.peekable(), second.peekable());
+    std::iter::from_fn(move || match (first.peek(), second.peek()) {
+        (Some((one, _)), Some((other, _))) if one > other => second.next(),
+        (None, _) => second.next(),
+        _ => first.next(),
+    })
+}

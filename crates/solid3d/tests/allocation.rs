@@ -1,0 +1,87 @@
+//! A frame like those before it allocates nothing. One test in a process of its own: what is counted is all that the process
+//! does.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::alloc::System;
+
+use glam::{DAffine3, DQuat, DVec3};
+use solid3d::{
+    Boxes, BroadPhaseKind, Collision, Motion, Response, Shape, TestProgress, World, WorldOptions, glam,
+};
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// The frames after which what an object does comes again.
+const PERIOD: usize = 30;
+
+/// Two rings of triangles.
+fn band() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let at = |i: u32, y: f64| DQuat::from_rotation_y(f64::from(i) * 0.5) * DVec3::new(0.5, y, 0.0);
+    let vertices = (0..12).flat_map(|i| [at(i, 0.0), at(i, 0.4)]).collect();
+    let triangles = (0..11).flat_map(|i| [[2 * i, 2 * i + 1, 2 * i + 2], [2 * i + 1, 2 * i + 3, 2 * i + 2]]);
+    (vertices, triangles.collect())
+}
+
+/// Where an object is in a frame: most go to and fro, so that pairs begin and end.
+fn place(i: usize, frame: usize) -> DAffine3 {
+    let turn = std::f64::consts::TAU * (frame % PERIOD) as f64 / PERIOD as f64;
+    let home = DVec3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64) * 0.9;
+    let reach = [0.0, 0.02, 0.3, 3.0][i % 4];
+    DAffine3::from_rotation_translation(
+        DQuat::from_rotation_x(turn),
+        home + reach * DVec3::new(turn.sin(), turn.cos(), 0.0),
+    )
+}
+
+#[test]
+fn a_frame_like_those_before_allocates_nothing() {
+    let (vertices, triangles) = band();
+    let shapes = [
+        Shape::sphere(0.5).unwrap(),
+        Shape::cuboid([0.8, 0.7, 0.6]).unwrap(),
+        Shape::convex_hull(&vertices).unwrap(),
+        Shape::mesh(vertices.clone(), triangles).unwrap(),
+        Shape::capsule(0.3, 0.5).unwrap(),
+    ];
+    let defaults = WorldOptions::default;
+    let options = [
+        defaults(),
+        WorldOptions { default_response: Response::Smart, ..defaults() },
+        WorldOptions { motion: Motion::Swept, boxes: Boxes::FixedSize, ..defaults() },
+        WorldOptions { broad_phase: BroadPhaseKind::SweepAndPrune, caching: false, ..defaults() },
+    ];
+    for options in options {
+        let mut world = World::with_options(&options);
+        let ids: Vec<_> =
+            (0..200).map(|i| world.add(&shapes[i % shapes.len()], place(i, 0)).unwrap()).collect();
+        let mut collisions: Vec<Collision> = Vec::new();
+        let mut run = |frames: std::ops::Range<usize>| {
+            let (mut found, mut changed) = (0, 0);
+            for frame in frames {
+                for (i, &id) in ids.iter().enumerate() {
+                    world.set_placement(id, place(i, frame)).unwrap();
+                }
+                world.test_into(&mut collisions);
+                let mut progress = TestProgress::default();
+                let mut again = 0;
+                while world.test_next(&mut progress).is_some() {
+                    again += 1;
+                }
+                assert_eq!(again, collisions.len());
+                found += collisions.len();
+                changed += world.events().filter(|event| event.kind != solid3d::EventKind::Persists).count();
+                world.proceed();
+            }
+            (found, changed)
+        };
+        // Until everything has grown as much as it will.
+        run(0..10 * PERIOD);
+        let region = Region::new(ALLOCATOR);
+        let (found, changed) = run(10 * PERIOD..13 * PERIOD);
+        let change = region.change();
+        assert!(found > 1000 && changed > 100, "{found} collisions, {changed} began or ended");
+        assert_eq!((change.allocations, change.reallocations), (0, 0), "{options:?}: {change:?}");
+    }
+}
