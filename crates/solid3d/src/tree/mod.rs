@@ -21,6 +21,7 @@
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
+//! | `ray` | queries along a ray or for a moving box, nearest first |
 //! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
 //!
 //! # Laws
@@ -44,6 +45,7 @@ mod normal;
 mod overlap;
 mod packed;
 mod pairs;
+mod ray;
 mod refit;
 mod relative;
 mod split;
@@ -60,6 +62,7 @@ pub use nearest_pairs::nearest_pairs;
 pub use node::{LEAF_SIZE, PRIMITIVES_MAX};
 pub use normal::COORDINATE_MAX;
 pub use pairs::pairs;
+pub use ray::TreeRay;
 pub use relative::{PlacedBox, Relative};
 pub use traversal::{Counters, Traversal};
 
