@@ -10,14 +10,18 @@
 //! that [`intersects`] keeps apart. See
 //! [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR).
 
+mod ray;
+
 use glam::{DAffine3, DVec3};
 
 use crate::bounds::Aabb;
 use crate::error::Result;
 use crate::pair::{self, Placed, Relation, Scratch};
+pub use crate::pair::{Faces, FromInside, Ray, RayHit, RayOptions, SurfaceHit};
 pub use crate::pair::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 use crate::placement;
 use crate::shape::Shape;
+pub use ray::{cast_ray, cast_ray_all, ray_meets};
 
 /// The distance of two placed shapes, with their closest points.
 #[derive(Clone, Copy, Debug, PartialEq)]

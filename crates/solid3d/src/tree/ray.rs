@@ -102,7 +102,8 @@ impl Probe {
         let low = (origin - half).to_array().map(|x| round_down(x.max(-ENDLESS)));
         let high = (origin + half).to_array().map(|x| -round_down(-x.min(ENDLESS)));
         let direction = direction.to_array().map(|d| d.abs().max(DIRECTION_MIN).copysign(d));
-        let from = |ahead: bool| [0, 1, 2].map(|i| if (direction[i] > 0.0) == ahead { high[i] } else { low[i] });
+        let from =
+            |ahead: bool| [0, 1, 2].map(|i| if (direction[i] > 0.0) == ahead { high[i] } else { low[i] });
         Some(Probe {
             enter_from: from(true),
             leave_from: from(false),
@@ -187,7 +188,12 @@ impl Tree {
                     let (hits, enters) = entries(simd, node, probe, left);
                     let from = stack.len();
                     for lane in bits(hits) {
-                        push_unless_far((f64::from(enters[lane]), node.child[lane]), f64::INFINITY, stack, from);
+                        push_unless_far(
+                            (f64::from(enters[lane]), node.child[lane]),
+                            f64::INFINITY,
+                            stack,
+                            from,
+                        );
                     }
                 }
             }
