@@ -7,6 +7,7 @@
 //!
 //! Placements were checked by the caller.
 
+mod cast;
 mod complex_complex;
 mod complex_convex;
 mod containment;
@@ -23,11 +24,12 @@ mod table;
 
 use glam::{DAffine3, DVec3};
 
+pub(crate) use cast::cast;
 pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;
 pub use ray::{Faces, FromInside, Ray, RayHit, RayOptions, SurfaceHit};
-pub(crate) use ray::{Hits, Wanted, ray_hits};
+pub(crate) use ray::{Hits, Wanted, approach, ray_hits};
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};

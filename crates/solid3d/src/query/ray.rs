@@ -43,7 +43,7 @@ pub fn cast_ray(
     ray: &Ray,
     options: &RayOptions,
 ) -> Result<Option<RayHit>> {
-    Ok(cast(shape, placement, ray, options, Wanted::First)?.found.pop())
+    Ok(cast(shape, placement, ray, options, Wanted::First)?.found)
 }
 
 /// All places where a ray or segment meets the surface of a placed shape, in the order of `t`, then of primitives. Where it
@@ -81,7 +81,7 @@ pub fn cast_ray_all(
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn ray_meets(shape: &Shape, placement: &DAffine3, ray: &Ray, options: &RayOptions) -> Result<bool> {
-    Ok(!cast(shape, placement, ray, options, Wanted::Any)?.found.is_empty())
+    Ok(cast(shape, placement, ray, options, Wanted::Any)?.found.is_some())
 }
 
 fn cast<'r>(

@@ -21,7 +21,7 @@
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
-//! | `ray` | queries along a ray or for a moving box, nearest first |
+//! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
 //! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
 //!
 //! # Laws
@@ -34,6 +34,7 @@
 //! 5. Every order is a function of the input alone.
 
 mod build;
+mod cast_pairs;
 mod cost;
 mod crossing;
 mod lanes;
@@ -56,7 +57,9 @@ mod validate;
 mod tests;
 
 pub use build::DEPTH_MAX;
+pub use cast_pairs::cast_pairs;
 pub use cost::DEGRADED_RATIO;
+pub(crate) use lanes::bits;
 pub use metric::PairMetric;
 pub use nearest_pairs::nearest_pairs;
 pub use node::{LEAF_SIZE, PRIMITIVES_MAX};

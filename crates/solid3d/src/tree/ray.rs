@@ -21,6 +21,7 @@ use super::nearest::push_unless_far;
 use super::node::{Child, Kind, Node, WIDTH};
 use super::normal::round_down;
 use super::{Traversal, Tree};
+use crate::Aabb;
 
 /// A ray, or a box that moves along one, in the space of the tree: what is within `half_extents` of
 /// `origin + t * direction` for some `t >= 0`.
@@ -51,6 +52,16 @@ pub struct TreeRay {
     pub half_extents: DVec3,
 }
 
+impl TreeRay {
+    /// A lower bound of the parameter at which it meets a box, beyond 0; `None` when it surely does not.
+    pub(crate) fn reaches(&self, bounds: &Aabb) -> Option<f64> {
+        let half = bounds.half_extents() + self.half_extents;
+        let offset = self.origin - bounds.center();
+        let margin = ROUNDING_F64 * (self.origin.abs() + bounds.center().abs() + half);
+        entry(offset, self.direction, half + margin)
+    }
+}
+
 /// Rounding of the two ends of an interval, relative: six times 2^-24, and some.
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
@@ -68,6 +79,9 @@ const FAR_AWAY: f64 = 4.0;
 
 /// What is beyond is as good as endless, and its products do not overflow in `f32`.
 const ENDLESS: f64 = 1e20;
+
+/// Room for the entries of most rays, so that memory is asked for once.
+const STACK: usize = 64;
 
 /// A ray in tree coordinates, ready for lanes.
 struct Probe {
@@ -169,6 +183,7 @@ impl Tree {
     ) {
         let Traversal { counters, near: stack, .. } = traversal;
         stack.clear();
+        stack.reserve(STACK);
         stack.push((0.0, Child::inner(0)));
         let mut left = probe.until(*until);
         while let Some((enter, child)) = stack.pop() {
@@ -226,7 +241,6 @@ fn entries<S: Simd>(simd: S, node: &Node, probe: &Probe, left: f32) -> (u32, [f3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Aabb;
     use crate::tree::tests::scenes::{point, random_boxes, rng};
     use rand::Rng;
 

@@ -11,6 +11,7 @@
 
 mod build;
 mod fat_box;
+mod nearest;
 mod node;
 mod pair_pool;
 mod tree;
@@ -254,6 +255,15 @@ impl BroadPhase for DynamicTree {
                 visit(partner);
             }
         });
+    }
+
+    fn for_each_nearest(
+        &self,
+        bound: &dyn Fn(&Aabb) -> f64,
+        until: f64,
+        visit: &mut dyn FnMut(Proxy) -> f64,
+    ) {
+        self.visit_nearest(bound, until, visit);
     }
 
     fn counters(&self) -> Counters {

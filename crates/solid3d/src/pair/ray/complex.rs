@@ -8,12 +8,12 @@ use super::super::containment::PlacedSolid;
 use super::super::frame::Frame;
 use super::super::table::PlacedComplex;
 use super::convex::hull_hits;
-use super::triangle::{Shear, TriangleHit};
+use super::triangle::{Corners, LANES, Shear, TriangleHit};
 use super::{FromInside, Hits, SurfaceHit, world_normal};
 use crate::bounds::Aabb;
 use crate::placement::inverse_linear;
 use crate::shape::Complex;
-use crate::tree::TreeRay;
+use crate::tree::{TreeRay, bits};
 use crate::triangle_triangle::Triangle;
 
 /// A ray in the space of a complex shape, moved up to it.
@@ -35,11 +35,12 @@ pub(super) fn hits((complex, at): PlacedComplex, hits: &mut Hits, scratch: &mut 
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let mut left = hits.until - ray.start;
     complex.tree().along(&tree_ray, &mut left, traversal, |leaf, left| {
-        for &primitive in leaf {
-            *primitive_tests += 1;
-            match triangle(complex, primitive) {
-                Some(triangle) => ray.meet(&triangle, complex.owner(primitive), hits),
-                None => hull_hits(&complex.primitive_hull(primitive), at, complex.owner(primitive), hits),
+        *primitive_tests += leaf.len() as u64;
+        if let Some(triangles) = complex.triangles() {
+            ray.meet_leaf(complex.vertices(), triangles, leaf, hits);
+        } else {
+            for &primitive in leaf {
+                ray.meet_primitive((complex, at), primitive, hits);
             }
         }
         *left = if hits.until < 0.0 { -1.0 } else { (hits.until - ray.start).max(0.0) };
@@ -87,6 +88,31 @@ impl LocalRay {
         Some(LocalRay { origin, direction, start, shear, to_local })
     }
 
+    /// Adds where the ray meets the triangles of a leaf: eight at once sort out most of those that it does not.
+    #[inline]
+    fn meet_leaf(&self, vertices: &[DVec3], triangles: &[[u32; 3]], leaf: &[u32], hits: &mut Hits) {
+        let corner = |i: u32| &vertices[i as usize];
+        for some in leaf.chunks(LANES) {
+            let mut corners = Corners::default();
+            for (lane, &primitive) in some.iter().enumerate() {
+                self.shear.put(&mut corners, lane, triangles[primitive as usize].map(corner));
+            }
+            for lane in bits(self.shear.candidates(&corners) & ((1 << some.len()) - 1)) {
+                let triangle = triangles[some[lane] as usize].map(|i| *corner(i));
+                self.meet(&triangle, some[lane], hits);
+            }
+        }
+    }
+
+    /// Adds where the ray meets a primitive of any kind.
+    fn meet_primitive(&self, (complex, at): PlacedComplex, primitive: u32, hits: &mut Hits) {
+        let owner = complex.owner(primitive);
+        match triangle(complex, primitive) {
+            Some(triangle) => self.meet(&triangle, owner, hits),
+            None => hull_hits(&complex.primitive_hull(primitive), at, owner, hits),
+        }
+    }
+
     /// Adds where the ray meets a triangle.
     #[inline]
     fn meet(&self, triangle: &Triangle, primitive: u32, hits: &mut Hits) {
@@ -129,7 +155,7 @@ fn roomy(bounds: &Aabb, origin: DVec3) -> Aabb {
 }
 
 /// When a ray comes into a box, 0 when it starts there; `None` when it passes it.
-fn approach(bounds: &Aabb, origin: DVec3, direction: DVec3) -> Option<f64> {
+pub(crate) fn approach(bounds: &Aabb, origin: DVec3, direction: DVec3) -> Option<f64> {
     let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {
         let (p, d, min, max) = (origin[axis], direction[axis], bounds.min[axis], bounds.max[axis]);

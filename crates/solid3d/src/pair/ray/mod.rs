@@ -5,6 +5,7 @@ mod complex;
 mod convex;
 mod triangle;
 
+pub(crate) use complex::approach;
 use glam::{DMat3, DVec3};
 
 use super::{Placed, Scratch};
@@ -165,17 +166,20 @@ pub(crate) struct Hits<'r> {
     pub wanted: Wanted,
     /// The greatest `t` that is still of interest; negative when nothing is.
     pub until: f64,
-    pub found: Vec<RayHit>,
+    /// The best, or the last.
+    pub found: Option<RayHit>,
+    /// All, when all are wanted.
+    all: Vec<RayHit>,
 }
 
 impl<'r> Hits<'r> {
     pub fn new(ray: &'r Ray, options: &'r RayOptions, wanted: Wanted) -> Self {
-        Hits { ray, options, wanted, until: ray.max, found: Vec::new() }
+        Hits { ray, options, wanted, until: ray.max, found: None, all: Vec::new() }
     }
 
     /// Whether a hit on the surface is of interest.
     fn wants(&self, t: f64, primitive: u32) -> bool {
-        let first = match (self.wanted, self.found.last()) {
+        let first = match (self.wanted, &self.found) {
             (Wanted::First, Some(best)) => {
                 t < best.t || best.surface.is_some_and(|surface| primitive < surface.primitive)
             }
@@ -185,15 +189,14 @@ impl<'r> Hits<'r> {
     }
 
     fn add(&mut self, t: f64, surface: Option<SurfaceHit>) {
+        let hit = RayHit { t, point: self.ray.at(t), surface };
         match self.wanted {
-            Wanted::First => {
-                self.until = t;
-                self.found.clear();
-            }
+            // Nothing comes before what has no surface.
+            Wanted::First => self.until = if surface.is_some() { t } else { -1.0 },
             Wanted::Any => self.until = -1.0,
-            Wanted::All => {}
+            Wanted::All => self.all.push(hit),
         }
-        self.found.push(RayHit { t, point: self.ray.at(t), surface });
+        self.found = Some(hit);
     }
 
     /// The ray starts inside of a solid.
@@ -206,8 +209,8 @@ impl<'r> Hits<'r> {
     /// All in order.
     pub fn sorted(mut self) -> Vec<RayHit> {
         let primitive = |hit: &RayHit| hit.surface.map(|surface| surface.primitive);
-        self.found.sort_by(|x, y| x.t.total_cmp(&y.t).then(primitive(x).cmp(&primitive(y))));
-        self.found
+        self.all.sort_by(|x, y| x.t.total_cmp(&y.t).then(primitive(x).cmp(&primitive(y))));
+        self.all
     }
 }
 

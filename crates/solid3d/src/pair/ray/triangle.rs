@@ -5,7 +5,9 @@
 //! that share it see the same point of the plane; then the signs of the edges are exact. So whatever surrounds the ray is hit:
 //! none slips between triangles that share an edge or a corner, nor through a closed mesh.
 
+use fearless_simd::{Simd, SimdBase, SimdMask, dispatch, f64x8};
 use glam::{DVec2, DVec3};
+use solid_convex::simd;
 
 use crate::exact::orient2d;
 use crate::triangle_triangle::Triangle;
@@ -32,6 +34,12 @@ pub(super) struct TriangleHit {
     pub back: Option<bool>,
 }
 
+/// Triangles that are looked at together.
+pub(super) const LANES: usize = 8;
+
+/// The corners of eight triangles: for each corner and each axis, those of a [`Shear`], the coordinates.
+pub(super) type Corners = [[[f64; LANES]; 3]; 3];
+
 /// Rounding of a determinant of two products is below this times the sum of their magnitudes.
 const DETERMINANT_ERROR: f64 = 2.0 * f64::EPSILON;
 
@@ -44,6 +52,45 @@ impl Shear {
         let axes = if direction[main] < 0.0 { [last, next, main] } else { [next, last, main] };
         let shear = DVec2::new(direction[axes[0]], direction[axes[1]]) / direction[main];
         Shear { origin, axes, shear, scale, depth_to_t: 1.0 / scale / direction[main] }
+    }
+
+    /// Puts a triangle into a lane.
+    #[inline]
+    pub fn put(&self, corners: &mut Corners, lane: usize, triangle: [&DVec3; 3]) {
+        for (rows, corner) in corners.iter_mut().zip(triangle) {
+            let p = corner.to_array();
+            for (row, axis) in rows.iter_mut().zip(self.axes) {
+                row[lane] = p[axis];
+            }
+        }
+    }
+
+    /// The triangles that may be hit, as bits: of the others two edges surely pass the ray on different sides.
+    #[inline]
+    pub fn candidates(&self, corners: &Corners) -> u32 {
+        dispatch!(simd::level(), simd => self.candidates_on(simd, corners))
+    }
+
+    #[inline(always)]
+    fn candidates_on<S: Simd>(&self, simd: S, corners: &Corners) -> u32 {
+        let splat = |x: f64| f64x8::splat(simd, x);
+        let origin = self.axes.map(|axis| splat(self.origin[axis]));
+        let (scale, shear) = (splat(self.scale), [splat(self.shear.x), splat(self.shear.y)]);
+        // The same operations as for one.
+        let points = [0, 1, 2].map(|i| {
+            let row = |axis: usize| (f64x8::from_slice(simd, &corners[i][axis]) - origin[axis]) * scale;
+            let depth = row(2);
+            [row(0) - shear[0] * depth, row(1) - shear[1] * depth]
+        });
+        let error = splat(DETERMINANT_ERROR);
+        let sides = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| {
+            let (x, y) = (points[i][0] * points[j][1], points[i][1] * points[j][0]);
+            (x - y, error * (x.abs() + y.abs()))
+        });
+        let left = sides.map(|(area, doubt)| area.simd_gt(doubt));
+        let right = sides.map(|(area, doubt)| (-area).simd_gt(doubt));
+        let missed = (left[0] | left[1] | left[2]) & (right[0] | right[1] | right[2]);
+        !(missed.to_bitmask() as u32) & ((1 << LANES) - 1)
     }
 
     fn point(&self, p: DVec3) -> DVec3 {
@@ -82,7 +129,9 @@ impl Shear {
             return self.edge_on([a, b, c]);
         }
         let barycentric = areas.map(|area| area / sum);
-        let t = (barycentric[0] * a.z + barycentric[1] * b.z + barycentric[2] * c.z) * self.depth_to_t;
+        // Divided last: from a triangle on a lattice a ray that starts on it has no way to go, exactly.
+        let depth = (areas[0] * a.z + areas[1] * b.z + areas[2] * c.z) / sum;
+        let t = depth * self.depth_to_t;
         (t >= 0.0).then_some(TriangleHit { t, barycentric, back: Some(left) })
     }
 
@@ -135,24 +184,31 @@ mod tests {
         let seed = 81;
         println!("seed {seed}");
         let mut rng = seeded(seed);
-        let (cases, mut hits, mut edge_on) = (60_000, 0, 0);
-        for _ in 0..cases {
+        let (cases, mut hits, mut edge_on) = (60_000u32, 0, 0);
+        for case in 0..cases {
             let mut lattice = |end: i32| {
                 DVec3::from_array(std::array::from_fn(|_| f64::from(rng.random_range(-end..=end))))
             };
             let triangle = [lattice(2), lattice(2), lattice(2)];
-            let (origin, mut direction) = (lattice(3), lattice(4));
+            let mut direction = if case % 4 == 0 { triangle[1] - triangle[0] } else { lattice(4) };
             let greatest = direction.abs().max_element();
             if ![1.0, 2.0, 4.0].contains(&greatest) {
                 direction = DVec3::new(1.0, -0.5, 0.25);
             }
+            // Half of them at a point of the triangle: a corner, on an edge, inside.
+            let [mut target, back] = [lattice(3), lattice(2)];
+            if case % 2 == 0 {
+                let weights = [[4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [2.0, 1.0, 1.0]][case as usize / 2 % 3];
+                target = (0..3).map(|i| triangle[i] * (weights[i] / 4.0)).sum();
+            }
+            let origin = target - direction * back.x.abs();
             let end = origin + direction * 16.0;
             let expected = triangles_intersect(&triangle, &[origin, end, end]);
             let found = Shear::new(origin, direction, 1.0).hit(&triangle);
             assert_eq!(found.is_some(), expected, "{triangle:?} {origin} {direction} {found:?}");
             if let Some(hit) = found {
                 hits += 1;
-                edge_on += i32::from(hit.back.is_none());
+                edge_on += u32::from(hit.back.is_none());
                 let at = origin + direction * hit.t;
                 let weighed: DVec3 = (0..3).map(|i| triangle[i] * hit.barycentric[i]).sum();
                 assert!((at - weighed).length() < 1e-12, "{triangle:?} {origin} {direction} {hit:?}");
@@ -164,7 +220,41 @@ mod tests {
             }
         }
         println!("{hits} of {cases} hit, {edge_on} edge on");
-        assert!(hits > cases / 20 && edge_on > 1000);
+        assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))) && edge_on > 1000);
+    }
+
+    /// Eight at once, on every level of instructions, are those that one by one may be hit.
+    #[test]
+    fn candidates_are_the_same_on_every_level() {
+        let mut rng = seeded(83);
+        let (mut candidates, mut hits) = (0, 0);
+        for case in 0..5000 {
+            let grid = if case % 2 == 0 { 2.0 } else { 1e9 };
+            let mut random = || {
+                let coordinate = |_| f64::round(rng.random_range(-1.0..1.0) * grid) / grid;
+                DVec3::from_array(std::array::from_fn(coordinate))
+            };
+            let triangles: [Triangle; LANES] = std::array::from_fn(|_| [random(), random(), random()]);
+            let [a, b, c] = triangles[case as usize % LANES];
+            let origin = random() * 3.0;
+            let shear = Shear::new(origin, (a + b + c) / 3.0 - origin, 1.0);
+            let mut corners = Corners::default();
+            for (lane, triangle) in triangles.iter().enumerate() {
+                shear.put(&mut corners, lane, triangle.each_ref());
+            }
+            let found =
+                simd::levels().map(|level| dispatch!(level, simd => shear.candidates_on(simd, &corners)));
+            assert!(found.iter().all(|mask| *mask == found[0]));
+            for (lane, triangle) in triangles.iter().enumerate() {
+                let hit = shear.hit(triangle).is_some();
+                let candidate = found[0] >> lane & 1 == 1;
+                assert!(candidate || !hit, "case {case}: {triangle:?}");
+                candidates += u32::from(candidate);
+                hits += u32::from(hit);
+            }
+        }
+        println!("{candidates} of 40000 are candidates, {hits} hit");
+        assert!(hits > 5000 && candidates < 20_000);
     }
 
     /// Rays at the shared corner and the edges of a fan: one of the triangles is hit, always, however the ray is rounded.
