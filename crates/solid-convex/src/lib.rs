@@ -20,6 +20,7 @@
 //!
 //! This crate knows no tree and no world; `solid3d` builds on it.
 
+mod chord;
 mod difference;
 pub mod epa;
 pub mod gjk;
@@ -29,8 +30,9 @@ mod simplex;
 mod size;
 mod support;
 
+pub use chord::{Chord, End, Line};
 pub use epa::Penetration;
-pub use gjk::{Closest, Outcome, Witness};
+pub use gjk::{Closest, Impact, Outcome, Witness};
 pub use kinds::{Capsule, Cone, Cuboid, Cylinder, IndexedPoints, Points, Polytope, Sphere};
 pub use size::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError, unit_scale};
 pub use support::Support;

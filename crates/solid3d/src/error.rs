@@ -130,6 +130,36 @@ pub enum Error {
         /// The shape's kind.
         kind: crate::ShapeKind,
     },
+    /// A point or a vector has a coordinate that is not finite, or too large.
+    #[error(
+        "{argument} is {}; each coordinate must be finite and at most {MAGNITUDE_MAX:e} in magnitude",
+        coordinates(value)
+    )]
+    Coordinates {
+        /// The argument's name.
+        argument: &'static str,
+        /// Its value.
+        value: DVec3,
+    },
+    /// A direction is zero, or too short to be one.
+    #[error(
+        "{argument} is {}; it needs a coordinate of at least {MAGNITUDE_MIN:e} in magnitude",
+        coordinates(value)
+    )]
+    NoDirection {
+        /// The argument's name.
+        argument: &'static str,
+        /// Its value.
+        value: DVec3,
+    },
+    /// A limit is negative or not a number.
+    #[error("{argument} is {value:?}; it must be at least 0")]
+    Negative {
+        /// The argument's name.
+        argument: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// A placement has an entry that is not finite, or too large.
     #[error(
         "placement has the entry {value:?}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"

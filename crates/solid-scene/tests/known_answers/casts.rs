@@ -1,7 +1,7 @@
-//! A mesh that moves in a straight line until it hits another. We have no cast; but stepping forward by the distance never
-//! passes the first contact, so that distances along the way find the time of impact.
+//! A mesh that moves in a straight line until it hits another: by a cast, and by stepping forward by the distance, which never
+//! passes the first contact either.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use solid3d::{Shape, query};
 
 use crate::data::{Row, folder, for_each_row, json, model};
@@ -13,6 +13,9 @@ const CONTACT: f64 = 1e-10;
 /// How far our time of impact may be off, as a path relative to the size. Along a flat approach a distance of [`CONTACT`]
 /// is reached a good deal before the impact.
 const PATH_ERROR: f64 = 1e-6;
+
+/// How far the time of a cast may be off, as such a path.
+const CAST_ERROR: f64 = 1e-9;
 
 /// A flat approach takes many steps; none in the data took half as many.
 const STEPS_MAX: usize = 4000;
@@ -60,6 +63,13 @@ fn check(name: &str) {
             });
             grazing += usize::from(!cast.intersects(&row, toi + path));
         }
+        let swept = cast.sweep(&row);
+        tally.hit(&label, toi.is_some(), swept.is_some());
+        if let (Some(toi), Some(swept)) = (toi, swept) {
+            let off = (toi - swept) * length / cast.size;
+            tally.error(&label, off.abs(), CAST_ERROR);
+            tally.check(off > -1e-12, || format!("{label}: cast to {swept}, past {toi}"));
+        }
         for quarter in 0..4 {
             let t = 0.25 * f64::from(quarter);
             tally.check(toi.is_some_and(|toi| toi <= t) || !cast.intersects(&row, t), || {
@@ -79,6 +89,14 @@ impl Cast {
 
     fn intersects(&self, row: &Row, t: f64) -> bool {
         query::intersects(&self.a, &DAffine3::IDENTITY, &self.b, &self.at(row, t)).unwrap()
+    }
+
+    /// The time by a cast.
+    fn sweep(&self, row: &Row) -> Option<f64> {
+        let here = DAffine3::IDENTITY;
+        let (at, motion) = (self.at(row, 0.0), row.vector("v", ""));
+        let cast = query::cast_shape(&self.a, &here, DVec3::ZERO, &self.b, &at, motion).unwrap();
+        cast.map(|cast| cast.time)
     }
 
     /// Conservative advancement; the time, at most 1 or `None`, and the number of steps.

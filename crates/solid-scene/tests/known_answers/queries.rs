@@ -1,14 +1,18 @@
-//! Points and rays against a mesh. A point is the hull of itself; a ray is asked about as two segments, one that ends just
-//! before the hit and one that ends just after it.
+//! Points and rays against a mesh: as such, and as shapes. A point is the hull of itself; a ray is then asked about as two segments,
+//! one that ends just before the hit and one that ends just after it.
 
 use glam::{DAffine3, DVec3};
-use solid3d::{ComplexShapeBuilder, Error, Shape, query};
+use solid3d::query::{self, Ray, RayOptions};
+use solid3d::{ComplexShapeBuilder, Error, Shape};
 
 use crate::data::{folder, for_each_row, json, model};
 use crate::tally::Tally;
 
 /// The error of a distance relative to the extent of the mesh.
 const DISTANCE_ERROR: f64 = 1e-12;
+
+/// The error of a hit relative to the extent of the mesh and the distance of the ray's origin.
+const HIT_ERROR: f64 = 1e-12;
 
 /// How far before and after the hit the segments end, relative to the extent of the mesh.
 const RAY_ERROR: f64 = 1e-9;
@@ -60,8 +64,10 @@ fn check_points(mesh: &Shape, size: f64, name: &str, path: &std::path::Path) {
         for found in [hull, placed, complex] {
             tally.error(&label, (found.distance - distance).abs() / reach, DISTANCE_ERROR);
         }
-        let met = query::intersects(mesh, &here, &Shape::convex_hull(&[point]).unwrap(), &here).unwrap();
-        tally.hit(&label, distance == 0.0, met);
+        let closest = query::closest_point(mesh, &here, point).unwrap();
+        tally.error(&label, (closest.distance - distance).abs() / reach, DISTANCE_ERROR);
+        tally.error(&label, (closest.point.distance(point) - distance).abs() / reach, DISTANCE_ERROR);
+        tally.hit(&label, distance == 0.0, query::contains_point(mesh, &here, point).unwrap());
     });
     tally.finish();
 }
@@ -73,15 +79,28 @@ fn check_inside(solid: &Shape, name: &str, path: &std::path::Path) {
         let (label, here) = (format!("point {}", row.text("id")), DAffine3::IDENTITY);
         let inside = row.flag("inside") || row.real("distance") == 0.0;
         let point = row.vector("", "");
+        // On the surface it is between two whole numbers.
+        let winding = query::winding_number(solid, &here, point).unwrap();
+        tally.check((winding > 0.5) == inside || row.real("distance") < 1e-9, || {
+            format!("{label}: winds {winding}")
+        });
         let hull = Shape::convex_hull(&[point]).unwrap();
         let complex = ComplexShapeBuilder::new([point]).point(0).build().unwrap();
         for shape in [hull, complex] {
             tally.hit(&label, inside, query::intersects(&shape, &here, solid, &here).unwrap());
+            tally.hit(&label, inside, query::contains_point(solid, &here, point).unwrap());
             let distance = query::distance(solid, &here, &shape, &here).unwrap().distance;
             tally.check((distance == 0.0) == inside, || format!("{label}: a distance of {distance}"));
         }
     });
     tally.finish();
+}
+
+/// Whether a ray meets a face at this place too, that is, on an edge.
+fn shared(mesh: &Shape, ray: &Ray, t: f64, face: u32) -> bool {
+    let all = query::cast_ray_all(mesh, &DAffine3::IDENTITY, ray, &RayOptions::default()).unwrap();
+    all.iter()
+        .any(|hit| (hit.t - t).abs() < 1e-12 && hit.surface.is_some_and(|surface| surface.primitive == face))
 }
 
 fn check_rays(mesh: &Shape, size: f64, name: &str, path: &std::path::Path) {
@@ -96,6 +115,17 @@ fn check_rays(mesh: &Shape, size: f64, name: &str, path: &std::path::Path) {
             let here = DAffine3::IDENTITY;
             [hull, complex].map(|segment| query::intersects(mesh, &here, &segment, &here).unwrap())
         };
+        let ray = Ray::new(origin, direction);
+        let hit = query::cast_ray(mesh, &DAffine3::IDENTITY, &ray, &RayOptions::default()).unwrap();
+        tally.hit(&label, row.flag("hit"), hit.is_some());
+        if let (Some(hit), Some(t)) = (hit, row.number::<f64>("t")) {
+            let reach = size + origin.length();
+            tally.error(&label, (hit.t - t).abs() / reach, HIT_ERROR);
+            let (face, found) = (row.number::<u32>("face").unwrap(), hit.surface.unwrap().primitive);
+            tally.check(face == found || shared(mesh, &ray, hit.t, face), || {
+                format!("{label}: face {found}, expected {face}")
+            });
+        }
         match row.number::<f64>("t") {
             Some(t) => {
                 let (before, after) = (meets(t - RAY_ERROR * size), meets(t + RAY_ERROR * size));

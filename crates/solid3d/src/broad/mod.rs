@@ -136,6 +136,35 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
     /// If the proxy is above every one ever used.
     fn bounds(&self, proxy: Proxy) -> &Aabb;
 
+    /// Visits the proxies whose box has a `bound` of at most `until`, about in the order of their bounds; each visit gives the new
+    /// `until`. Boxes that were added or moved since the last [`flush`](Self::flush) may be missing; all others are not, nor are
+    /// they visited twice.
+    ///
+    /// `bound` must not be less for a box than for one that contains it; infinity is for boxes that do not matter.
+    ///
+    /// ```
+    /// use solid3d::broad::{BroadPhase, BroadPhaseKind};
+    /// use solid3d::{Aabb, glam::DVec3};
+    /// for kind in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+    ///     let mut broad = kind.build();
+    ///     for i in 0..10 {
+    ///         let corner = DVec3::splat(f64::from(i));
+    ///         broad.insert(i, Aabb::new(corner, corner + 0.5));
+    ///     }
+    ///     broad.flush();
+    ///     let region = Aabb::new(DVec3::splat(2.1), DVec3::splat(3.1));
+    ///     let bound = |b: &Aabb| if b.overlaps(&region) { 0.0 } else { f64::INFINITY };
+    ///     let mut found = Vec::new();
+    ///     broad.for_each_nearest(&bound, 0.0, &mut |proxy| {
+    ///         found.push(proxy);
+    ///         0.0
+    ///     });
+    ///     found.sort_unstable();
+    ///     assert_eq!(found, [2, 3]);
+    /// }
+    /// ```
+    fn for_each_nearest(&self, bound: &dyn Fn(&Aabb) -> f64, until: f64, visit: &mut dyn FnMut(Proxy) -> f64);
+
     /// The work done since the engine was made.
     fn counters(&self) -> Counters;
 

@@ -106,7 +106,7 @@ fn contained(
 }
 
 /// A box around the convex shape in the space of the complex one, grown by the error of the map.
-fn convex_in_complex(complex: PlacedComplex, convex: PlacedConvex) -> (Aabb, Frame) {
+pub(super) fn convex_in_complex(complex: PlacedComplex, convex: PlacedConvex) -> (Aabb, Frame) {
     let frame = Frame::new(complex.1, complex.0.reach(), convex.1, convex.0.reach());
     let map = frame.relative.b_to_a;
     let bounds = convex_bounds(convex.0, &map.matrix3);

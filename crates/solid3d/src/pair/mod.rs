@@ -8,6 +8,7 @@
 //! Placements were checked by the caller.
 
 mod approach;
+mod cast;
 mod complex_complex;
 mod complex_convex;
 mod containment;
@@ -18,6 +19,7 @@ mod depth;
 mod fixed_box;
 mod frame;
 
+mod ray;
 mod reach;
 mod scratch;
 pub(crate) mod swept;
@@ -26,9 +28,12 @@ mod table;
 use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach};
+pub(crate) use cast::cast;
 pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;
+pub use ray::{Faces, FromInside, Ray, RayHit, RayOptions, SurfaceHit};
+pub(crate) use ray::{Hits, Wanted, entry, ray_hits};
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};

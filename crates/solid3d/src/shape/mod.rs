@@ -1,6 +1,7 @@
 //! Shapes: geometry in its own space, instanced by any number of objects.
 
 mod builder;
+mod chord;
 mod complex;
 mod kind;
 mod parts;

@@ -111,7 +111,7 @@ fn not_positive(lanes: &[f32; WIDTH]) -> u32 {
 
 /// The set bits of a mask, from the lowest.
 #[inline]
-pub(super) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
+pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         (mask != 0).then(|| {
             let lane = mask.trailing_zeros() as usize;

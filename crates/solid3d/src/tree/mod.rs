@@ -21,6 +21,7 @@
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
+//! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
 //! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
 //!
 //! # Laws
@@ -33,6 +34,7 @@
 //! 5. Every order is a function of the input alone.
 
 mod build;
+mod cast_pairs;
 mod cost;
 mod crossing;
 mod lanes;
@@ -44,6 +46,7 @@ mod normal;
 mod overlap;
 mod packed;
 mod pairs;
+mod ray;
 mod refit;
 mod relative;
 mod split;
@@ -54,12 +57,15 @@ mod validate;
 mod tests;
 
 pub use build::DEPTH_MAX;
+pub use cast_pairs::cast_pairs;
 pub use cost::DEGRADED_RATIO;
+pub(crate) use lanes::bits;
 pub use metric::PairMetric;
 pub use nearest_pairs::nearest_pairs;
 pub use node::{LEAF_SIZE, PRIMITIVES_MAX};
 pub use normal::COORDINATE_MAX;
 pub use pairs::pairs;
+pub use ray::TreeRay;
 pub use relative::{PlacedBox, Relative};
 pub use traversal::{Counters, Traversal};
 

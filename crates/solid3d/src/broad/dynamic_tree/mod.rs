@@ -11,6 +11,7 @@
 
 mod build;
 mod fat_box;
+mod nearest;
 mod node;
 mod tree;
 
@@ -284,6 +285,15 @@ impl BroadPhase for DynamicTree {
 
     fn bounds(&self, proxy: Proxy) -> &Aabb {
         &self.tight[proxy as usize]
+    }
+
+    fn for_each_nearest(
+        &self,
+        bound: &dyn Fn(&Aabb) -> f64,
+        until: f64,
+        visit: &mut dyn FnMut(Proxy) -> f64,
+    ) {
+        self.visit_nearest(bound, until, visit);
     }
 
     fn counters(&self) -> Counters {

@@ -296,6 +296,19 @@ impl BroadPhase for SweepAndPrune {
         &self.boxes[proxy as usize]
     }
 
+    fn for_each_nearest(
+        &self,
+        bound: &dyn Fn(&Aabb) -> f64,
+        mut until: f64,
+        visit: &mut dyn FnMut(Proxy) -> f64,
+    ) {
+        for (proxy, (bounds, state)) in (0..).zip(self.boxes.iter().zip(&self.states)) {
+            if !matches!(state, State::Absent | State::Gone) && bound(bounds) <= until {
+                until = visit(proxy);
+            }
+        }
+    }
+
     fn counters(&self) -> Counters {
         self.counters
     }

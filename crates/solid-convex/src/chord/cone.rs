@@ -1,0 +1,75 @@
+//! The cone.
+
+use glam::DVec3;
+
+use super::{Chord, End, Line, slab};
+use crate::Cone;
+
+/// A quadratic `a t^2 + 2 b t + c`, whose sign says on which side of a double cone a point of a line is.
+struct Quadratic {
+    a: f64,
+    b: f64,
+    c: f64,
+}
+
+impl Quadratic {
+    /// The roots in ascending order, endless when they are; `None` without real ones. A double root by rounding of a
+    /// quadratic that opens downward counts: such a line runs through the apex.
+    fn roots(&self) -> Option<[f64; 2]> {
+        let Quadratic { a, b, c } = *self;
+        let squared = b * b - a * c;
+        if squared < 0.0 && a > 0.0 {
+            return None;
+        }
+        // No difference of nearly equal numbers (Press et al., *Numerical Recipes*, section 5.6).
+        let q = -(b + squared.max(0.0).sqrt().copysign(b));
+        if q == 0.0 {
+            return Some([0.0, 0.0]);
+        }
+        let (x, y) = (q / a, c / q);
+        Some([x.min(y), x.max(y)])
+    }
+}
+
+/// The chord of the endless cone below its apex at `apex` on the axis y, which has the radius `radius` at `height` below it.
+fn endless_cone(foot: DVec3, along: DVec3, apex: f64, radius: f64, height: f64) -> Option<Chord> {
+    // A point at depth w below the apex and at distance s from the axis is in the double cone when
+    // (height s)^2 - (radius w)^2 <= 0.
+    let (h, r) = (height * height, radius * radius);
+    let depth = apex - foot.y;
+    let quadratic = Quadratic {
+        a: h * (along.x * along.x + along.z * along.z) - r * along.y * along.y,
+        b: h * (foot.x * along.x + foot.z * along.z) + r * depth * along.y,
+        c: h * (foot.x * foot.x + foot.z * foot.z) - r * depth * depth,
+    };
+    let depth_at = |t: f64| depth - t * along.y;
+    let end = |t: f64| {
+        let p = foot + along * t;
+        End { t, normal: DVec3::new(h * p.x, r * depth_at(t), h * p.z).try_normalize().unwrap_or(DVec3::Y) }
+    };
+    let [first, last] = quadratic.roots()?;
+    if quadratic.a > 0.0 {
+        // Flatter than the cone: both ends are in one half of it, or at the apex.
+        let below = depth_at(0.5 * first + 0.5 * last) >= 0.0;
+        return below.then(|| Chord { enter: end(first), leave: end(last) });
+    }
+    // Steeper: from one end on downward. Parallel to the side, one root is endless.
+    Some(if along.y < 0.0 {
+        let from = if last.is_finite() { last } else { first };
+        Chord { enter: end(from), ..Chord::WHOLE }
+    } else {
+        let to = if first.is_finite() { first } else { last };
+        Chord { leave: end(to), ..Chord::WHOLE }
+    })
+}
+
+impl Cone {
+    /// The part of a line that is in the cone.
+    pub fn chord(&self, line: &Line) -> Option<Chord> {
+        let (radius, half) = (self.radius(), 0.5 * self.height());
+        let (foot, scale) = line.near(radius.max(half))?;
+        let (radius, half) = (radius * scale, half * scale);
+        let sides = endless_cone(foot, line.along, half, radius, 2.0 * half)?;
+        line.chord(sides.and(slab(foot, line.along, 1, half)?), scale)
+    }
+}

@@ -1,0 +1,129 @@
+//! Chords against their slow twin: the GJK cast of a point, from either end.
+
+use glam::{DAffine3, DVec3};
+
+use super::{Chord, Line};
+use crate::{Capsule, Cone, Cuboid, Cylinder, Points, Sphere, Support, gjk};
+
+type Shape = (Box<dyn Support>, Box<dyn Fn(&Line) -> Option<Chord>>);
+
+macro_rules! shape {
+    ($shape:expr) => {{
+        let shape = $shape.unwrap();
+        (Box::new(shape) as Box<dyn Support>, Box::new(move |line: &Line| shape.chord(line)) as Box<_>)
+    }};
+}
+
+fn shapes(size: f64) -> Vec<Shape> {
+    vec![
+        shape!(Sphere::new(0.9 * size)),
+        shape!(Cuboid::new(DVec3::new(1.0, 1.5, 2.0) * size)),
+        shape!(Cone::new(1.0 * size, 2.2 * size)),
+        shape!(Cone::new(1.4 * size, 0.4 * size)),
+        shape!(Cylinder::new(0.9 * size, 1.7 * size)),
+        shape!(Cylinder::new(0.02 * size, 2.5 * size)),
+        shape!(Capsule::new(0.5 * size, 1.6 * size)),
+    ]
+}
+
+/// Numbers from -1 to 1, spread by a low-discrepancy sequence.
+fn spread(i: u32, step: f64) -> f64 {
+    2.0 * (f64::from(i) * step).fract() - 1.0
+}
+
+/// The origin some 5 sizes away, the target near the shape; every fifth line is along an axis.
+fn line(i: u32, size: f64) -> (DVec3, DVec3) {
+    let target = DVec3::new(spread(i, 0.7549), spread(i, 0.5698), spread(i, 0.3247))
+        * if i.is_multiple_of(3) { 0.3 } else { 1.45 };
+    let away = match i % 5 {
+        0 => DVec3::AXES[(i / 5 % 3) as usize] * if i.is_multiple_of(2) { 5.0 } else { -5.0 },
+        _ => DVec3::new(spread(i, 0.618), spread(i, 0.414), spread(i, 0.732)).normalize() * 5.0,
+    };
+    ((target + away) * size, away * -2.0 * size * (1.5 + spread(i, 0.236)))
+}
+
+/// Both ends are where the casts of a point from either side meet the shape, and a chord is there exactly where they do.
+#[test]
+fn chords_end_where_casts_do() {
+    let point = Points::new(&[DVec3::ZERO]).unwrap();
+    for size in [1.0, 1e-40, 1e40] {
+        for (which, (support, chord)) in shapes(size).iter().enumerate() {
+            let (mut hits, mut worst) = (0, 0.0);
+            for i in 0..1000 {
+                let (origin, direction) = line(i, size);
+                let found = chord(&Line::new(origin, direction).unwrap());
+                let length = direction.length() / size;
+                let far = origin + direction * (16.0 / length);
+                let from = |origin: DVec3, direction: DVec3| {
+                    let at = DAffine3::from_translation(origin);
+                    gjk::cast(&point, &at, direction, &**support, &DAffine3::IDENTITY, f64::INFINITY)
+                };
+                let (enter, leave) = (from(origin, direction), from(far, -direction));
+                let Some(found) = found else {
+                    // A chord whose length is rounding may be lost.
+                    let length = |enter: crate::Impact| {
+                        16.0 - (enter.time + leave.map_or(0.0, |leave| leave.time)) * length
+                    };
+                    assert!(
+                        enter.is_none_or(|enter| length(enter) < 1e-5),
+                        "{which} {i}: {enter:?} {leave:?}"
+                    );
+                    continue;
+                };
+                hits += 1;
+                let (enter, leave) = (enter.unwrap(), leave.unwrap());
+                // Where the line grazes, times are sensitive as square roots are.
+                let slope = |normal: DVec3| (normal.dot(direction).abs() / direction.length()).max(1e-6);
+                let errors = [
+                    (found.enter.t - enter.time).abs() * slope(found.enter.normal),
+                    (found.leave.t - (16.0 / length - leave.time)).abs() * slope(found.leave.normal),
+                ];
+                worst = errors.iter().fold(worst, |worst: f64, error| worst.max(error * length));
+                for end in [found.enter, found.leave] {
+                    assert!((end.normal.length() - 1.0).abs() < 1e-12);
+                    let at = origin + direction * end.t;
+                    let beyond = end.normal.dot(support.support(end.normal) - at) / size;
+                    assert!(beyond.abs() < 1e-11, "{which} {i}: the normal {} supports {beyond}", end.normal);
+                }
+            }
+            println!("shape {which}: {hits} of 1000, worst error {worst:e}");
+            assert!(worst < gjk::CAST_ERROR, "{which}: {worst:e}");
+            let thin = which == 5;
+            assert!((if thin { 20 } else { 300 }..=720).contains(&hits), "{which}: {hits} of 1000");
+        }
+    }
+}
+
+#[test]
+fn special_lines() {
+    let through = |shape: &dyn Fn(&Line) -> Option<Chord>, origin: DVec3, direction: DVec3| {
+        shape(&Line::new(origin, direction).unwrap()).map(|chord| (chord.enter.t, chord.leave.t))
+    };
+    let cone = Cone::new(1.0, 2.0).unwrap();
+    let cone = |line: &Line| cone.chord(line);
+    // Down the axis, through the apex, and across at the base.
+    assert_eq!(through(&cone, DVec3::Y * 3.0, DVec3::NEG_Y), Some((2.0, 4.0)));
+    assert_eq!(through(&cone, DVec3::Y * -3.0, DVec3::Y), Some((2.0, 4.0)));
+    assert_eq!(through(&cone, DVec3::new(-3.0, -1.0, 0.0), DVec3::X), Some((2.0, 4.0)));
+    // In the half above the apex there is nothing.
+    assert_eq!(through(&cone, DVec3::new(-3.0, 1.5, 0.0), DVec3::X), None);
+    // Parallel to a side: from the other side to the base, at its rim, and beyond it.
+    let slanted = |x: f64| through(&cone, DVec3::new(x, 2.0, 0.0), DVec3::new(1.0, -2.0, 0.0));
+    for (x, expected) in [(-1.0, 0.75), (-1.5, 1.0)] {
+        let (enter, leave) = slanted(x).unwrap();
+        assert!((enter - expected).abs() < 1e-15 && (leave - 1.5).abs() < 1e-15, "{enter} {leave}");
+    }
+    assert_eq!(slanted(-2.6), None);
+    let block = Cuboid::new(DVec3::splat(2.0)).unwrap();
+    let block = |line: &Line| block.chord(line);
+    // Along a face, and beside it.
+    assert_eq!(through(&block, DVec3::new(-3.0, 1.0, 0.0), DVec3::X), Some((2.0, 4.0)));
+    assert_eq!(through(&block, DVec3::new(-3.0, 1.0 + 1e-15, 0.0), DVec3::X), None);
+    // From far away, with a direction of any length.
+    let ball = Sphere::new(1.0).unwrap();
+    let ball = |line: &Line| ball.chord(line);
+    let (enter, leave) = through(&ball, DVec3::X * -1e9, DVec3::X * 1e-80).unwrap();
+    assert!((enter * 1e-80 - (1e9 - 1.0)).abs() < 1e-6 && (leave * 1e-80 - (1e9 + 1.0)).abs() < 1e-6);
+    assert_eq!(Line::new(DVec3::ZERO, DVec3::NAN), None);
+    assert_eq!(Line::new(DVec3::INFINITY, DVec3::X), None);
+}

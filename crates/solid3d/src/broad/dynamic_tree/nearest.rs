@@ -1,0 +1,49 @@
+//! The leaves of the tree by a bound, least first.
+
+use super::DynamicTree;
+use super::fat_box::FatBox;
+use super::node::Kind;
+use super::tree::ROOT;
+use crate::bounds::Aabb;
+use crate::broad::Proxy;
+use glam::DVec3;
+
+impl DynamicTree {
+    /// See [`BroadPhase::for_each_nearest`](crate::broad::BroadPhase::for_each_nearest).
+    pub(super) fn visit_nearest(
+        &self,
+        bound: &dyn Fn(&Aabb) -> f64,
+        mut until: f64,
+        visit: &mut dyn FnMut(Proxy) -> f64,
+    ) {
+        let mut stack = vec![(f64::NEG_INFINITY, Kind::Node(ROOT))];
+        while let Some((least, kind)) = stack.pop() {
+            if least > until {
+                continue;
+            }
+            match kind {
+                Kind::Leaf(proxy) => {
+                    if self.is_alive(proxy) && bound(&self.tight[proxy as usize]) <= until {
+                        until = visit(proxy);
+                    }
+                }
+                Kind::Node(index) => {
+                    let node = &self.tree.nodes[index as usize];
+                    let from = stack.len();
+                    let lanes = (0..node.count())
+                        .map(|lane| (bound(&unclamped(&node.lane_box(lane))), node.child(lane)));
+                    stack.extend(lanes.filter(|(least, _)| *least <= until));
+                    stack[from..].sort_by(|(x, _), (y, _)| y.total_cmp(x));
+                }
+            }
+        }
+    }
+}
+
+/// The box, with sides that were clamped to the range of `f32` put far beyond.
+fn unclamped(b: &FatBox) -> Aabb {
+    /// Beyond every coordinate of a box.
+    const BEYOND: f64 = 1e300;
+    let side = |x: f32| if x.abs() == f32::MAX { BEYOND.copysign(x.into()) } else { x.into() };
+    Aabb::new(DVec3::from_array(b.min.map(side)), DVec3::from_array(b.max.map(side)))
+}

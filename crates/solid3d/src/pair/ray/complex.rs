@@ -1,0 +1,173 @@
+//! A ray against a complex shape: along its tree, nearest leaf first.
+
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::unit_scale;
+
+use super::super::Scratch;
+use super::super::containment::PlacedSolid;
+use super::super::frame::Frame;
+use super::super::table::PlacedComplex;
+use super::convex::hull_hits;
+use super::triangle::{Corners, LANES, Shear, TriangleHit};
+use super::{FromInside, Hits, SurfaceHit, world_normal};
+use crate::bounds::Aabb;
+use crate::placement::inverse_linear;
+use crate::shape::Complex;
+use crate::tree::{TreeRay, bits};
+use crate::triangle_triangle::Triangle;
+
+/// A ray in the space of a complex shape, moved up to it.
+struct LocalRay {
+    /// The point at the parameter `start`, before the ray comes into the shape's box.
+    origin: DVec3,
+    direction: DVec3,
+    start: f64,
+    shear: Shear,
+    to_local: DMat3,
+}
+
+pub(super) fn hits((complex, at): PlacedComplex, hits: &mut Hits, scratch: &mut Scratch) {
+    let Some(ray) = LocalRay::new(complex, at, hits) else { return };
+    if ray.start == 0.0 && starts_inside((complex, at), hits, scratch) {
+        hits.add_inside();
+    }
+    let tree_ray = TreeRay { origin: ray.origin, direction: ray.direction, half_extents: DVec3::ZERO };
+    let Scratch { traversal, primitive_tests, .. } = scratch;
+    let mut left = hits.until - ray.start;
+    complex.tree().along(&tree_ray, &mut left, traversal, |leaf, left| {
+        *primitive_tests += leaf.len() as u64;
+        if let Some(triangles) = complex.triangles() {
+            ray.meet_leaf(complex.vertices(), triangles, leaf, hits);
+        } else {
+            for &primitive in leaf {
+                ray.meet_primitive((complex, at), primitive, hits);
+            }
+        }
+        *left = if hits.until < 0.0 { -1.0 } else { (hits.until - ray.start).max(0.0) };
+    });
+}
+
+/// A primitive of up to three vertices as a triangle.
+fn triangle(complex: &Complex, primitive: u32) -> Option<Triangle> {
+    let at = |i: u32| complex.vertices()[i as usize];
+    match *complex.primitive(primitive) {
+        [i, j, k] => Some([at(i), at(j), at(k)]),
+        [i, j] => Some([at(i), at(j), at(j)]),
+        [i] => Some([at(i); 3]),
+        _ => None,
+    }
+}
+
+/// Whether the origin of the ray is in a solid mesh.
+fn starts_inside((mesh, at): PlacedComplex, hits: &Hits, scratch: &mut Scratch) -> bool {
+    if !mesh.is_solid() || hits.options.from_inside == FromInside::Passes {
+        return false;
+    }
+    let at_origin = DAffine3::from_translation(hits.ray.origin);
+    let frame = Frame::new(at, mesh.reach(), &at_origin, DVec3::ZERO);
+    let [mesh_to_common, point_to_common] = &frame.common;
+    PlacedSolid::new(mesh, mesh_to_common)
+        .is_some_and(|solid| solid.contains(point_to_common.translation, scratch))
+}
+
+impl LocalRay {
+    /// `None` for a ray that passes the shape's box.
+    fn new(complex: &Complex, at: &DAffine3, hits: &Hits) -> Option<LocalRay> {
+        let to_local = inverse_linear(&at.matrix3);
+        let (origin, direction) =
+            (to_local * (hits.ray.origin - at.translation), to_local * hits.ray.direction);
+        let bounds = complex.bounds();
+        let size = bounds.half_extents().max_element();
+        let start = entry(&roomy(&bounds, origin), origin, direction)?;
+        if start > hits.until {
+            return None;
+        }
+        let origin = origin + direction * start;
+        let from_origin = (origin - bounds.center()).abs().max_element();
+        let shear = Shear::new(origin, direction, unit_scale(size + from_origin));
+        Some(LocalRay { origin, direction, start, shear, to_local })
+    }
+
+    /// Adds where the ray meets the triangles of a leaf: eight at once sort out most of those that it does not.
+    #[inline]
+    fn meet_leaf(&self, vertices: &[DVec3], triangles: &[[u32; 3]], leaf: &[u32], hits: &mut Hits) {
+        let corner = |i: u32| &vertices[i as usize];
+        for some in leaf.chunks(LANES) {
+            let mut corners = Corners::default();
+            for (lane, &primitive) in some.iter().enumerate() {
+                self.shear.put(&mut corners, lane, triangles[primitive as usize].map(corner));
+            }
+            for lane in bits(self.shear.candidates(&corners) & ((1 << some.len()) - 1)) {
+                let triangle = triangles[some[lane] as usize].map(|i| *corner(i));
+                self.meet(&triangle, some[lane], hits);
+            }
+        }
+    }
+
+    /// Adds where the ray meets a primitive of any kind.
+    fn meet_primitive(&self, (complex, at): PlacedComplex, primitive: u32, hits: &mut Hits) {
+        let owner = complex.owner(primitive);
+        match triangle(complex, primitive) {
+            Some(triangle) => self.meet(&triangle, owner, hits),
+            None => hull_hits(&complex.primitive_hull(primitive), at, owner, hits),
+        }
+    }
+
+    /// Adds where the ray meets a triangle.
+    #[inline]
+    fn meet(&self, triangle: &Triangle, primitive: u32, hits: &mut Hits) {
+        let Some(TriangleHit { t, barycentric, back }) = self.shear.hit(triangle) else { return };
+        let t = self.start + t;
+        if back.is_some_and(|back| !hits.options.faces.includes(back)) || !hits.wants(t, primitive) {
+            return;
+        }
+        let scale = unit_scale(
+            (triangle[1] - triangle[0]).abs().max((triangle[2] - triangle[0]).abs()).max_element(),
+        );
+        let edge = |i: usize| (triangle[i] - triangle[0]) * scale;
+        let back = back.unwrap_or(false);
+        let normal = match world_normal(&self.to_local, edge(1).cross(edge(2))) {
+            Some(front) => {
+                if back {
+                    -front
+                } else {
+                    front
+                }
+            }
+            // A segment or a point has none: it turns to the ray.
+            None => {
+                let direction = hits.ray.direction;
+                -(direction / direction.abs().max_element()).normalize()
+            }
+        };
+        hits.add(t, Some(SurfaceHit { normal, back, primitive, barycentric: Some(barycentric) }));
+    }
+}
+
+/// The box, with so much room around that a ray is moved to well before what is in it.
+fn roomy(bounds: &Aabb, origin: DVec3) -> Aabb {
+    /// Part of the size of the box.
+    const ROOM: f64 = 1.0 / 64.0;
+    /// Beyond what rounding makes of a far origin.
+    const FAR_ROOM: f64 = 1e-12;
+    let far = origin.abs().max_element() + bounds.center().abs().max_element();
+    bounds.inflated(ROOM * bounds.half_extents().max_element() + FAR_ROOM * far)
+}
+
+/// When a ray comes into a box, 0 when it starts there; `None` when it passes it.
+pub(crate) fn entry(bounds: &Aabb, origin: DVec3, direction: DVec3) -> Option<f64> {
+    let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+    for axis in 0..3 {
+        let (p, d, min, max) = (origin[axis], direction[axis], bounds.min[axis], bounds.max[axis]);
+        let (near, far) = if d < 0.0 { (max, min) } else { (min, max) };
+        if d == 0.0 {
+            if p < min || p > max {
+                return None;
+            }
+            continue;
+        }
+        enter = enter.max((near - p) / d);
+        leave = leave.min((far - p) / d);
+    }
+    (enter <= leave).then_some(enter)
+}

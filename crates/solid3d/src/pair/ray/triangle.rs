@@ -1,0 +1,285 @@
+//! A ray against triangles, watertight.
+//!
+//! Woop, Benthin and Wald, *Watertight Ray/Triangle Intersection*, 2013: space is sheared so that the ray runs along an axis from the
+//! origin, and the question is whether a triangle of the plane has the origin in it. Each corner is sheared by itself, so triangles
+//! that share it see the same point of the plane; then the signs of the edges are exact. So whatever surrounds the ray is hit:
+//! none slips between triangles that share an edge or a corner, nor through a closed mesh.
+
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x8};
+use glam::{DVec2, DVec3};
+use solid_convex::simd::{self, dispatch};
+
+use crate::exact::orient2d;
+use crate::triangle_triangle::Triangle;
+
+/// Space as a ray sees it.
+pub(super) struct Shear {
+    origin: DVec3,
+    /// The axes: the last is the one along which the ray runs most. A cyclic order, reversed when it runs backward.
+    axes: [usize; 3],
+    shear: DVec2,
+    /// Local lengths times this are those of the sheared space: a power of two, so that no product overflows or vanishes.
+    scale: f64,
+    /// Depths in the sheared space times this are parameters of the ray.
+    depth_to_t: f64,
+}
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TriangleHit {
+    pub t: f64,
+    /// The weights of the corners.
+    pub barycentric: [f64; 3],
+    /// Whether the side is the back; `None` seen edge on.
+    pub back: Option<bool>,
+}
+
+/// Triangles that are looked at together.
+pub(super) const LANES: usize = 8;
+
+/// The corners of eight triangles: for each corner and each axis, those of a [`Shear`], the coordinates.
+pub(super) type Corners = [[[f64; LANES]; 3]; 3];
+
+/// Rounding of a determinant of two products is below this times the sum of their magnitudes.
+const DETERMINANT_ERROR: f64 = 2.0 * f64::EPSILON;
+
+impl Shear {
+    /// `scale` is a power of two that takes the size of the data to about 1.
+    pub fn new(origin: DVec3, direction: DVec3, scale: f64) -> Shear {
+        let magnitude = direction.abs();
+        let main = [0, 1, 2].into_iter().fold(0, |i, j| if magnitude[j] > magnitude[i] { j } else { i });
+        let (next, last) = ((main + 1) % 3, (main + 2) % 3);
+        let axes = if direction[main] < 0.0 { [last, next, main] } else { [next, last, main] };
+        let shear = DVec2::new(direction[axes[0]], direction[axes[1]]) / direction[main];
+        Shear { origin, axes, shear, scale, depth_to_t: 1.0 / scale / direction[main] }
+    }
+
+    /// Puts a triangle into a lane.
+    #[inline]
+    pub fn put(&self, corners: &mut Corners, lane: usize, triangle: [&DVec3; 3]) {
+        for (rows, corner) in corners.iter_mut().zip(triangle) {
+            let p = corner.to_array();
+            for (row, axis) in rows.iter_mut().zip(self.axes) {
+                row[lane] = p[axis];
+            }
+        }
+    }
+
+    /// The triangles that may be hit, as bits: of the others two edges surely pass the ray on different sides.
+    #[inline]
+    pub fn candidates(&self, corners: &Corners) -> u32 {
+        dispatch!(simd::level(), simd => self.candidates_on(simd, corners))
+    }
+
+    #[inline(always)]
+    fn candidates_on<S: Simd>(&self, simd: S, corners: &Corners) -> u32 {
+        let splat = |x: f64| f64x8::splat(simd, x);
+        let origin = self.axes.map(|axis| splat(self.origin[axis]));
+        let (scale, shear) = (splat(self.scale), [splat(self.shear.x), splat(self.shear.y)]);
+        // The same operations as for one.
+        let points = [0, 1, 2].map(|i| {
+            let row = |axis: usize| (f64x8::from_slice(simd, &corners[i][axis]) - origin[axis]) * scale;
+            let depth = row(2);
+            [row(0) - shear[0] * depth, row(1) - shear[1] * depth]
+        });
+        let error = splat(DETERMINANT_ERROR);
+        let sides = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| {
+            let (x, y) = (points[i][0] * points[j][1], points[i][1] * points[j][0]);
+            (x - y, error * (x.abs() + y.abs()))
+        });
+        let left = sides.map(|(area, doubt)| area.simd_gt(doubt));
+        let right = sides.map(|(area, doubt)| (-area).simd_gt(doubt));
+        let missed = (left[0] | left[1] | left[2]) & (right[0] | right[1] | right[2]);
+        !(missed.to_bitmask() as u32) & ((1 << LANES) - 1)
+    }
+
+    fn point(&self, p: DVec3) -> DVec3 {
+        let p = (p - self.origin) * self.scale;
+        let [x, y, z] = self.axes;
+        DVec3::new(p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], p[z])
+    }
+
+    /// Where the ray, from its origin on, meets a triangle.
+    #[inline]
+    pub fn hit(&self, triangle: &Triangle) -> Option<TriangleHit> {
+        let [a, b, c] = triangle.map(|p| self.point(p));
+        // Twice the areas that the origin makes with the edges, each opposite to a corner.
+        let area = |p: DVec3, q: DVec3| (p.x * q.y, p.y * q.x);
+        let products = [area(b, c), area(c, a), area(a, b)];
+        let mut areas = products.map(|(x, y)| x - y);
+        let doubts = products.map(|(x, y)| DETERMINANT_ERROR * (x.abs() + y.abs()));
+        let sure = |sign: f64| (0..3).any(|i| sign * areas[i] > doubts[i]);
+        match (sure(1.0), sure(-1.0)) {
+            (true, true) => return None,
+            _ => {
+                for (i, [p, q]) in [[b, c], [c, a], [a, b]].into_iter().enumerate() {
+                    if areas[i].abs() <= doubts[i] {
+                        areas[i] = orient2d(p.truncate(), q.truncate(), DVec2::ZERO);
+                    }
+                }
+            }
+        }
+        let turns = |sign: f64| areas.iter().any(|area| sign * area > 0.0);
+        let (left, right) = (turns(1.0), turns(-1.0));
+        if left && right {
+            return None;
+        }
+        let sum = areas[0] + areas[1] + areas[2];
+        if !(left || right) || sum == 0.0 {
+            return self.edge_on([a, b, c]);
+        }
+        let barycentric = areas.map(|area| area / sum);
+        // Divided last: from a triangle on a lattice a ray that starts on it has no way to go, exactly.
+        let depth = (areas[0] * a.z + areas[1] * b.z + areas[2] * c.z) / sum;
+        let t = depth * self.depth_to_t;
+        (t >= 0.0).then_some(TriangleHit { t, barycentric, back: Some(left) })
+    }
+
+    /// A triangle in a plane with the ray, of which some edge meets the line of the ray, exactly: from the first point of it
+    /// on. Segments and points, as degenerate triangles, are hit like this.
+    fn edge_on(&self, corners: [DVec3; 3]) -> Option<TriangleHit> {
+        let (mut first, mut last): (Option<TriangleHit>, Option<TriangleHit>) = (None, None);
+        for [i, j] in [[0, 1], [1, 2], [2, 0]] {
+            let (p, q) = (corners[i], corners[j]);
+            if p.x * q.x > 0.0 || p.y * q.y > 0.0 {
+                continue;
+            }
+            let [of_p, of_q] = [p, q].map(|p| p.truncate().abs().max_element());
+            // Along the ray both ends count, across it the point between.
+            let weights = if of_p + of_q == 0.0 { [0.0, 1.0] } else { [of_p / (of_p + of_q); 2] };
+            for of_j in weights {
+                let mut barycentric = [0.0; 3];
+                (barycentric[i], barycentric[j]) = (1.0 - of_j, of_j);
+                let t = (p.z * (1.0 - of_j) + q.z * of_j) * self.depth_to_t;
+                let hit = TriangleHit { t, barycentric, back: None };
+                first = first.filter(|first| first.t <= t).or(Some(hit));
+                last = last.filter(|last| last.t >= t).or(Some(hit));
+            }
+        }
+        let (first, last) = (first?, last?);
+        if last.t < 0.0 {
+            return None;
+        }
+        if first.t >= 0.0 {
+            return Some(first);
+        }
+        // The ray starts in the triangle.
+        let share = -first.t / (last.t - first.t);
+        let weight = |i: usize| first.barycentric[i] * (1.0 - share) + last.barycentric[i] * share;
+        Some(TriangleHit { t: 0.0, barycentric: [weight(0), weight(1), weight(2)], back: None })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+    use solid_oracle::triangles_intersect;
+
+    /// On a lattice, where rays meet edges, corners and planes exactly, and hit if and only if a segment does. Its sheared
+    /// coordinates are exact: directions have a greatest coordinate of 1, 2 or 4.
+    #[test]
+    fn lattice_rays_agree_with_the_oracle() {
+        let seed = 81;
+        println!("seed {seed}");
+        let mut rng = seeded(seed);
+        let (cases, mut hits, mut edge_on) = (60_000u32, 0, 0);
+        for case in 0..cases {
+            let mut lattice = |end: i32| {
+                DVec3::from_array(std::array::from_fn(|_| f64::from(rng.random_range(-end..=end))))
+            };
+            let triangle = [lattice(2), lattice(2), lattice(2)];
+            let mut direction = if case % 4 == 0 { triangle[1] - triangle[0] } else { lattice(4) };
+            let greatest = direction.abs().max_element();
+            if ![1.0, 2.0, 4.0].contains(&greatest) {
+                direction = DVec3::new(1.0, -0.5, 0.25);
+            }
+            // Half of them at a point of the triangle: a corner, on an edge, inside.
+            let [mut target, back] = [lattice(3), lattice(2)];
+            if case % 2 == 0 {
+                let weights = [[4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [2.0, 1.0, 1.0]][case as usize / 2 % 3];
+                target = (0..3).map(|i| triangle[i] * (weights[i] / 4.0)).sum();
+            }
+            let origin = target - direction * back.x.abs();
+            let end = origin + direction * 16.0;
+            let expected = triangles_intersect(&triangle, &[origin, end, end]);
+            let found = Shear::new(origin, direction, 1.0).hit(&triangle);
+            assert_eq!(found.is_some(), expected, "{triangle:?} {origin} {direction} {found:?}");
+            if let Some(hit) = found {
+                hits += 1;
+                edge_on += u32::from(hit.back.is_none());
+                let at = origin + direction * hit.t;
+                let weighed: DVec3 = (0..3).map(|i| triangle[i] * hit.barycentric[i]).sum();
+                assert!((at - weighed).length() < 1e-12, "{triangle:?} {origin} {direction} {hit:?}");
+                let normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+                match hit.back {
+                    Some(back) => assert_eq!(back, normal.dot(direction) > 0.0),
+                    None => assert!(normal.dot(direction).abs() < 1e-12),
+                }
+            }
+        }
+        println!("{hits} of {cases} hit, {edge_on} edge on");
+        assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))) && edge_on > 1000);
+    }
+
+    /// Eight at once, on every level of instructions, are those that one by one may be hit.
+    #[test]
+    fn candidates_are_the_same_on_every_level() {
+        let mut rng = seeded(83);
+        let (mut candidates, mut hits) = (0, 0);
+        for case in 0..5000 {
+            let grid = if case % 2 == 0 { 2.0 } else { 1e9 };
+            let mut random = || {
+                let coordinate = |_| f64::round(rng.random_range(-1.0..1.0) * grid) / grid;
+                DVec3::from_array(std::array::from_fn(coordinate))
+            };
+            let triangles: [Triangle; LANES] = std::array::from_fn(|_| [random(), random(), random()]);
+            let [a, b, c] = triangles[case as usize % LANES];
+            let origin = random() * 3.0;
+            let shear = Shear::new(origin, (a + b + c) / 3.0 - origin, 1.0);
+            let mut corners = Corners::default();
+            for (lane, triangle) in triangles.iter().enumerate() {
+                shear.put(&mut corners, lane, triangle.each_ref());
+            }
+            let found =
+                simd::levels().map(|level| dispatch!(level, simd => shear.candidates_on(simd, &corners)));
+            assert!(found.iter().all(|mask| *mask == found[0]));
+            for (lane, triangle) in triangles.iter().enumerate() {
+                let hit = shear.hit(triangle).is_some();
+                let candidate = found[0] >> lane & 1 == 1;
+                assert!(candidate || !hit, "case {case}: {triangle:?}");
+                candidates += u32::from(candidate);
+                hits += u32::from(hit);
+            }
+        }
+        println!("{candidates} of 40000 are candidates, {hits} hit");
+        assert!(hits > 5000 && candidates < 20_000);
+    }
+
+    /// Rays at the shared corner and the edges of a fan: one of the triangles is hit, always, however the ray is rounded.
+    #[test]
+    fn no_ray_slips_through_a_fan() {
+        let mut rng = seeded(82);
+        for case in 0..2000 {
+            let mut random = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+            let (apex, offset) = (random(), random() * 10f64.powi(case % 9));
+            let count = 3 + case as usize % 7;
+            let rim: Vec<DVec3> = (0..count)
+                .map(|i| {
+                    let angle = std::f64::consts::TAU * i as f64 / count as f64;
+                    apex + DVec3::new(angle.cos(), angle.sin(), 0.0) + 0.2 * random()
+                })
+                .collect();
+            for i in 0..count {
+                let along = rng.random_range(0.0..0.5) * f64::from(case % 3 != 0);
+                let target = apex.lerp(rim[i], along);
+                let from = target + DVec3::new(0.3, -0.2, 1.0 + rng.random_range(0.0..1.0));
+                let shift = |p: DVec3| p + offset;
+                let shear = Shear::new(shift(from), shift(target) - shift(from), 1.0);
+                let hit = |i: usize| shear.hit(&[apex, rim[i], rim[(i + 1) % count]].map(shift)).is_some();
+                assert!((0..count).any(hit), "case {case}, {i} of {count}");
+            }
+        }
+    }
+}

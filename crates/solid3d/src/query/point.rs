@@ -1,0 +1,104 @@
+//! A point and a placed shape.
+
+use std::f64::consts::TAU;
+
+use glam::{DAffine3, DVec3};
+
+use super::cast::bounded;
+use super::{Distance, distance, intersects, placed};
+use crate::error::{Error, Result};
+use crate::shape::{Shape, ShapeKind};
+
+/// Whether a point is in a placed shape: in a convex shape or a solid mesh, or on the surface of a mesh or a complex shape.
+/// Exact for solid meshes, for corners as placed; for convex shapes right beyond 1e-12 of the size of the data.
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// let (ball, here) = (Shape::sphere(1.0)?, DAffine3::IDENTITY);
+/// assert!(query::contains_point(&ball, &here, DVec3::X)?);
+/// assert!(!query::contains_point(&ball, &here, DVec3::X * 1.001)?);
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<bool> {
+    let (point, at) = as_shape(point)?;
+    intersects(shape, placement, &point, &at)
+}
+
+/// The point of a placed shape that is closest to a point, and their distance: of solids 0 inside, where the point itself is the
+/// closest. Cost and error are those of [`distance`].
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// let block = Shape::cuboid([2.0, 2.0, 2.0])?;
+/// let closest = query::closest_point(&block, &DAffine3::IDENTITY, DVec3::new(4.0, 5.0, 0.5))?;
+/// assert_eq!((closest.distance, closest.point), (5.0, DVec3::new(1.0, 1.0, 0.5)));
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn closest_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<ClosestPoint> {
+    let (point, at) = as_shape(point)?;
+    let Distance { distance, point_on_a, .. } = distance(shape, placement, &point, &at)?;
+    Ok(ClosestPoint { point: point_on_a, distance })
+}
+
+/// The point of a shape that is closest to another point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosestPoint {
+    /// The closest point of the shape. Space: world.
+    pub point: DVec3,
+    /// The distance to it, at least 0.
+    pub distance: f64,
+}
+
+/// How often a mesh winds around a point: the generalised winding number. Of a closed mesh that is not solid it is a whole number,
+/// 1 inside when its triangles show their front outside; of a mesh with holes, overlaps or faces that are turned the wrong way
+/// it is near 1 well inside and near 0 well outside, so that above 0.5 is a good guess for inside. On the surface it jumps, and is
+/// some value between.
+///
+/// The sum of the solid angles of all triangles over that of a sphere (Jacobson, Kavan and Sorkine-Hornung, *Robust
+/// Inside-Outside Segmentation using Generalized Winding Numbers*, 2013), each by the formula of Van Oosterom and Strackee, 1983. A
+/// mirroring placement does not turn the mesh inside out. The error is some 1e-16 for each triangle. A shape that is not a mesh
+/// is an [`Error::NotAMesh`]. Cost: linear.
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let closed = Shape::mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let open = Shape::mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2]])?;
+/// let here = DAffine3::IDENTITY;
+/// let of = |mesh: &Shape, x: f64| query::winding_number(mesh, &here, DVec3::splat(x));
+/// assert!((of(&closed, 0.2)? - 1.0).abs() < 1e-12 && of(&closed, 2.0)?.abs() < 1e-12);
+/// assert!(of(&open, 0.1)? > 0.5 && of(&open, 2.0)?.abs() < 0.1);
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn winding_number(mesh: &Shape, placement: &DAffine3, point: DVec3) -> Result<f64> {
+    let placed = placed(mesh, placement)?;
+    bounded("point", point)?;
+    let (Some(vertices), Some(triangles), ShapeKind::Mesh) = (mesh.vertices(), mesh.triangles(), mesh.kind())
+    else {
+        return Err(Error::NotAMesh { kind: mesh.kind() });
+    };
+    let seen = |i: u32| placed.placement.transform_point3(vertices[i as usize]) - point;
+    let halves: f64 = triangles.iter().map(|t| half_solid_angle(t.map(seen))).sum();
+    Ok(halves / TAU * placed.placement.matrix3.determinant().signum())
+}
+
+/// Half of the solid angle of a triangle seen from the origin; positive when its corners run clockwise there, that is, when it
+/// shows its back. 0 where the origin is a corner.
+fn half_solid_angle(corners: [DVec3; 3]) -> f64 {
+    // Only directions count; unit vectors stay in range whatever the unit of length.
+    let unit = corners.map(|p| {
+        let largest = p.abs().max_element();
+        if largest > 0.0 { (p / largest).normalize() } else { DVec3::ZERO }
+    });
+    let [a, b, c] = unit;
+    if unit.contains(&DVec3::ZERO) {
+        return 0.0;
+    }
+    a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+}
+
+/// A point as a shape, which is placed.
+fn as_shape(point: DVec3) -> Result<(Shape, DAffine3)> {
+    bounded("point", point)?;
+    Ok((Shape::convex_hull(&[DVec3::ZERO])?, DAffine3::from_translation(point)))
+}

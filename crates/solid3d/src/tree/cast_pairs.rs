@@ -1,0 +1,88 @@
+//! Branch and bound for two trees, one of which moves.
+
+use glam::DVec3;
+
+use super::nearest::push_unless_far;
+use super::node::Child;
+use super::pairs::{Duel, Step};
+use super::ray::TreeRay;
+use super::relative::Relative;
+use super::{Place, Traversal, Tree};
+use crate::Aabb;
+
+/// Visits the pairs of leaves that may hold primitives which meet before `until`, when `b` moves by `motion` (in the space of
+/// `a`) in a unit of time; those that may meet first come first. The slack in `a` must cover the error of the motion too.
+///
+/// `visit` lowers `until` as it finds earlier contacts. Nothing that meets earlier is lost.
+///
+/// ```
+/// use solid3d::{Aabb, glam::{DAffine3, DVec3}, tree::{Relative, Traversal, Tree, cast_pairs}};
+/// let unit = |i: u32| Aabb::new(DVec3::X * f64::from(i), DVec3::X * f64::from(i) + 0.5);
+/// let tree = Tree::build(&(0..100).map(unit).collect::<Vec<_>>());
+/// let b_to_a = DAffine3::from_translation(DVec3::new(0.0, 3.0, 0.0));
+/// let relative = Relative { b_to_a, a_to_b: b_to_a.inverse(), slack_in_a: 1e-12, slack_in_b: 1e-12 };
+/// let visited = |motion: DVec3| {
+///     let mut pairs = 0;
+///     cast_pairs(&tree, &tree, &relative, motion, &mut 1.0, &mut Traversal::default(), |_, _, _| pairs += 1);
+///     pairs
+/// };
+/// assert!(visited(DVec3::Y * -2.4) == 0 && visited(DVec3::Y * -2.6) > 0);
+/// ```
+pub fn cast_pairs(
+    a: &Tree,
+    b: &Tree,
+    relative: &Relative,
+    motion: DVec3,
+    until: &mut f64,
+    traversal: &mut Traversal,
+    mut visit: impl FnMut(&[u32], &[u32], &mut f64),
+) {
+    let duel = Duel::new(a, b, relative);
+    let box_a = |place: Place| a.normal.unpack(&a.box_at(place));
+    let moving_b = |place: Place| {
+        let bounds: Aabb = b.normal.unpack(&b.box_at(place)).transformed(&relative.b_to_a);
+        let half_extents = bounds.half_extents() * (1.0 + 4.0 * f64::EPSILON) + relative.slack_in_a;
+        TreeRay { origin: bounds.center(), direction: motion, half_extents }
+    };
+    let Traversal { counters, near_pairs: stack, .. } = traversal;
+    stack.clear();
+    stack.push((0.0, (Place::ROOT, Place::ROOT)));
+    while let Some((least, (in_a, in_b))) = stack.pop() {
+        if least >= *until {
+            continue;
+        }
+        let from = stack.len();
+        match duel.step(in_a, in_b) {
+            Step::Leaves(leaf_a, leaf_b) => {
+                counters.leaf_visits += 1;
+                visit(leaf_a, leaf_b, until);
+            }
+            Step::OpenA(node) => {
+                counters.box_tests += 1;
+                let moving = moving_b(in_b);
+                for lane in used(&a.nodes[node].child) {
+                    let place = Place::lane(node, lane);
+                    if let Some(least) = moving.reaches(&box_a(place)) {
+                        push_unless_far((least, (place, in_b)), *until, stack, from);
+                    }
+                }
+            }
+            Step::OpenB(node) => {
+                counters.box_tests += 1;
+                let still = box_a(in_a);
+                for lane in used(&b.nodes[node].child) {
+                    let place = Place::lane(node, lane);
+                    if let Some(least) = moving_b(place).reaches(&still) {
+                        push_unless_far((least, (in_a, place)), *until, stack, from);
+                    }
+                }
+            }
+            Step::Nothing => {}
+        }
+    }
+}
+
+/// The lanes in use.
+fn used(children: &[Child]) -> impl Iterator<Item = usize> {
+    children.iter().enumerate().filter(|(_, child)| **child != Child::EMPTY).map(|(lane, _)| lane)
+}

@@ -1,0 +1,150 @@
+//! Rays against all objects of a world.
+
+use super::object::{Object, Staleness};
+use super::{ObjectId, World};
+use crate::bounds::Aabb;
+use crate::error::Result;
+use crate::pair::{Hits, Ray, RayHit, RayOptions, Scratch, Wanted, entry, ray_hits, world_bounds};
+
+/// Where a ray meets an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObjectHit {
+    /// The object.
+    pub object: ObjectId,
+    /// Where, and which surface.
+    pub hit: RayHit,
+}
+
+/// Beyond the rounding of when a ray comes into a box, relative to the coordinates of either.
+const ROUNDING: f64 = 1e-14;
+
+impl World {
+    /// What a ray or segment meets first, among the objects that `counts` lets through; `None` when it meets nothing.
+    /// Of objects that are met at the same `t`, the one that comes first in the order of pairs.
+    ///
+    /// See [`query::cast_ray`](crate::query::cast_ray) for what a hit is. Objects are met where they are now, whatever their
+    /// response. Cost: follows the objects whose boxes the ray meets; those that were moved since the last test are looked at
+    /// one by one.
+    ///
+    /// ```
+    /// use solid3d::{Shape, World, glam::{DAffine3, DVec3}, query::{Ray, RayOptions}};
+    /// let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+    /// let near = world.add(&ball, DAffine3::from_translation(DVec3::X * 5.0))?;
+    /// let far = world.add(&ball, DAffine3::from_translation(DVec3::X * 9.0))?;
+    /// let (ray, options) = (Ray::new(DVec3::ZERO, DVec3::X), RayOptions::default());
+    /// let first = world.cast_ray(&ray, &options, |_| true)?.unwrap();
+    /// assert_eq!((first.object, first.hit.t), (near, 4.0));
+    /// let first = world.cast_ray(&ray, &options, |object| object != near)?.unwrap();
+    /// assert_eq!((first.object, first.hit.t), (far, 8.0));
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn cast_ray(
+        &self,
+        ray: &Ray,
+        options: &RayOptions,
+        mut counts: impl FnMut(ObjectId) -> bool,
+    ) -> Result<Option<ObjectHit>> {
+        let (ray, mut best) = (ray.checked()?, None::<ObjectHit>);
+        let mut scratch = Scratch::default();
+        self.along(ray, |object, until| {
+            if counts(object) {
+                let mut hits = Hits::new(ray, options, Wanted::First);
+                hits.until = until;
+                ray_hits(self.objects[object].placed(), &mut hits, &mut scratch);
+                let order = |id: ObjectId| self.objects[id].order;
+                let better = |hit: &RayHit| {
+                    best.is_none_or(|best| (hit.t, order(object)) < (best.hit.t, order(best.object)))
+                };
+                if let Some(hit) = hits.found.filter(better) {
+                    best = Some(ObjectHit { object, hit });
+                    return hit.t;
+                }
+            }
+            until
+        });
+        Ok(best)
+    }
+
+    /// Everything that a ray or segment meets, among the objects that `counts` lets through: in the order of `t`, then of pairs,
+    /// then of primitives. See [`query::cast_ray_all`](crate::query::cast_ray_all) and [`cast_ray`](World::cast_ray).
+    pub fn cast_ray_all(
+        &self,
+        ray: &Ray,
+        options: &RayOptions,
+        mut counts: impl FnMut(ObjectId) -> bool,
+    ) -> Result<Vec<ObjectHit>> {
+        let (ray, mut all, mut scratch) = (ray.checked()?, Vec::new(), Scratch::default());
+        self.along(ray, |object, until| {
+            if counts(object) {
+                let mut hits = Hits::new(ray, options, Wanted::All);
+                ray_hits(self.objects[object].placed(), &mut hits, &mut scratch);
+                all.extend(hits.sorted().into_iter().map(|hit| ObjectHit { object, hit }));
+            }
+            until
+        });
+        let order = |hit: &ObjectHit| self.objects[hit.object].order;
+        // Stable: the hits of one object stay in their order.
+        all.sort_by(|x, y| x.hit.t.total_cmp(&y.hit.t).then(order(x).cmp(&order(y))));
+        Ok(all)
+    }
+
+    /// Whether a ray or segment meets any of the objects that `counts` lets through: the first that is found ends the search. See
+    /// [`cast_ray`](World::cast_ray).
+    pub fn ray_meets(
+        &self,
+        ray: &Ray,
+        options: &RayOptions,
+        mut counts: impl FnMut(ObjectId) -> bool,
+    ) -> Result<bool> {
+        let (ray, mut met, mut scratch) = (ray.checked()?, false, Scratch::default());
+        self.along(ray, |object, until| {
+            if !met && counts(object) {
+                let mut hits = Hits::new(ray, options, Wanted::Any);
+                ray_hits(self.objects[object].placed(), &mut hits, &mut scratch);
+                met = hits.found.is_some();
+            }
+            if met { f64::NEG_INFINITY } else { until }
+        });
+        Ok(met)
+    }
+
+    /// Visits the objects whose boxes a ray meets, about from the nearest on, each with the greatest `t` that is of interest; each
+    /// visit gives the new one.
+    fn along(&self, ray: &Ray, visit: impl FnMut(ObjectId, f64) -> f64) {
+        let far = ray.origin.abs().max_element();
+        let bound = |bounds: &Aabb| {
+            let margin = ROUNDING * (far + bounds.min.abs().max(bounds.max.abs()).max_element());
+            entry(&bounds.inflated(margin), ray.origin, ray.direction)
+                .map_or(f64::INFINITY, |t| t * (1.0 - ROUNDING))
+        };
+        self.nearest(&bound, ray.max, visit);
+    }
+
+    /// Visits the objects whose boxes have a bound up to `until`, and those whose boxes in the broad phase are out of date; each visit
+    /// takes the current `until`, and gives the new one.
+    pub(super) fn nearest(
+        &self,
+        bound: &dyn Fn(&Aabb) -> f64,
+        until: f64,
+        mut visit: impl FnMut(ObjectId, f64) -> f64,
+    ) {
+        let mut until = until;
+        for &id in self.stirred.iter().filter(|&&id| self.objects.get(id).is_some_and(is_out_of_date)) {
+            if bound(&world_bounds(self.objects[id].placed())) <= until {
+                until = visit(id, until);
+            }
+        }
+        self.broad.for_each_nearest(bound, until, &mut |proxy| {
+            let id = self.by_proxy[proxy as usize];
+            if self.objects.get(id).is_some_and(|object| !is_out_of_date(object)) {
+                until = visit(id, until);
+            }
+            until
+        });
+    }
+}
+
+/// Whether the broad phase has an earlier box of the object.
+fn is_out_of_date(object: &Object) -> bool {
+    object.staleness == Staleness::Bounds
+}

@@ -1,0 +1,195 @@
+//! Shapes that move along straight lines: by laws, and against small steps.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and prints its hit rate"
+)]
+
+mod common;
+
+use common::{direction, in_cube, placement, random_complex, random_mesh, shape_of, torus};
+use glam::{DAffine3, DVec3};
+use rand::Rng;
+use rand::rngs::StdRng;
+use solid_oracle::generate::{random_shape, seeded};
+use solid3d::{Shape, glam, query};
+
+fn some_shape(rng: &mut StdRng, case: u32) -> Shape {
+    match case % 4 {
+        0 => random_mesh(rng, 50).shape(),
+        1 => random_complex(rng, 10).shape(),
+        _ => shape_of(&random_shape(rng, 1.0)),
+    }
+}
+
+fn moved(at: &DAffine3, motion: DVec3, t: f64) -> DAffine3 {
+    DAffine3 { translation: at.translation + motion * t, ..*at }
+}
+
+/// Steps along the way, of which none may find what a cast did not.
+const STEPS: u32 = 40;
+
+/// At the time of a cast the shapes are as near as makes no difference, before it they are apart, and without one they never meet.
+#[test]
+fn a_cast_is_when_shapes_first_meet() {
+    let seed = 101;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut hits, mut at_start, mut worst) = (0, 0, 0.0f64);
+    let cases = 1600;
+    for case in 0..cases {
+        let size = 10f64.powi(rng.random_range(-5..6));
+        let (a, b) = (some_shape(&mut rng, case), some_shape(&mut rng, case / 4));
+        let scaled = |at: DAffine3| DAffine3::from_scale(DVec3::splat(size)) * at;
+        let (at_a, mut at_b) = (scaled(placement(&mut rng, 1.0)), scaled(placement(&mut rng, 1.0)));
+        let away = direction(&mut rng) * rng.random_range(2.0..6.0) * size;
+        at_b.translation = at_a.translation + away;
+        let motion_b = in_cube(&mut rng) * size;
+        let motion_a = motion_b + (away + in_cube(&mut rng) * 2.5 * size) * rng.random_range(0.5..1.5);
+        let (start_a, start_b) = (at_a, at_b);
+        let cast = query::cast_shape(&a, &at_a, motion_a, &b, &at_b, motion_b).unwrap();
+        let context = || {
+            format!("case {case}: {} {} {at_a:?} {at_b:?} {motion_a} {motion_b} {cast:?}", a.kind(), b.kind())
+        };
+        let at = |t: f64| (moved(&at_a, motion_a, t), moved(&at_b, motion_b, t));
+        let meet = |t: f64| {
+            let (at_a, at_b) = at(t);
+            query::intersects(&a, &at_a, &b, &at_b).unwrap()
+        };
+        let gap = |t: f64| {
+            let (at_a, at_b) = at(t);
+            query::distance(&a, &at_a, &b, &at_b).unwrap().distance
+        };
+        let until = cast.map_or(1.0, |cast| cast.time);
+        for step in 0..STEPS {
+            // Relative to the end, for the contact itself may be at it.
+            let t = until * f64::from(step) / f64::from(STEPS);
+            assert!(t >= until || !meet(t), "{}: they meet at {t}", context());
+        }
+        let Some(cast) = cast else {
+            assert!(!meet(1.0), "{}", context());
+            continue;
+        };
+        hits += 1;
+        at_start += i32::from(cast.time == 0.0);
+        let left = gap(cast.time) / size;
+        worst = worst.max(left);
+        assert!(left < 1e-9, "{}: {left}", context());
+        let (at_a, at_b) = at(cast.time);
+        let point = Shape::convex_hull(&[cast.point]).unwrap();
+        for (shape, at) in [(&a, &at_a), (&b, &at_b)] {
+            let off = query::distance(shape, at, &point, &DAffine3::IDENTITY).unwrap().distance;
+            assert!(off < 1e-8 * size, "{}: {off}", context());
+        }
+        if let Some(normal) = cast.normal {
+            assert!((normal.length() - 1.0).abs() < 1e-12);
+            let approach = normal.dot(motion_a - motion_b) / (motion_a - motion_b).length();
+            assert!(approach < 1e-6, "{}: they part along the normal, {approach}", context());
+        }
+        // Only the relative motion counts, and who is which does not.
+        let swapped =
+            query::cast_shape(&b, &start_b, motion_b - motion_a, &a, &start_a, DVec3::ZERO).unwrap();
+        assert!(swapped.is_some(), "{}: swapped", context());
+        let slope = cast
+            .normal
+            .map_or(1.0, |normal| normal.dot(motion_a - motion_b).abs() / (motion_a - motion_b).length());
+        let difference = (swapped.unwrap().time - cast.time).abs();
+        assert!(slope < 1e-2 || difference < 1e-8, "{}: {swapped:?}", context());
+    }
+    println!("{hits} of {cases} hit, {at_start} at the start; the widest gap is {worst:e} of the size");
+    assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))));
+}
+
+/// Two meshes by their trees, and primitive by primitive.
+#[test]
+fn meshes_agree_with_all_pairs_of_primitives() {
+    let mut rng = seeded(102);
+    let (mut hits, cases) = (0, 40);
+    for case in 0..cases {
+        let (x, y) = (torus(9, 6, 0.4), random_mesh(&mut rng, 40));
+        let (at_x, mut at_y) = (placement(&mut rng, 1.0), placement(&mut rng, 1.0));
+        let away = direction(&mut rng) * 4.0;
+        at_y.translation = at_x.translation + away;
+        let motion = (away + in_cube(&mut rng) * 2.0) * 1.2;
+        let found = query::cast_shape(&x.shape(), &at_x, motion, &y.shape(), &at_y, DVec3::ZERO).unwrap();
+        let mut first = f64::INFINITY;
+        for p in x.hulls(&at_x) {
+            let p = Shape::convex_hull(&p).unwrap();
+            for q in y.hulls(&at_y) {
+                let (q, here) = (Shape::convex_hull(&q).unwrap(), DAffine3::IDENTITY);
+                let cast = query::cast_shape(&p, &here, motion, &q, &here, DVec3::ZERO).unwrap();
+                first = cast.map_or(first, |cast| first.min(cast.time));
+            }
+        }
+        let time = found.map_or(f64::INFINITY, |cast| cast.time);
+        assert!(time == first || (time - first).abs() < 1e-9, "case {case}: {time} {first}");
+        hits += i32::from(found.is_some());
+    }
+    println!("{hits} of {cases} hit");
+    assert!((0.3..=0.8).contains(&(f64::from(hits) / f64::from(cases))));
+}
+
+#[test]
+fn a_solid_takes_in_what_starts_inside() {
+    let solid = torus(24, 12, 0.4).shape().into_solid().unwrap();
+    let (ball, here) = (Shape::sphere(0.01).unwrap(), DAffine3::IDENTITY);
+    let inside = DAffine3::from_translation(DVec3::X * 0.72);
+    let cast = query::cast_shape(&ball, &inside, DVec3::Y, &solid, &here, DVec3::ZERO).unwrap().unwrap();
+    assert_eq!((cast.time, cast.normal), (0.0, None));
+    let hole = query::cast_shape(&ball, &here, DVec3::Y, &solid, &here, DVec3::ZERO).unwrap();
+    assert_eq!(hole, None);
+}
+
+#[test]
+fn bad_motions_and_points_are_refused_by_name() {
+    let (ball, here) = (Shape::sphere(1.0).unwrap(), DAffine3::IDENTITY);
+    for bad in [f64::NAN, f64::INFINITY, -1.1e100] {
+        let (vector, zero) = (DVec3::new(0.0, bad, 0.0), DVec3::ZERO);
+        let errors = [
+            (query::cast_shape(&ball, &here, vector, &ball, &here, zero).unwrap_err(), "motion_a"),
+            (query::cast_shape(&ball, &here, zero, &ball, &here, vector).unwrap_err(), "motion_b"),
+            (query::closest_point(&ball, &here, vector).unwrap_err(), "point"),
+            (query::contains_point(&ball, &here, vector).unwrap_err(), "point"),
+        ];
+        for (error, name) in errors {
+            assert!(error.to_string().starts_with(name), "{error}");
+        }
+        let mesh = torus(3, 3, 0.5).shape();
+        assert!(query::winding_number(&mesh, &here, vector).unwrap_err().to_string().starts_with("point"));
+    }
+    assert!(query::winding_number(&ball, &here, DVec3::ZERO).unwrap_err().to_string().contains("sphere"));
+}
+
+/// Wild but allowed numbers neither panic nor hang.
+#[test]
+fn wild_motions_are_survived() {
+    let mut rng = seeded(103);
+    let wild = [0.0, 5e-324, 1e-100, 1e-30, 1.0, -3.0, 1e16, 1e100, -1e100];
+    for case in 0..600 {
+        let (a, b) = (some_shape(&mut rng, case), some_shape(&mut rng, case / 4));
+        let mut pick = || DVec3::from_array(std::array::from_fn(|_| wild[rng.random_range(0..wild.len())]));
+        let at = [pick(), pick()].map(DAffine3::from_translation);
+        let cast = query::cast_shape(&a, &at[0], pick(), &b, &at[1], pick()).unwrap();
+        assert!(cast.is_none_or(|cast| (0.0..=1.0).contains(&cast.time)), "{cast:?}");
+    }
+}
+
+/// The winding number of closed meshes is a whole number, and not 0 exactly inside.
+#[test]
+fn winding_numbers_tell_inside_from_outside() {
+    let mut rng = seeded(104);
+    let (mut inside, cases) = (0, 1500);
+    for _ in 0..cases {
+        let soup = torus(14, 9, rng.random_range(0.2..0.8));
+        let (surface, at) = (soup.shape(), placement(&mut rng, 2.0));
+        let solid = surface.clone().into_solid().unwrap();
+        let point = at.transform_point3(in_cube(&mut rng) * DVec3::new(0.9, 0.4, 0.9));
+        let winding = query::winding_number(&surface, &at, point).unwrap();
+        let contained = query::contains_point(&solid, &at, point).unwrap();
+        assert!((winding - winding.round()).abs() < 1e-9, "{winding}");
+        assert_eq!(winding.round() != 0.0, contained, "{winding}");
+        inside += i32::from(contained);
+    }
+    println!("{inside} of {cases} inside");
+    assert!((0.3..=0.7).contains(&(f64::from(inside) / f64::from(cases))));
+}

@@ -1,0 +1,290 @@
+//! Rays against every kind of shape under every kind of placement: by laws, and against slow twins.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and prints its hit rate"
+)]
+
+mod common;
+
+use common::{bumpy_sphere, direction, in_cube, placement, random_complex, random_mesh, shape_of, torus};
+use glam::{DAffine3, DVec3};
+use rand::Rng;
+use rand::rngs::StdRng;
+use solid_oracle::generate::{random_shape, seeded};
+use solid3d::query::{self, Faces, FromInside, Ray, RayOptions};
+use solid3d::{Error, Shape, ShapeKind, glam};
+
+const PASSES: RayOptions = RayOptions { faces: Faces::Both, from_inside: FromInside::Passes };
+const BY_DEFAULT: RayOptions = RayOptions { faces: Faces::Both, from_inside: FromInside::Hits };
+
+/// A shape of about unit size.
+fn some_shape(rng: &mut StdRng, case: u32) -> Shape {
+    match case % 4 {
+        0 => random_mesh(rng, 60).shape(),
+        1 => random_complex(rng, 60).shape(),
+        _ => shape_of(&random_shape(rng, 1.0)),
+    }
+}
+
+/// A ray through the box of what is placed, somewhere: it has a fair chance to hit.
+fn some_ray(rng: &mut StdRng, shape: &Shape, at: &DAffine3) -> Ray {
+    let bounds = query::bounds(shape, at).unwrap();
+    let target = bounds.center() + in_cube(rng) * bounds.half_extents() * 0.9;
+    let from = target + direction(rng) * bounds.half_extents().max_element() * rng.random_range(0.1..4.0);
+    Ray::new(from, (target - from) * 10f64.powi(rng.random_range(-3..3)))
+}
+
+/// A segment is a shape too: a ray hits if and only if they intersect, and first where they first do.
+#[test]
+fn a_ray_hits_if_and_only_if_its_segment_intersects() {
+    let seed = 91;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let mut by_kind = [[0u32; 2]; ShapeKind::ALL.len()];
+    for case in 0..4000 {
+        let size = 10f64.powi(rng.random_range(-6..7));
+        let shape = some_shape(&mut rng, case);
+        let mut at = placement(&mut rng, 1.0);
+        at = DAffine3::from_scale(DVec3::splat(size)) * at;
+        let ray = some_ray(&mut rng, &shape, &at);
+        let ray = ray.until(6.0 * size / ray.direction.length());
+        let segment = |max: f64| Shape::convex_hull(&[ray.origin, ray.at(max)]).unwrap();
+        let here = DAffine3::IDENTITY;
+        let meets = query::intersects(&shape, &at, &segment(ray.max), &here).unwrap();
+        let hit = query::cast_ray(&shape, &at, &ray, &BY_DEFAULT).unwrap();
+        let context = || format!("case {case}: {} {at:?} {ray:?} {hit:?}", shape.kind());
+        // What is decided by rounding: the shape nearly touches the segment.
+        let extent = size + (ray.at(ray.max) - ray.origin).length();
+        if hit.is_some() != meets {
+            let gap = query::distance(&shape, &at, &segment(ray.max), &here).unwrap().distance;
+            assert!(gap < 1e-10 * extent, "{}: {meets}, {gap}", context());
+            continue;
+        }
+        assert_eq!(query::ray_meets(&shape, &at, &ray, &BY_DEFAULT).unwrap(), meets, "{}", context());
+        let all = query::cast_ray_all(&shape, &at, &ray, &BY_DEFAULT).unwrap();
+        assert_eq!(all.first(), hit.as_ref(), "{}", context());
+        assert!(all.iter().all(|hit| (0.0..=ray.max).contains(&hit.t)));
+        let kind = ShapeKind::ALL.iter().position(|kind| *kind == shape.kind()).unwrap();
+        by_kind[kind][usize::from(meets)] += 1;
+        let Some(hit) = hit else { continue };
+        for hit in &all {
+            let point = Shape::convex_hull(&[hit.point]).unwrap();
+            let off = query::distance(&shape, &at, &point, &here).unwrap().distance;
+            assert!(off < 1e-9 * extent, "{}: {off}", context());
+            if let Some(surface) = hit.surface {
+                assert!((surface.normal.length() - 1.0).abs() < 1e-12, "{}", context());
+                let facing = surface.normal.dot(ray.direction) / ray.direction.length();
+                assert!(facing < 1e-6, "{}: {facing}", context());
+            }
+        }
+        // Nothing is met before.
+        let before = hit.t - 1e-6 * extent / ray.direction.length();
+        if before > 0.0 {
+            let early = query::distance(&shape, &at, &segment(before), &here).unwrap().distance;
+            let grazes = hit
+                .surface
+                .is_some_and(|s| s.normal.dot(ray.direction).abs() < 1e-2 * ray.direction.length());
+            assert!(early > 0.0 || grazes, "{}: met before {before}", context());
+        }
+    }
+    for (kind, [misses, hits]) in ShapeKind::ALL.iter().zip(by_kind) {
+        println!("{kind}: {hits} hits, {misses} misses");
+        let rate = f64::from(hits) / f64::from(hits + misses);
+        assert!((0.1..=0.85).contains(&rate), "{kind}: {rate}");
+    }
+    let hits: u32 = by_kind.iter().map(|[_, hits]| hits).sum();
+    let rate = f64::from(hits) / by_kind.as_flattened().iter().sum::<u32>() as f64;
+    println!("{hits} hits in all");
+    assert!((0.3..=0.7).contains(&rate), "{rate}");
+}
+
+/// Where the ray of local space meets the shape, that of the world meets it, at the same `t`.
+#[test]
+fn a_placement_takes_hits_along() {
+    let mut rng = seeded(92);
+    let (mut hits, cases) = (0, 3000);
+    for case in 0..cases {
+        let shape = some_shape(&mut rng, case);
+        let at = placement(&mut rng, 3.0);
+        let local = some_ray(&mut rng, &shape, &DAffine3::IDENTITY);
+        let world = Ray {
+            origin: at.transform_point3(local.origin),
+            direction: at.transform_vector3(local.direction),
+            ..local
+        };
+        let in_local = query::cast_ray(&shape, &DAffine3::IDENTITY, &local, &PASSES).unwrap();
+        let in_world = query::cast_ray(&shape, &at, &world, &PASSES).unwrap();
+        let (Some(x), Some(y)) = (in_local, in_world) else {
+            // A ray that only grazes may be decided by rounding; these do not.
+            assert_eq!(in_local.is_some(), in_world.is_some(), "case {case}");
+            continue;
+        };
+        hits += 1;
+        let (on_x, on_y) = (x.surface.unwrap(), y.surface.unwrap());
+        let slope = on_x.normal.dot(local.direction).abs() / local.direction.length();
+        assert!((x.t - y.t).abs() * local.direction.length() * slope < 1e-9, "case {case}: {x:?} {y:?}");
+        assert_eq!((on_x.back, on_x.primitive), (on_y.back, on_y.primitive), "case {case}");
+        // The tangent plane is taken along: two of its vectors stay across the normal.
+        let tangents =
+            [on_x.normal.any_orthonormal_vector(), on_x.normal.cross(on_x.normal.any_orthonormal_vector())];
+        for tangent in tangents.map(|tangent| at.transform_vector3(tangent).normalize()) {
+            assert!(tangent.dot(on_y.normal).abs() < 1e-5, "case {case}: {on_x:?} {on_y:?}");
+        }
+    }
+    println!("{hits} of {cases} hit");
+    assert!((0.3..=0.8).contains(&(f64::from(hits) / f64::from(cases))));
+}
+
+/// All triangles one by one, in the world.
+#[test]
+fn meshes_agree_with_brute_force() {
+    let seed = 93;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut hits, mut cases) = (0, 0);
+    for _ in 0..60 {
+        let soup = random_mesh(&mut rng, 400);
+        let (shape, at) = (soup.shape(), placement(&mut rng, 2.0));
+        let placed = soup.placed(&at);
+        for _ in 0..100 {
+            let ray = some_ray(&mut rng, &shape, &at);
+            let mut expected: Vec<(f64, u32)> = Vec::new();
+            let mut doubtful = false;
+            for (primitive, corners) in (0u32..).zip(soup.triangles()) {
+                let [a, b, c] = corners.map(|i| placed[i as usize] - ray.origin);
+                let normal = (b - a).cross(c - a);
+                let along = normal.dot(ray.direction);
+                let shares = [b.cross(c), c.cross(a), a.cross(b)].map(|n| n.dot(ray.direction) / along);
+                let least = shares.iter().copied().fold(f64::INFINITY, f64::min);
+                let t = normal.dot(a) / along;
+                if least > 1e-9 && t > 0.0 {
+                    expected.push((t, primitive));
+                }
+                let flat =
+                    normal.length() < 1e-9 || along.abs() < 1e-9 * normal.length() * ray.direction.length();
+                doubtful |= least.abs() <= 1e-9 || flat && normal.length() > 0.0;
+            }
+            if doubtful {
+                continue;
+            }
+            cases += 1;
+            expected.sort_by(|x, y| x.partial_cmp(y).unwrap());
+            let all = query::cast_ray_all(&shape, &at, &ray, &PASSES).unwrap();
+            let found: Vec<u32> = all.iter().map(|hit| hit.surface.unwrap().primitive).collect();
+            assert_eq!(found, expected.iter().map(|&(_, primitive)| primitive).collect::<Vec<_>>());
+            for (hit, (t, _)) in all.iter().zip(&expected) {
+                assert!((hit.t - t).abs() <= 1e-10 * (1.0 + t), "{hit:?} {t}");
+            }
+            let first = query::cast_ray(&shape, &at, &ray, &PASSES).unwrap();
+            assert_eq!(first.as_ref(), all.first());
+            for (faces, back) in [(Faces::Front, false), (Faces::Back, true)] {
+                let options = RayOptions { faces, ..PASSES };
+                let some = query::cast_ray_all(&shape, &at, &ray, &options).unwrap();
+                let of_side: Vec<_> =
+                    all.iter().filter(|hit| hit.surface.unwrap().back == back).copied().collect();
+                assert_eq!(some, of_side);
+            }
+            hits += usize::from(!expected.is_empty());
+        }
+    }
+    println!("{hits} of {cases} hit");
+    assert!(cases > 4000 && (0.3..=0.8).contains(&(hits as f64 / cases as f64)));
+}
+
+/// From inside of a closed mesh, every ray comes out: also at corners, along edges, and from far away after an affine map.
+#[test]
+fn no_ray_leaves_a_closed_mesh_unseen() {
+    let mut rng = seeded(94);
+    for round in 0..20 {
+        let soup = bumpy_sphere(&mut rng, 12, 17);
+        let mut at = placement(&mut rng, 1.0);
+        at.translation *= 10f64.powi(round % 6);
+        let shape = soup.shape();
+        // The poles of the sphere are rings of vertices, open in between.
+        let closed = soup.triangles();
+        for case in 0..300 {
+            let triangle = closed[rng.random_range(0..closed.len())].map(|i| soup.vertices[i as usize]);
+            let target = match case % 3 {
+                0 => triangle[0],
+                1 => triangle[0].lerp(triangle[1], rng.random_range(0.0..1.0)),
+                _ => (triangle[0] + triangle[1] + triangle[2]) / 3.0,
+            };
+            let origin = at.transform_point3(DVec3::ZERO);
+            let ray = Ray::new(origin, at.transform_vector3(target));
+            let hit = query::cast_ray(&shape, &at, &ray, &PASSES).unwrap();
+            let pole = target.y.abs() > 0.95 * target.length();
+            assert!(hit.is_some() || pole, "round {round}, case {case}: {ray:?}");
+        }
+    }
+}
+
+#[test]
+fn a_solid_mesh_is_hit_from_inside() {
+    let soup = torus(24, 12, 0.4);
+    let (surface, here) = (soup.shape(), DAffine3::IDENTITY);
+    let solid = surface.clone().into_solid().unwrap();
+    let tube = soup.vertices.iter().copied().fold(DVec3::ZERO, |far, v| if v.x > far.x { v } else { far });
+    let inside = Ray::new(tube * 0.75, DVec3::new(0.1, 0.9, 0.05));
+    let hit = query::cast_ray(&solid, &here, &inside, &BY_DEFAULT).unwrap().unwrap();
+    assert_eq!((hit.t, hit.point, hit.surface), (0.0, inside.origin, None));
+    for (shape, options) in [(&surface, BY_DEFAULT), (&solid, PASSES)] {
+        let hit = query::cast_ray(shape, &here, &inside, &options).unwrap().unwrap();
+        assert!(hit.t > 0.0 && hit.surface.is_some());
+    }
+    let all = query::cast_ray_all(&solid, &here, &inside, &BY_DEFAULT).unwrap();
+    assert!(all[0].surface.is_none() && all[1].surface.is_some());
+    let hole = Ray::new(DVec3::ZERO, DVec3::Y);
+    assert_eq!(query::cast_ray(&solid, &here, &hole, &BY_DEFAULT).unwrap(), None);
+}
+
+/// Wild but allowed numbers neither panic nor hang, and what comes back is a number.
+#[test]
+fn wild_rays_are_survived() {
+    let mut rng = seeded(95);
+    let wild = [0.0, -0.0, 5e-324, 1e-310, 1e-100, 1e-30, 1.0, 3.0, 1e16, 1e100, -1e100, -1.0, -1e-100];
+    for case in 0..4000 {
+        let shape = some_shape(&mut rng, case);
+        let mut pick = || DVec3::from_array(std::array::from_fn(|_| wild[rng.random_range(0..wild.len())]));
+        let scale = pick();
+        let ray = Ray::new(pick(), pick());
+        let at = DAffine3 { translation: pick(), ..DAffine3::from_scale(scale) };
+        if let Ok(all) = query::cast_ray_all(&shape, &at, &ray, &BY_DEFAULT) {
+            assert!(all.iter().all(|hit| hit.t >= 0.0), "{all:?}");
+            assert!(
+                all.iter().filter_map(|hit| hit.surface).all(|surface| surface.normal.is_finite()),
+                "{all:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn bad_rays_are_refused_by_name() {
+    let (ball, here) = (Shape::sphere(1.0).unwrap(), DAffine3::IDENTITY);
+    let refused = |ray: Ray, words: &[&str]| {
+        let errors = [
+            query::cast_ray(&ball, &here, &ray, &BY_DEFAULT).unwrap_err(),
+            query::cast_ray_all(&ball, &here, &ray, &BY_DEFAULT).unwrap_err(),
+            query::ray_meets(&ball, &here, &ray, &BY_DEFAULT).unwrap_err(),
+        ];
+        for error in errors {
+            let message = error.to_string();
+            assert!(words.iter().all(|word| message.contains(word)), "{message}");
+        }
+    };
+    for bad in [f64::NAN, f64::INFINITY, 1.1e100] {
+        let vector = DVec3::new(0.0, bad, 1.0);
+        refused(Ray::new(vector, DVec3::X), &["ray.origin", "1e100"]);
+        refused(Ray::new(DVec3::X, vector), &["ray.direction", "1e100"]);
+    }
+    for short in [0.0, 5e-324, 9e-101] {
+        refused(Ray::new(DVec3::X, DVec3::splat(short)), &["ray.direction", "1e-100"]);
+    }
+    for bad in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+        refused(Ray::new(DVec3::X, DVec3::X).until(bad), &["ray.max", "at least 0"]);
+    }
+    let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
+    let error = query::cast_ray(&ball, &flat, &Ray::new(DVec3::X, DVec3::X), &BY_DEFAULT).unwrap_err();
+    assert!(matches!(error, Error::SingularPlacement { .. }));
+}

@@ -1,0 +1,100 @@
+//! Rays and regions of a world, against all objects one by one.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and prints its hit rate"
+)]
+
+mod common;
+
+use common::{direction, in_cube, placement, random_mesh, shape_of};
+use glam::DAffine3;
+use rand::Rng;
+use solid_oracle::generate::{random_shape, seeded};
+use solid3d::query::{self, Ray, RayOptions};
+use solid3d::{BroadPhaseKind, ObjectHit, ObjectId, World, WorldOptions, glam};
+
+/// With either broad phase, and whatever the world knows already: nothing tested, all tested, some moved since, some removed.
+#[test]
+fn a_world_sees_what_its_objects_show() {
+    let options = RayOptions::default();
+    for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+        let mut rng = seeded(111);
+        let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
+        let mut ids: Vec<ObjectId> = Vec::new();
+        let (mut hits, mut cases, mut in_region) = (0, 0, 0);
+        for round in 0..12 {
+            for i in 0..12 {
+                let shape = match i % 3 {
+                    0 => random_mesh(&mut rng, 40).shape(),
+                    _ => shape_of(&random_shape(&mut rng, 1.0)),
+                };
+                ids.push(world.add_ranked(&shape, placement(&mut rng, 4.5), i % 2).unwrap());
+            }
+            if round % 3 > 0 {
+                world.test();
+            }
+            for _ in 0..6 {
+                let id = ids[rng.random_range(0..ids.len())];
+                world.set_placement(id, placement(&mut rng, 4.5)).unwrap();
+            }
+            if round % 2 == 1 {
+                world.remove(ids.swap_remove(round)).unwrap();
+            }
+            if round % 4 == 3 {
+                world.proceed();
+            }
+            let in_order = world.objects();
+            for _ in 0..40 {
+                let target = in_cube(&mut rng) * 4.0;
+                let from = target + direction(&mut rng) * rng.random_range(4.0..16.0);
+                let ray = Ray::new(from, target - from).until(rng.random_range(0.6..2.0));
+                let odd = rng.random_range(0..4);
+                let counts = |id: ObjectId| {
+                    odd > 0 || in_order.iter().position(|other| *other == id).unwrap() % 2 == 0
+                };
+                let mut expected: Vec<ObjectHit> = Vec::new();
+                for &object in in_order.iter().filter(|id| counts(**id)) {
+                    let (shape, at) = (world.shape(object).unwrap(), world.placement(object).unwrap());
+                    let all = query::cast_ray_all(shape, &at, &ray, &options).unwrap();
+                    expected.extend(all.into_iter().map(|hit| ObjectHit { object, hit }));
+                }
+                expected.sort_by(|x, y| x.hit.t.total_cmp(&y.hit.t));
+                let all = world.cast_ray_all(&ray, &options, counts).unwrap();
+                // Those that start at once, inside of several, are in the order of pairs.
+                let times = |hits: &[ObjectHit]| hits.iter().map(|hit| hit.hit.t).collect::<Vec<_>>();
+                assert_eq!(times(&all), times(&expected));
+                assert!(expected.iter().all(|hit| all.contains(hit)));
+                let first = world.cast_ray(&ray, &options, counts).unwrap();
+                assert_eq!(first, all.first().copied());
+                assert_eq!(world.ray_meets(&ray, &options, counts).unwrap(), first.is_some());
+                cases += 1;
+                hits += u32::from(first.is_some());
+
+                let (region, at) = (shape_of(&random_shape(&mut rng, 1.0)), placement(&mut rng, 4.5));
+                let mut expected = in_order.clone();
+                expected.retain(|&id| {
+                    let (shape, placed) = (world.shape(id).unwrap(), world.placement(id).unwrap());
+                    query::intersects(shape, &placed, &region, &at).unwrap()
+                });
+                let mut found = world.objects_in(&region, &at).unwrap();
+                in_region += found.len();
+                found.sort_by_key(|id| in_order.iter().position(|other| other == id));
+                assert_eq!(found, expected);
+            }
+        }
+        println!("{hits} of {cases} rays hit; {in_region} objects in regions");
+        assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))) && in_region > 100);
+    }
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let world = World::new();
+    let ray = Ray::new(glam::DVec3::NAN, glam::DVec3::X);
+    assert!(world.cast_ray(&ray, &RayOptions::default(), |_| true).is_err());
+    assert!(world.cast_ray_all(&ray, &RayOptions::default(), |_| true).is_err());
+    assert!(world.ray_meets(&ray, &RayOptions::default(), |_| true).is_err());
+    let region = solid3d::Shape::sphere(1.0).unwrap();
+    assert!(world.objects_in(&region, &DAffine3::from_scale(glam::DVec3::ZERO)).is_err());
+}
