@@ -1,0 +1,34 @@
+//! Two convex polytopes: do they intersect, and how far apart are they?
+//!
+//! The letters are the thesis's: `v` is the point of the simplex closest to the origin, or an axis; `w` the support point of
+//! A-B against it. A positive `v . w` separates.
+
+mod counters;
+mod gjk_distance;
+mod isa_gjk;
+mod johnson;
+mod memory;
+mod pair;
+mod polytope;
+#[cfg(test)]
+mod tests;
+
+pub use counters::Counters;
+pub use gjk_distance::{Distance, End, Rules, distance};
+pub use isa_gjk::IsaGjk;
+pub use johnson::Johnson;
+pub use memory::Memory;
+pub use pair::{Pair, SupportPoint};
+pub use polytope::Polytope;
+
+/// A test of two polytopes that may learn something about the pair for the next time.
+pub trait ConvexTest {
+    /// What it is called in charts.
+    fn name(&self) -> &'static str;
+
+    /// Whether the polytopes intersect. `memory` is what the same test left for the same pair, or new.
+    fn intersects(&mut self, pair: &Pair, memory: &mut Memory) -> bool;
+
+    /// The work done so far.
+    fn counters(&self) -> Counters;
+}
