@@ -16,7 +16,7 @@ use super::clock::least_seconds;
 use super::output::write_csv;
 use super::random::stream;
 use super::{Claim, Kind, Report, Settings};
-use crate::comparators::polygon::{FlatPolygon, sorted, straightforward};
+use crate::comparators::polygon::{FlatPolygon, Sorted, straightforward};
 use crate::inputs::rotation;
 
 /// Numbers of vertices.
@@ -100,16 +100,19 @@ fn measure(settings: &Settings, vertices: usize, count: usize) -> Row {
     let mut counters = Counters::default();
     let hits = exact.iter().filter(|[a, b]| intersect_straightforward(a, b, &mut counters)).count();
     let each = |seconds: f64| seconds * 1e9 / count as f64;
-    let time_flat = |test: fn(&FlatPolygon, &FlatPolygon) -> bool| {
-        each(least_seconds(PASSES, || flat.iter().for_each(|[a, b]| _ = black_box(test(a, b)))))
-    };
+    let straightforward_ns = each(least_seconds(PASSES, || {
+        flat.iter().for_each(|[a, b]| _ = black_box(straightforward(a, b)));
+    }));
+    let mut by_sorting = Sorted::default();
+    let sorted_ns = each(least_seconds(PASSES, || {
+        flat.iter().for_each(|[a, b]| _ = black_box(by_sorting.intersect(a, b)));
+    }));
     let time_exact = |test: fn(&Polygon, &Polygon, &mut Counters) -> bool| {
         let mut counters = Counters::default();
         each(least_seconds(PASSES, || {
             exact.iter().for_each(|[a, b]| _ = black_box(test(a, b, &mut counters)))
         }))
     };
-    let [straightforward_ns, sorted_ns] = [straightforward, sorted].map(time_flat);
     let exact_straightforward_ns = time_exact(intersect_straightforward);
     let exact_sorted_ns = time_exact(intersect_sorted);
     Row {

@@ -51,11 +51,10 @@ impl Claim {
     }
 }
 
-/// The share of hits as a percentage, and three standard errors of the difference of two such samples.
-pub fn percentage(hits: u64, count: usize, thesis_count: usize) -> (f64, f64) {
-    let p = hits as f64 / count as f64;
+/// Three standard errors of the difference of a share in percent, sampled so often, and the same of another sample.
+pub fn sampling_error(percent: f64, count: usize, other_count: usize) -> f64 {
+    let p = percent / 100.0;
     // One hit more keeps the error from vanishing at 0 and 1.
-    let q = ((hits.min(count as u64 - hits) + 1) as f64 / count as f64).min(0.5);
-    let variance = q * (1.0 - q) * (1.0 / count as f64 + 1.0 / thesis_count as f64);
-    (100.0 * p, 300.0 * variance.sqrt())
+    let q = (p.min(1.0 - p) + 1.0 / count as f64).min(0.5);
+    300.0 * (q * (1.0 - q) * (1.0 / count as f64 + 1.0 / other_count as f64)).sqrt()
 }

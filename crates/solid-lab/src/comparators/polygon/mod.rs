@@ -7,7 +7,7 @@ mod straightforward;
 mod tests;
 
 use solid3d::glam::DVec3;
-pub use sorted::sorted;
+pub use sorted::Sorted;
 pub use straightforward::straightforward;
 
 /// A polygon with its plane, the points x with `normal . x + offset = 0`.

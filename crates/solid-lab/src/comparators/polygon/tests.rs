@@ -15,7 +15,7 @@ fn both_tests_agree_with_the_library() {
         let expected = intersect_straightforward(&exact_a, &exact_b, &mut Counters::default());
         let [a, b] = [a, b].map(FlatPolygon::new);
         assert_eq!(straightforward(&a, &b), expected, "{a:?}, {b:?}");
-        assert_eq!(sorted(&a, &b), expected, "{a:?}, {b:?}");
+        assert_eq!(Sorted::default().intersect(&a, &b), expected, "{a:?}, {b:?}");
         hits += usize::from(expected);
     }
     assert!((180..420).contains(&hits), "{hits} of 600: not representative");

@@ -40,33 +40,33 @@ pub fn eigenvectors(matrix: &DMat3) -> DMat3 {
     DMat3::from_cols(x, z.cross(x), z)
 }
 
-/// The eigenvectors of the covariance of triangles as surfaces: of points spread evenly over them. With the mean.
+/// The mean of points spread evenly over triangles; of their corners where they have no area. Says also which.
+pub fn surface_mean(triangles: impl Iterator<Item = [DVec3; 3]>) -> (DVec3, bool) {
+    let (mut area_sum, mut weighted, mut plain, mut count) = (0.0, DVec3::ZERO, DVec3::ZERO, 0.0);
+    for [p, q, r] in triangles {
+        let area = (q - p).cross(r - p).length();
+        let center = (p + q + r) / 3.0;
+        area_sum += area;
+        weighted += area * center;
+        plain += center;
+        count += 1.0;
+    }
+    if area_sum > 0.0 { (weighted / area_sum, true) } else { (plain / count, false) }
+}
+
+/// The eigenvectors of the covariance of triangles as surfaces: of points spread evenly over them.
 ///
 /// Source: Gottschalk, Lin and Manocha, *OBBTree*, 1996, section 4.
-pub fn surface_axes(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) -> (DMat3, DVec3) {
-    let (mut area_sum, mut mean) = (0.0, DVec3::ZERO);
-    for [p, q, r] in triangles.clone() {
-        let area = (q - p).cross(r - p).length();
-        area_sum += area;
-        mean += area * (p + q + r) / 3.0;
-    }
-    let weighted = area_sum > 0.0;
-    if weighted {
-        mean /= area_sum;
-    } else {
-        // Triangles without area: every corner counts the same.
-        let (sum, count) =
-            triangles.clone().fold((DVec3::ZERO, 0.0), |(s, n), [p, q, r]| (s + p + q + r, n + 3.0));
-        mean = sum / count;
-    }
+pub fn surface_axes(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) -> DMat3 {
+    let (mean, has_area) = surface_mean(triangles.clone());
     let mut covariance = DMat3::ZERO;
     for [p, q, r] in triangles {
         let [p, q, r] = [p, q, r].map(|x| x - mean);
-        let area = if weighted { (q - p).cross(r - p).length() } else { 1.0 };
+        let area = if has_area { (q - p).cross(r - p).length() } else { 1.0 };
         let center = (p + q + r) / 3.0;
         covariance += (outer(center) * 9.0 + outer(p) + outer(q) + outer(r)) * area;
     }
-    (eigenvectors(&covariance), mean)
+    eigenvectors(&covariance)
 }
 
 fn outer(v: DVec3) -> DMat3 {

@@ -2,7 +2,7 @@ use solid3d::Aabb;
 use solid3d::glam::{DAffine3, DMat3, DVec3};
 use solid3d::hull::Hull;
 
-use super::eigen::surface_axes;
+use super::eigen::{surface_axes, surface_mean};
 use super::sat::Orientation;
 use super::{Sat, Triangle, Volume};
 
@@ -39,7 +39,7 @@ impl Volume for OrientedBox {
     fn fit(triangles: &[Triangle], members: &[u32], fit: Fit) -> Self {
         let surface = members.iter().map(|&i| triangles[i as usize]);
         let points = || surface.clone().flatten();
-        let (rotation, _) = match fit {
+        let rotation = match fit {
             Fit::Surface => surface_axes(surface.clone()),
             Fit::Hull => {
                 let points: Vec<DVec3> = points().collect();
@@ -56,7 +56,7 @@ impl Volume for OrientedBox {
     /// Across the longest axis at the mean of the surface, as RAPID does.
     fn split(&self, triangles: &[Triangle], members: &[u32]) -> (DVec3, f64) {
         let axis = self.rotation.col(self.half.max_position());
-        let (_, mean) = surface_axes(members.iter().map(|&i| triangles[i as usize]));
+        let (mean, _) = surface_mean(members.iter().map(|&i| triangles[i as usize]));
         (axis, mean.dot(axis))
     }
 

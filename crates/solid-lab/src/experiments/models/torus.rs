@@ -11,8 +11,9 @@ pub const MAJOR: f64 = 10.0;
 /// The radius of the tube.
 pub const MINOR: f64 = 2.0;
 
-/// Cells along the circle, and around the tube.
-const CELLS: [usize; 2] = [100, 25];
+/// Cells along the circle, and around the tube. The thesis does not say; with as many of both the counts of its Table 5.4 come out
+/// within a tenth, with 100 by 25 a third too low.
+const CELLS: [usize; 2] = [50, 50];
 
 /// A torus around the z axis.
 pub fn torus() -> Vec<Triangle> {
