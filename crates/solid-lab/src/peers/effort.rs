@@ -34,7 +34,7 @@ impl Effort {
         match self {
             Effort::Full => full,
             Effort::Quick => full.div_ceil(5),
-            Effort::Smoke => full.min(4),
+            Effort::Smoke => full.min(10),
         }
     }
 
