@@ -3,8 +3,10 @@
 //!
 //! - [`convex`]: two convex polytopes. [`ConvexTest`](convex::ConvexTest).
 //! - [`tree`]: two triangle meshes under hierarchies of bounding volumes. [`Volume`](tree::Volume).
+//! - [`polygon`]: two polygons, as the thesis tests them.
 //! - [`broad`]: many moving boxes. [`BroadTest`](broad::BroadTest).
 
 pub mod broad;
 pub mod convex;
+pub mod polygon;
 pub mod tree;

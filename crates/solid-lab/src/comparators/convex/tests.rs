@@ -52,6 +52,21 @@ fn isa_gjk_agrees_with_the_oracle() {
     agrees_with_the_oracle(IsaGjk::default());
 }
 
+#[test]
+fn chung_wang_agrees_with_the_oracle() {
+    agrees_with_the_oracle(ChungWang::default());
+}
+
+#[test]
+fn enhanced_gjk_agrees_with_the_oracle() {
+    agrees_with_the_oracle(EnhancedGjk::default());
+}
+
+#[test]
+fn the_library_agrees_with_the_oracle() {
+    agrees_with_the_oracle(Library::default());
+}
+
 /// Rounding, relative to the size of the objects, which is about 1.
 const DISTANCE_ERROR: f64 = 1e-9;
 

@@ -19,7 +19,7 @@ pub use aligned_box::AlignedBox;
 pub use build::{Child, Node, Tree};
 pub use distance::distance;
 pub use oriented_box::{Fit, OrientedBox};
-pub use sat::Sat;
+pub use sat::{Sat, Scalar, exit_axis};
 pub use traversal::{Counters, Traversal};
 pub use triangle::{Triangle, triangle_distance, triangles_intersect};
 pub use volume::Volume;
