@@ -82,7 +82,11 @@ impl Library for Thesis {
             (Body::Mesh(a), Body::Mesh(b)) => {
                 Traversal::new(Sat::Lite).intersects(&a.tree, &b.tree, &(at_a.inverse() * *at_b))
             }
-            _ => IsaGjk::default().intersects(&pair(a, at_a, b, at_b), &mut Memory::default()),
+            _ => {
+                // The origins are inside; the centres of the vertices would have to be computed first.
+                let mut fresh = Memory { axis: at_a.translation - at_b.translation, ..Memory::default() };
+                IsaGjk::default().intersects(&pair(a, at_a, b, at_b), &mut fresh)
+            }
         }
     }
 
