@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 use solid_lab::experiments::{self, Experiment, Report, Settings};
 use solid_lab::inputs::SEED;
+use solid_lab::peers::{self, Effort};
 
 /// Measures again what the thesis measured, and the library beside its peers
 #[derive(Debug, Parser)]
@@ -39,14 +40,23 @@ enum Command {
         document: Option<PathBuf>,
     },
     /// The library beside the thesis's design and parry
-    Peers {
-        /// Small samples: seconds
-        #[arg(long)]
-        quick: bool,
-        /// Write the rows as JSON
-        #[arg(long, value_name = "FILE")]
-        json: Option<PathBuf>,
-    },
+    Peers(PeersArgs),
+}
+
+#[derive(Debug, Args)]
+struct PeersArgs {
+    /// Small samples, and nothing that takes seconds to set up
+    #[arg(long)]
+    quick: bool,
+    /// Of all random numbers
+    #[arg(long, default_value_t = SEED)]
+    seed: u64,
+    /// Write the rows as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Draw the ratios, as SVG
+    #[arg(long, value_name = "FILE")]
+    chart: Option<PathBuf>,
 }
 
 fn main() -> Result<()> {
@@ -60,7 +70,7 @@ fn main() -> Result<()> {
         Command::Run { name, quick, seed, out, document } => {
             run(&name, &Settings { quick, seed, out_dir: out }, document.as_deref())
         }
-        Command::Peers { .. } => bail!("no peers yet"),
+        Command::Peers(args) => compare(&args),
     }
 }
 
@@ -98,4 +108,22 @@ fn run(name: &str, settings: &Settings, document: Option<&Path>) -> Result<()> {
 
 fn differences(report: &Report) -> usize {
     report.claims.iter().filter(|claim| claim.agrees() == Some(false)).count()
+}
+
+fn compare(args: &PeersArgs) -> Result<()> {
+    let effort = if args.quick { Effort::Quick } else { Effort::Full };
+    eprintln!("seed {}", args.seed);
+    let start = Instant::now();
+    let report = peers::run(effort, args.seed, |name| {
+        eprintln!("{:5.1} s: {name}", start.elapsed().as_secs_f64());
+    });
+    println!("{}", peers::table(&report));
+    if let Some(path) = &args.json {
+        let json = serde_json::to_string_pretty(&report)?;
+        fs::write(path, json).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    if let Some(path) = &args.chart {
+        peers::draw(&report, path).with_context(|| format!("cannot draw {}", path.display()))?;
+    }
+    Ok(())
 }

@@ -1,5 +1,4 @@
 use rand::rngs::StdRng;
-use solid3d::glam::DVec3;
 
 use super::pose::{PairPose, Pose, in_cube, rotation};
 
@@ -21,7 +20,7 @@ pub fn pairs_at_overlap(
         .map(|_| [(); 2].map(|()| Pose { rotation: rotation(rng), translation: in_cube(rng) }))
         .collect();
     let side = side_at_overlap(&drawn, rate, reach, intersects);
-    drawn.iter().map(|pair| pair.map(|pose| scaled(&pose, side))).collect()
+    drawn.iter().map(|pair| pair.map(|pose| pose.scaled(side))).collect()
 }
 
 /// By what to multiply the translations so that the share `rate` of the pairs intersects.
@@ -35,13 +34,8 @@ pub(super) fn side_at_overlap(
     for _ in 0..HALVINGS {
         let side = 0.5 * (near + far);
         let hits =
-            (0..drawn.len()).filter(|&i| intersects(i, &drawn[i].map(|pose| scaled(&pose, side)))).count();
+            (0..drawn.len()).filter(|&i| intersects(i, &drawn[i].map(|pose| pose.scaled(side)))).count();
         if hits as f64 > rate * drawn.len() as f64 { near = side } else { far = side }
     }
     far
-}
-
-fn scaled(pose: &Pose, side: f64) -> Pose {
-    let translation: DVec3 = pose.translation * side;
-    Pose { translation, ..*pose }
 }

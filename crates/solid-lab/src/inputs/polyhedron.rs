@@ -5,7 +5,7 @@ use solid3d::hull::Hull;
 
 use super::pose::direction;
 
-/// A convex polyhedron with all its corners on the unit sphere.
+/// A convex polyhedron with all its corners on a sphere around the origin.
 #[derive(Clone, Debug)]
 pub struct Polyhedron {
     /// Every one of them a corner.
@@ -26,6 +26,12 @@ impl Polyhedron {
                 return polyhedron;
             }
         }
+    }
+
+    /// The same with all coordinates multiplied by a positive factor.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let vertices = self.vertices.iter().map(|v| *v * factor).collect();
+        Polyhedron { vertices, hull: self.hull.clone() }
     }
 
     /// The volume, by tetrahedra from the origin.
