@@ -62,7 +62,10 @@ fn scene(bench: &Bench, name: &str, count: usize, percent: usize) -> Scene {
     Scene { start, frames }
 }
 
-fn converted<B: Boxes>(scene: &Scene) -> (B, Vec<Vec<(u32, B::Bounds)>>) {
+/// The boxes of the movers in each frame, in a library's own types.
+type Frames<B> = Vec<Vec<(u32, <B as Boxes>::Bounds)>>;
+
+fn converted<B: Boxes>(scene: &Scene) -> (B, Frames<B>) {
     let start: Vec<B::Bounds> = scene.start.iter().map(B::bounds).collect();
     let frame = |frame: &Vec<(u32, Aabb)>| frame.iter().map(|(i, bounds)| (*i, B::bounds(bounds))).collect();
     (B::new(&start), scene.frames.iter().map(frame).collect())
