@@ -1,1 +1,38 @@
 //! The library beside the thesis's design and parry: the same inputs, one process, one run.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `contestants` | the contestants, behind the traits of what they can do |
+//! | `cases` | what is measured, a function each |
+//! | `bench` | how: contestants take turns, and each is judged by the median of its turns |
+//! | `targets` | the ratios that are asked for |
+//! | `report`, `table`, `chart` | what comes out |
+
+mod bench;
+mod cases;
+mod chart;
+mod contestants;
+mod effort;
+mod machine;
+mod report;
+mod spread;
+mod table;
+mod targets;
+
+pub use bench::Bench;
+pub use chart::draw;
+pub use contestants::{Library, Ours, Simulator};
+pub use effort::Effort;
+pub use report::{Kind, Peer, Report, Row};
+pub use table::table;
+pub use targets::{TARGETS, Target};
+
+/// Measures everything. `progress` is told the name of each group of cases before its turn.
+pub fn run(effort: Effort, seed: u64, mut progress: impl FnMut(&str)) -> Report {
+    let mut bench = Bench::new(effort, seed);
+    for (name, case) in cases::ALL {
+        progress(name);
+        case(&mut bench);
+    }
+    Report { seed, machine: machine::name(), date: machine::date(), rows: bench.into_rows() }
+}

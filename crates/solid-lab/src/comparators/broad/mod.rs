@@ -1,0 +1,29 @@
+//! Many moving boxes: which overlap? (Thesis, sections 5.1 and 5.2.2.)
+
+mod baraff;
+mod linked_sweep;
+mod order;
+#[cfg(test)]
+mod tests;
+
+pub use baraff::Baraff;
+pub use linked_sweep::LinkedSweep;
+use solid3d::Aabb;
+
+/// Keeps the pairs of boxes that overlap while the boxes move. Boxes that touch overlap.
+pub trait BroadTest {
+    /// What it is called in charts.
+    fn name(&self) -> &'static str;
+
+    /// Moves some boxes, and brings the pairs up to date.
+    ///
+    /// # Panics
+    /// When there is no box of that number.
+    fn update(&mut self, moved: &[(u32, Aabb)]);
+
+    /// The pairs that overlap, the smaller number first, ascending.
+    fn pairs(&self) -> Vec<(u32, u32)>;
+
+    /// The work done so far: swaps of neighbours for the sweeps, visits of cells for the others.
+    fn steps(&self) -> u64;
+}

@@ -1,0 +1,16 @@
+use solid3d::glam::DVec3;
+
+/// What a test learned about a pair, for the next frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Memory {
+    /// The last separating axis, or direction of search; zero for none.
+    pub axis: DVec3,
+    /// The vertices of A and of B seen last, where hill climbing starts.
+    pub vertices: [u32; 2],
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Memory { axis: DVec3::ZERO, vertices: [0, 0] }
+    }
+}

@@ -1,0 +1,16 @@
+use solid3d::glam::DVec3;
+
+/// The control points of a bicubic patch.
+pub type Patch = [[DVec3; 4]; 4];
+
+/// The point of a patch at (u, v) in the unit square; at a corner the control point itself.
+pub fn point(patch: &Patch, u: f64, v: f64) -> DVec3 {
+    cubic(patch.map(|row| cubic(row, v)), u)
+}
+
+/// De Casteljau's algorithm, which is exact at the ends.
+fn cubic([p, q, r, s]: [DVec3; 4], t: f64) -> DVec3 {
+    let between = |a: DVec3, b: DVec3| a * (1.0 - t) + b * t;
+    let (pq, qr, rs) = (between(p, q), between(q, r), between(r, s));
+    between(between(pq, qr), between(qr, rs))
+}

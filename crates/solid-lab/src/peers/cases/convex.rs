@@ -1,0 +1,124 @@
+//! Pairs of convex polyhedra.
+
+use std::rc::Rc;
+
+use solid_oracle::{Convex, distance_bounds, verdict};
+use solid3d::query;
+
+use super::pairs::{Scene, Truth, distance, distance_again, intersection, intersection_again};
+use super::with_commas;
+use crate::inputs::{PairPose, Polyhedron, pairs_at_overlap, track_at_overlap};
+use crate::peers::bench::Unit;
+use crate::peers::contestants::parry::{double, single};
+use crate::peers::contestants::{Library, Ours, Thesis, each};
+use crate::peers::{Bench, Kind, Peer};
+
+/// No polyhedra whose origins are further apart, in radii, meet; and in so large a cube hardly any do.
+const REACH: f64 = 20.0;
+
+/// How many pairs, or frames, are drawn, and of how many the answers are judged.
+const PAIRS: usize = 1000;
+const JUDGED: usize = 100;
+
+/// Off by more of a radius than this, a distance is wrong: what single precision can give, a hundred times over.
+const DISTANCE_ERROR: f64 = 1e-5;
+
+/// Sizes at which answers are judged: 1, and what is 0.1 mm to objects of 1 m.
+const SIZES: [(f64, &str); 2] = [(1.0, "radius 1"), (1e-4, "radius 0.0001")];
+
+/// Races on random pairs, then on motions; then judges.
+pub fn measure(bench: &mut Bench) {
+    for vertices in [20, 100, 1000] {
+        let name = format!("{} vertices", with_commas(vertices));
+        let mut rng = bench.rng(&name);
+        let polyhedra = [(); 2].map(|()| Polyhedron::random(&mut rng, bench.effort.size(vertices)));
+        let shapes = polyhedra.each_ref().map(Polyhedron::shape);
+        let meet = |pair: &PairPose| {
+            let [at_a, at_b] = pair.map(|pose| pose.affine());
+            query::intersects(&shapes[0], &at_a, &shapes[1], &at_b).expect("the poses are valid")
+        };
+        let count = bench.effort.sample(PAIRS);
+        for overlap in [10, 50, 90] {
+            let rate = f64::from(overlap) / 100.0;
+            let poses = pairs_at_overlap(&mut rng, count, rate, REACH, |_, pair| meet(pair));
+            race(bench, &name, &format!("{overlap} % overlap"), &polyhedra, &poses);
+            if overlap == 50 {
+                SIZES.iter().for_each(|(size, text)| {
+                    judge(bench, &format!("{name}, {text}"), &polyhedra, &poses, *size)
+                });
+            }
+        }
+        for overlap in [10, 50] {
+            let poses = track_at_overlap(&mut rng, count, f64::from(overlap) / 100.0, REACH, meet);
+            race_again(bench, &name, &format!("coherent, {overlap} % overlap"), &polyhedra, &poses);
+        }
+    }
+}
+
+fn scene<L: Library>(polyhedra: &[Polyhedron; 2], poses: &[PairPose]) -> Rc<Scene<L>> {
+    Scene::new(polyhedra.each_ref().map(L::polyhedron), poses)
+}
+
+fn race(bench: &mut Bench, name: &str, how: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose]) {
+    let ours = &scene::<Ours>(polyhedra, poses);
+    let thesis = &scene::<Thesis>(polyhedra, poses);
+    let (parry, parry_single) =
+        (&scene::<double::Parry>(polyhedra, poses), &scene::<single::Parry>(polyhedra, poses));
+    let entries =
+        vec![intersection(ours), intersection(thesis), intersection(parry), intersection(parry_single)];
+    bench.race(&format!("{name}, intersection, {how}"), poses.len(), Unit::Nano, entries);
+    let entries = vec![distance(ours), distance(thesis), distance(parry), distance(parry_single)];
+    bench.race(&format!("{name}, closest points, {how}"), poses.len(), Unit::Nano, entries);
+}
+
+fn race_again(bench: &mut Bench, name: &str, how: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose]) {
+    let ours = &scene::<Ours>(polyhedra, poses);
+    let thesis = &scene::<Thesis>(polyhedra, poses);
+    let (parry, parry_single) =
+        (&scene::<double::Parry>(polyhedra, poses), &scene::<single::Parry>(polyhedra, poses));
+    let entries = vec![
+        intersection_again(ours),
+        intersection_again(thesis),
+        intersection_again(parry),
+        intersection_again(parry_single),
+    ];
+    bench.race(&format!("{name}, intersection, {how}"), poses.len(), Unit::Nano, entries);
+    let entries = vec![
+        distance_again(ours),
+        distance_again(thesis),
+        distance_again(parry),
+        distance_again(parry_single),
+    ];
+    bench.race(&format!("{name}, closest points, {how}"), poses.len(), Unit::Nano, entries);
+}
+
+/// Compares the answers to some pairs, scaled, with the oracle's.
+fn judge(bench: &mut Bench, name: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose], size: f64) {
+    let polyhedra = polyhedra.each_ref().map(|polyhedron| polyhedron.scaled(size));
+    let hulls = polyhedra.each_ref().map(|polyhedron| Convex::Hull { points: polyhedron.vertices.clone() });
+    let judged = bench.effort.sample(JUDGED);
+    let poses: Vec<PairPose> =
+        poses.iter().take(judged).map(|pair| pair.map(|pose| pose.scaled(size))).collect();
+    let truth = |pair: &PairPose| {
+        let [at_a, at_b] = pair.map(|pose| pose.affine());
+        let (least, greatest) = distance_bounds(&hulls[0], &at_a, &hulls[1], &at_b);
+        let meet = verdict(&hulls[0], &at_a, &hulls[1], &at_b).shares_point();
+        Truth { meet, distance: Some([least, greatest]) }
+    };
+    let truths: Vec<Truth> = poses.iter().map(truth).collect();
+    let wrong = each!(wrong: Ours, Thesis, double::Parry, single::Parry; (&polyhedra, &poses, &truths, DISTANCE_ERROR * size));
+    for (i, question) in ["intersection", "closest points"].into_iter().enumerate() {
+        let figures: Vec<(Peer, f64)> = wrong.iter().map(|(peer, wrong)| (*peer, wrong[i] as f64)).collect();
+        let work = format!("{name}, wrong answers to {question} of {}", truths.len());
+        bench.figures(&work, Kind::Wrong, "wrong", &figures);
+    }
+}
+
+fn wrong<L: Library>(
+    polyhedra: &[Polyhedron; 2],
+    poses: &[PairPose],
+    truths: &[Truth],
+    tolerance: f64,
+) -> (Peer, [usize; 2]) {
+    (L::PEER, scene::<L>(polyhedra, poses).wrong(truths, tolerance))
+}
