@@ -14,6 +14,7 @@ mod library;
 mod memory;
 mod pair;
 mod polytope;
+mod signed_volumes;
 #[cfg(test)]
 mod tests;
 
@@ -27,6 +28,7 @@ pub use library::Library;
 pub use memory::Memory;
 pub use pair::{Pair, SupportPoint};
 pub use polytope::Polytope;
+pub use signed_volumes::SignedVolumes;
 
 /// A test of two polytopes that may learn something about the pair for the next time.
 pub trait ConvexTest {

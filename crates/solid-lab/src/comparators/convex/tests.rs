@@ -58,6 +58,11 @@ fn chung_wang_agrees_with_the_oracle() {
 }
 
 #[test]
+fn signed_volumes_agree_with_the_oracle() {
+    agrees_with_the_oracle(SignedVolumes::default());
+}
+
+#[test]
 fn enhanced_gjk_agrees_with_the_oracle() {
     agrees_with_the_oracle(EnhancedGjk::default());
 }
