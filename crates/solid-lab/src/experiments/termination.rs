@@ -26,8 +26,11 @@ const GAP: f64 = 0.1;
 /// The tolerances of the experiment on termination.
 const TOLERANCES: [f64; 3] = [1e-6, 1e-10, 1e-14];
 
+/// Rules but for the tolerance.
+type OfTolerance = fn(f64) -> Rules;
+
 /// What each of the thesis's measures is worth: the original, with a relative error, and with all.
-const VERSIONS: [(&str, fn(f64) -> Rules); 3] = [
+const VERSIONS: [(&str, OfTolerance); 3] = [
     ("original", Rules::original),
     ("relative error", |tolerance| Rules { relative: true, ..Rules::original(tolerance) }),
     ("thesis", Rules::thesis),

@@ -63,6 +63,11 @@ fn signed_volumes_agree_with_the_oracle() {
 }
 
 #[test]
+fn the_linear_program_agrees_with_the_oracle() {
+    agrees_with_the_oracle(LinearProgram::default());
+}
+
+#[test]
 fn enhanced_gjk_agrees_with_the_oracle() {
     agrees_with_the_oracle(EnhancedGjk::default());
 }
