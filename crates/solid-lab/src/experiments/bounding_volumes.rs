@@ -24,12 +24,15 @@ const ORIENTED_BOX: f64 = 200.0;
 /// Operations of the test of the tori themselves, which the thesis assumes.
 const TORUS: f64 = 10_000.0;
 
+/// Whether the volumes of a kind overlap.
+type Overlap = fn(&Overlaps) -> bool;
+
 /// A sequence of tests, and what the thesis found for it in cubes of two sizes: how often the first volumes overlap, how often all
 /// do, in percent, and the average cost.
 struct Sequence {
     name: &'static str,
     /// The first volumes, if oriented boxes are not alone.
-    first: Option<(fn(&Overlaps) -> bool, f64)>,
+    first: Option<(Overlap, f64)>,
     /// Whether oriented boxes come at the end.
     oriented: bool,
     thesis: [[f64; 3]; 2],

@@ -16,7 +16,7 @@ use super::random::stream;
 use super::{Claim, Kind, Report, Settings};
 use crate::comparators::broad::{BroadTest, LinkedSweep};
 use crate::comparators::convex::{
-    ChungWang, ConvexTest, EnhancedGjk, IsaGjk, Library, Memory, Pair, Polytope,
+    ChungWang, ConvexTest, EnhancedGjk, IsaGjk, Library, Memory, Pair, Polytope, SignedVolumes,
 };
 use crate::inputs::{self, ICollide};
 
@@ -94,9 +94,10 @@ struct Contender {
 }
 
 fn contenders() -> Vec<Contender> {
-    let tests: [Box<dyn ConvexTest>; 4] = [
+    let tests: [Box<dyn ConvexTest>; 5] = [
         Box::new(IsaGjk::default()),
         Box::new(EnhancedGjk::default()),
+        Box::new(SignedVolumes::default()),
         Box::new(ChungWang::default()),
         Box::new(Library::default()),
     ];

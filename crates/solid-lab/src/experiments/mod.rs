@@ -4,6 +4,7 @@
 //! machine are held against them; times only as ratios.
 
 mod bounding_volumes;
+mod broad_phase;
 mod chart;
 mod clock;
 mod convex_speed;
@@ -68,6 +69,7 @@ pub fn all() -> &'static [Experiment] {
         },
         Experiment { name: "operations", reproduces: "Table 5.1", run: operations::run },
         Experiment { name: "bounding-volumes", reproduces: "Tables 5.2 and 5.3", run: bounding_volumes::run },
+        Experiment { name: "broad-phase", reproduces: "the sweeps of 5.2.2", run: broad_phase::run },
         Experiment { name: "trees", reproduces: "Tables 5.4 and 5.5, and Figure 5.10", run: trees::run },
         Experiment { name: "deformable", reproduces: "Table 5.6", run: deformable::run },
     ]

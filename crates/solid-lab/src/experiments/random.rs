@@ -1,7 +1,8 @@
+use rand::Rng;
 use rand::rngs::StdRng;
 use solid3d::glam::{DAffine3, DVec3};
 
-use crate::inputs::{Pose, seeded};
+use crate::inputs::{Pose, rotation, seeded};
 
 /// The random numbers of one part of an experiment: parts do not shift each other's.
 pub fn stream(seed: u64, part: &str) -> StdRng {
@@ -12,9 +13,13 @@ pub fn stream(seed: u64, part: &str) -> StdRng {
     seeded(seed ^ hash)
 }
 
+/// A random rotation, the origin at the given place.
+pub fn turned_at(rng: &mut StdRng, translation: DVec3) -> DAffine3 {
+    Pose { rotation: rotation(rng), translation }.affine()
+}
+
 /// A random rotation, the origin at random in a cube around the origin with the given side (thesis, section 5.2.4).
 pub fn placement(rng: &mut StdRng, side: f64) -> DAffine3 {
-    use rand::Rng;
     let translation = DVec3::from_array([0; 3].map(|_| rng.random_range(-0.5..=0.5))) * side;
-    Pose::random_at(rng, translation).affine()
+    turned_at(rng, translation)
 }

@@ -12,7 +12,7 @@ use super::models::{Model, all};
 use super::output::write_csv;
 use super::random::{placement, stream};
 use super::{Claim, Kind, Report, Settings};
-use crate::comparators::tree::{AlignedBox, Fit, OrientedBox, Sat, Traversal, Tree, Volume};
+use crate::comparators::tree::{AlignedBox, Ball, Dop, Fit, OrientedBox, Sat, Traversal, Tree, Volume};
 
 /// Placements of the thesis.
 const RUNS: usize = 100_000;
@@ -107,13 +107,21 @@ struct Run {
 /// Runs it.
 pub fn run(settings: &Settings) -> Result<Report> {
     let count = settings.sample(RUNS, 4_000);
-    let mut runs = Vec::new();
+    let (mut runs, mut others) = (Vec::new(), Vec::new());
     for model in all() {
         let placements = colliding_at_rate(&mut stream(settings.seed, model.name), &model, count);
         runs.extend(measure::<OrientedBox>(&model, "OBB", Fit::Surface, &placements));
         runs.extend(measure::<AlignedBox>(&model, "AABB", (), &placements));
+        // Not in the thesis's tables: they have one test each.
+        let alone = |[mut run, _]: [Run; 2]| {
+            run.row.test = "";
+            run
+        };
+        others.push(alone(measure::<OrientedBox>(&model, "OBB of hulls", Fit::Hull, &placements)));
+        others.push(alone(measure::<Dop>(&model, "k-DOP", (), &placements)));
+        others.push(alone(measure::<Ball>(&model, "sphere", (), &placements)));
     }
-    let rows: Vec<&Row> = runs.iter().map(|run| &run.row).collect();
+    let rows: Vec<&Row> = runs.iter().chain(&others).map(|run| &run.row).collect();
     write_csv(settings, "trees", &rows)?;
     let exits = exit_rows(&runs);
     write_csv(settings, "sat-exits", &exits)?;
@@ -237,12 +245,19 @@ fn charts(settings: &Settings, rows: &[&Row], exits: &[ExitRow]) -> Result<Vec<(
     bars(settings, "sat-exits.svg", &Labels { title, x: "axis", y: "% of boxes apart" }, &axes, &series)?;
     let mut charts = vec![("sat-exits.svg".to_owned(), title.to_owned())];
     let models: Vec<String> = all().iter().map(|model| model.name.to_owned()).collect();
-    let ways = [("OBB", "SAT"), ("OBB", "SAT lite"), ("AABB", "SAT"), ("AABB", "SAT lite")];
+    let ways = [
+        ("OBB", "SAT"),
+        ("OBB", "SAT lite"),
+        ("AABB", "SAT"),
+        ("AABB", "SAT lite"),
+        ("k-DOP", ""),
+        ("sphere", ""),
+    ];
     let of = |value: fn(&Row) -> f64| -> Vec<(String, Vec<f64>)> {
         let column = |(tree, test)| {
             rows.iter().filter(|r| (r.tree, r.test) == (tree, test)).map(|r| value(r)).collect()
         };
-        ways.map(|way| (format!("{} tree, {}", way.0, way.1), column(way))).to_vec()
+        ways.map(|way| (format!("{} {}", way.0, way.1), column(way))).to_vec()
     };
     for (file, title, y, series) in [
         ("trees-tests.svg", "Box tests for 100,000 placements", "tests", of(|r| r.box_tests)),

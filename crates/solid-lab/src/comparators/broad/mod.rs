@@ -3,12 +3,16 @@
 mod baraff;
 mod linked_sweep;
 mod order;
+mod space_tree;
 #[cfg(test)]
 mod tests;
+mod voxel_grid;
 
 pub use baraff::Baraff;
 pub use linked_sweep::LinkedSweep;
 use solid3d::Aabb;
+pub use space_tree::{Cut, SpaceTree};
+pub use voxel_grid::VoxelGrid;
 
 /// Keeps the pairs of boxes that overlap while the boxes move. Boxes that touch overlap.
 pub trait BroadTest {

@@ -31,16 +31,16 @@ fn keeps_what_brute_force_finds(new: impl Fn(&[Aabb]) -> Box<dyn BroadTest>) {
         let mut changes = 0;
         for frame in 0..120 {
             let mut moved = Vec::new();
-            for i in 0..count {
+            for (i, bounds) in boxes.iter_mut().enumerate() {
                 if rng.random_range(0..10) < frame % 11 {
                     let step = DVec3::from_array([0; 3].map(|_| f64::from(rng.random_range(-1..=1)) * 0.25));
-                    let old = boxes[i];
-                    boxes[i] = if rng.random_range(0..8) == 0 {
+                    let old = *bounds;
+                    *bounds = if rng.random_range(0..8) == 0 {
                         random_box(&mut rng)
                     } else {
                         Aabb::new(old.min + step, old.max + step)
                     };
-                    moved.push((i as u32, boxes[i]));
+                    moved.push((i as u32, *bounds));
                 }
             }
             let before = engine.pairs();
@@ -61,4 +61,16 @@ fn the_linked_sweep_keeps_what_brute_force_finds() {
 #[test]
 fn baraffs_sweep_keeps_what_brute_force_finds() {
     keeps_what_brute_force_finds(|boxes| Box::new(Baraff::new(boxes)));
+}
+
+#[test]
+fn the_voxel_grid_keeps_what_brute_force_finds() {
+    keeps_what_brute_force_finds(|boxes| Box::new(VoxelGrid::new(boxes)));
+}
+
+#[test]
+fn octrees_and_k_d_trees_keep_what_brute_force_finds() {
+    for cut in [Cut::Octree, Cut::KdTree] {
+        keeps_what_brute_force_finds(|boxes| Box::new(SpaceTree::new(boxes, cut)));
+    }
 }

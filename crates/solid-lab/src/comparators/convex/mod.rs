@@ -11,9 +11,11 @@ mod gjk_distance;
 mod isa_gjk;
 mod johnson;
 mod library;
+mod linear_program;
 mod memory;
 mod pair;
 mod polytope;
+mod signed_volumes;
 #[cfg(test)]
 mod tests;
 
@@ -24,9 +26,11 @@ pub use gjk_distance::{Distance, End, Rules, distance};
 pub use isa_gjk::IsaGjk;
 pub use johnson::Johnson;
 pub use library::Library;
+pub use linear_program::LinearProgram;
 pub use memory::Memory;
 pub use pair::{Pair, SupportPoint};
 pub use polytope::Polytope;
+pub use signed_volumes::SignedVolumes;
 
 /// A test of two polytopes that may learn something about the pair for the next time.
 pub trait ConvexTest {

@@ -58,6 +58,16 @@ fn chung_wang_agrees_with_the_oracle() {
 }
 
 #[test]
+fn signed_volumes_agree_with_the_oracle() {
+    agrees_with_the_oracle(SignedVolumes::default());
+}
+
+#[test]
+fn the_linear_program_agrees_with_the_oracle() {
+    agrees_with_the_oracle(LinearProgram::default());
+}
+
+#[test]
 fn enhanced_gjk_agrees_with_the_oracle() {
     agrees_with_the_oracle(EnhancedGjk::default());
 }

@@ -66,6 +66,16 @@ fn obb_trees_find_what_the_oracle_finds() {
 }
 
 #[test]
+fn sphere_trees_find_what_the_oracle_finds() {
+    finds_what_the_oracle_finds::<Ball>(());
+}
+
+#[test]
+fn k_dop_trees_find_what_the_oracle_finds() {
+    finds_what_the_oracle_finds::<Dop>(());
+}
+
+#[test]
 fn sat_lite_separates_only_what_sat_separates() {
     let mut rng = StdRng::seed_from_u64(53);
     let mut differ = 0;
