@@ -37,6 +37,14 @@ fn place(i: usize, frame: usize) -> DAffine3 {
 
 #[test]
 fn a_frame_like_those_before_allocates_nothing() {
+    // A pool's own queue of work from outside it allocates now and then.
+    #[cfg(feature = "rayon")]
+    rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap().install(check);
+    #[cfg(not(feature = "rayon"))]
+    check();
+}
+
+fn check() {
     let (vertices, triangles) = band();
     let shapes = [
         Shape::sphere(0.5).unwrap(),

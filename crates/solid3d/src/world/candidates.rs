@@ -7,9 +7,17 @@
 use glam::DVec3;
 
 use super::findings::{FindingId, Findings};
+#[cfg(feature = "rayon")]
+use super::object::Object;
 use super::object::Staleness;
+#[cfg(feature = "rayon")]
+use super::threads::{BATCH, Workers};
 use super::{Contact, ObjectId, World};
 use crate::broad::{PairChange, PairId};
+
+/// What the box of an object costs that moved, at least, in units of [`Workers::share`].
+#[cfg(feature = "rayon")]
+const UNITS_PER_BOX: u64 = 4;
 
 /// Two objects by their places in the order of pairs, the earlier first: the order of the results.
 pub(super) type PairKey = (u64, u64);
@@ -142,13 +150,35 @@ impl World {
 
     /// Gives the broad phase the boxes of what moved.
     fn update_broad(&mut self) {
+        #[cfg(feature = "rayon")]
+        if Workers::share(UNITS_PER_BOX * self.stirred.len() as u64) {
+            self.update_boxes_on_threads();
+            return self.broad.flush();
+        }
         let Self { broad, objects, stirred, .. } = self;
         for &id in stirred.iter() {
             if let Some(object) = objects.get_mut(id).filter(|object| object.staleness == Staleness::Bounds) {
-                broad.update(super::proxy(id), object.update_bounds());
+                let bounds = object.bounds();
+                broad.update(super::proxy(id), object.set_bounds(bounds));
             }
         }
         broad.flush();
+    }
+
+    #[cfg(feature = "rayon")]
+    fn update_boxes_on_threads(&mut self) {
+        let Self { broad, objects, stirred, workers, new_bounds, .. } = self;
+        for batch in stirred.chunks(BATCH) {
+            workers.map(batch, new_bounds, |&id, _| {
+                let object = objects.get(id).filter(|object| object.staleness == Staleness::Bounds);
+                object.map(Object::bounds)
+            });
+            for (&id, bounds) in batch.iter().zip(new_bounds.drain(..)) {
+                if let Some(bounds) = bounds {
+                    broad.update(super::proxy(id), objects[id].set_bounds(bounds));
+                }
+            }
+        }
     }
 
     /// Two objects of the world in the order of pairs.

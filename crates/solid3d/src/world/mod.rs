@@ -93,6 +93,9 @@ pub struct World {
     /// Working memory: what examining them gave.
     #[cfg(feature = "rayon")]
     examined: Vec<test::Examined>,
+    /// Working memory: the boxes of what moved.
+    #[cfg(feature = "rayon")]
+    new_bounds: Vec<Option<object::Bounds>>,
     workers: Workers,
     statistics: Statistics,
 }
@@ -129,6 +132,8 @@ impl World {
             to_examine: Vec::new(),
             #[cfg(feature = "rayon")]
             examined: Vec::new(),
+            #[cfg(feature = "rayon")]
+            new_bounds: Vec::new(),
             workers: Workers::default(),
             statistics: Statistics::default(),
         }
@@ -161,7 +166,8 @@ impl World {
             });
         }
         let mut object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
-        let bounds = object.update_bounds();
+        let bounds = object.bounds();
+        let bounds = object.set_bounds(bounds);
         let id = self.objects.insert(object);
         self.added += 1;
         self.stale = true;
@@ -192,7 +198,7 @@ impl World {
 
     /// The objects, in creation order.
     pub fn objects(&self) -> Vec<ObjectId> {
-        let mut objects: Vec<_> = self.objects.iter().map(|(id, object)| (object.serial, id)).collect();
+        let mut objects: Vec<_> = self.objects.iter().map(|(id, object)| (object.serial(), id)).collect();
         objects.sort_unstable();
         objects.into_iter().map(|(_, id)| id).collect()
     }
@@ -223,8 +229,9 @@ impl World {
         let object = self.object_mut(id)?;
         // To the bit, for the sign of a zero may show in an answer.
         if !placement::is_same(&object.placement, &placement) {
-            object.placement = placement;
-            self.touch(id);
+            let was_displaced = object.displaced;
+            object.set_placement(placement);
+            self.touch(id, was_displaced);
         }
         Ok(())
     }
@@ -234,8 +241,10 @@ impl World {
     /// This is how one deformed shape reaches several objects: [`Shape::deform`] a clone, then set it for each.
     pub fn set_shape(&mut self, id: ObjectId, shape: &Shape) -> Result<()> {
         let boxes = self.boxes;
-        self.object_mut(id)?.set_shape(shape, boxes);
-        self.touch(id);
+        let object = self.object_mut(id)?;
+        let was_displaced = object.displaced;
+        object.set_shape(shape, boxes);
+        self.touch(id, was_displaced);
         Ok(())
     }
 
@@ -244,8 +253,10 @@ impl World {
     ///
     /// Cost: linear in the shape; see [`Shape::deform`].
     pub fn deform(&mut self, id: ObjectId, positions: &[DVec3]) -> Result<()> {
-        self.object_mut(id)?.deform(positions)?;
-        self.touch(id);
+        let object = self.object_mut(id)?;
+        let was_displaced = object.displaced;
+        object.deform(positions)?;
+        self.touch(id, was_displaced);
         Ok(())
     }
 
@@ -303,8 +314,8 @@ impl World {
     }
 
     /// Notes that an object in the world is not where the broad phase and the previous frame have it.
-    fn touch(&mut self, id: ObjectId) {
-        if !std::mem::replace(&mut self.objects[id].displaced, true) {
+    fn touch(&mut self, id: ObjectId, was_displaced: bool) {
+        if !was_displaced {
             if self.displaced.len() > 2 * self.objects.len() {
                 // Most of them were removed; without `proceed` nothing else would forget them.
                 self.displaced.retain(|&id| self.objects.contains_key(id));
@@ -373,6 +384,15 @@ mod tests {
         }
         assert_eq!(world.stirred.len(), 1);
         Ok(())
+    }
+
+    /// What an object and a candidate take, beyond the shape: counted in bytes, so that a field more does not pass unseen.
+    #[test]
+    fn objects_and_candidates_are_small() {
+        let shape = size_of::<Shape>();
+        println!("{shape} {} {} {}", size_of::<Object>(), size_of::<candidates::Candidate>(), size_of::<Collision>());
+        assert!(size_of::<Object>() <= shape + 136, "{} bytes", size_of::<Object>() - shape);
+        assert!(size_of::<Option<candidates::Candidate>>() <= 64);
     }
 
     /// One pair alone is reported as the test of all would.

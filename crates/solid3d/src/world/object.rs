@@ -31,31 +31,51 @@ pub(super) enum Staleness {
     Bounds,
 }
 
+/// What is computed of an object when it has moved.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    deformation: Aabb,
+    around: Aabb,
+}
+
 /// An object.
 #[derive(Debug)]
 pub(super) struct Object {
-    /// Its place in the creation order.
-    pub serial: u64,
     /// Its place in the order of pairs and their results: by rank, then by creation.
     pub order: u64,
     pub shape: Shape,
     pub placement: DAffine3,
-    previous_shape: Shape,
-    previous_placement: DAffine3,
-    /// The shape of the frame before the previous one, whose memory the next deformation takes.
-    pub spare: Option<Shape>,
+    /// Where it was in the previous frame, if it is displaced; else memory to be used again. What never moved has none.
+    previous_placement: Option<Box<DAffine3>>,
+    /// What most objects do without.
+    extra: Option<Box<Extra>>,
     /// Whether its way from the previous frame is tested.
     pub motion: Motion,
-    /// How its vertices moved since the previous frame; see [`deformation`]. Up to date unless the bounds are stale.
-    deformation: Aabb,
-    /// The radius about the local origin, when its box in the broad phase is to have a fixed size.
-    radius: Option<f64>,
     /// What of it is out of date.
     pub staleness: Staleness,
     /// Whether the previous frame is another.
     pub displaced: bool,
     /// How many pair responses were set for it and not reset; some may be for objects that were removed since.
     pub pair_responses: u32,
+}
+
+/// What an object has whose shape changed, or whose box is of a fixed size.
+#[derive(Debug)]
+struct Extra {
+    /// The shape of the previous frame, if it is another.
+    previous_shape: Option<Shape>,
+    /// The shape of the frame before the previous one, whose memory the next deformation takes.
+    spare: Option<Shape>,
+    /// How its vertices moved since the previous frame; see [`deformation`]. Up to date unless the bounds are stale, when swept.
+    deformation: Aabb,
+    /// The radius about the local origin, when its box in the broad phase is to have a fixed size.
+    radius: Option<f64>,
+}
+
+impl Default for Extra {
+    fn default() -> Self {
+        Extra { previous_shape: None, spare: None, deformation: STILL, radius: None }
+    }
 }
 
 impl Object {
@@ -67,21 +87,23 @@ impl Object {
         motion: Motion,
         boxes: Boxes,
     ) -> Self {
+        let radius = radius(&shape, boxes);
         Object {
-            serial,
             order: (u64::from(rank) << RANK_SHIFT) | serial,
             motion,
-            deformation: STILL,
-            radius: radius(&shape, boxes),
-            previous_shape: shape.clone(),
-            previous_placement: placement,
             shape,
             placement,
-            spare: None,
+            previous_placement: None,
+            extra: radius.map(|_| Box::new(Extra { radius, ..Extra::default() })),
             staleness: Staleness::Fresh,
             displaced: false,
             pair_responses: 0,
         }
+    }
+
+    /// Its place in the creation order.
+    pub fn serial(&self) -> u64 {
+        self.order & ((1 << RANK_SHIFT) - 1)
     }
 
     /// As it is.
@@ -91,81 +113,132 @@ impl Object {
 
     /// As it was in the previous frame.
     pub fn previously_placed(&self) -> Placed<'_> {
-        Placed { shape: &self.previous_shape, placement: &self.previous_placement }
+        Placed { shape: self.previous_shape(), placement: self.previous_placement() }
+    }
+
+    fn previous_shape(&self) -> &Shape {
+        self.extra.as_ref().and_then(|extra| extra.previous_shape.as_ref()).unwrap_or(&self.shape)
+    }
+
+    fn previous_placement(&self) -> &DAffine3 {
+        self.previous_placement.as_deref().filter(|_| self.displaced).unwrap_or(&self.placement)
     }
 
     /// On its way from the previous frame; nowhere else than it is when only that is tested, or when it stood still.
     pub fn moving(&self) -> Moving<'_> {
+        self.moving_by(self.extra.as_ref().map_or(STILL, |extra| extra.deformation))
+    }
+
+    fn moving_by(&self, deformation: Aabb) -> Moving<'_> {
         let from = if self.has_way() {
-            Placed { shape: self.shape_on_way(), placement: &self.previous_placement }
+            Placed { shape: self.shape_on_way(), placement: self.previous_placement() }
         } else {
             self.placed()
         };
-        Moving { from, to: self.placed(), deformation: self.deformation }
+        Moving { from, to: self.placed(), deformation }
     }
 
     /// Whether there is a way from the previous frame to be tested.
     pub fn has_way(&self) -> bool {
-        let moved = || self.placement != self.previous_placement || self.was_deformed();
+        let moved = || self.placement != *self.previous_placement() || self.was_deformed();
         self.motion == Motion::Swept && self.displaced && moved()
     }
 
     /// Whether it is a deformation of what it was in the previous frame.
     fn was_deformed(&self) -> bool {
-        self.previous_shape.is_deformation_of(&self.shape)
+        self.previous_shape().is_deformation_of(&self.shape)
     }
 
     /// What comes from the previous frame: a shape that was set since is there from the start.
     fn shape_on_way(&self) -> &Shape {
-        if self.was_deformed() { &self.previous_shape } else { &self.shape }
+        if self.was_deformed() { self.previous_shape() } else { &self.shape }
     }
 
-    /// Brings what depends on the way up to date; gives the box for the broad phase, which contains the object on its way.
-    pub fn update_bounds(&mut self) -> Aabb {
-        self.deformation = if self.has_way() { deformation(self.shape_on_way(), &self.shape) } else { STILL };
-        if self.has_way() {
-            moving_bounds(&self.moving(), |placed| self.bounds_of(placed))
-        } else {
-            self.bounds_of(self.placed())
+    /// What is to be known of it as it is placed now, for [`set_bounds`](Self::set_bounds).
+    pub fn bounds(&self) -> Bounds {
+        if !self.has_way() {
+            return Bounds { deformation: STILL, around: self.bounds_of(self.placed()) };
         }
+        let deformation = deformation(self.shape_on_way(), &self.shape);
+        Bounds {
+            deformation,
+            around: moving_bounds(&self.moving_by(deformation), |placed| self.bounds_of(placed)),
+        }
+    }
+
+    /// Takes what depends on the way; gives the box for the broad phase, which contains the object on its way.
+    pub fn set_bounds(&mut self, bounds: Bounds) -> Aabb {
+        if let Some(extra) = &mut self.extra {
+            extra.deformation = bounds.deformation;
+        }
+        bounds.around
     }
 
     fn bounds_of(&self, placed: Placed) -> Aabb {
-        let fixed = self.radius.and_then(|radius| fixed_bounds(placed.placement, radius));
+        let radius = self.extra.as_ref().and_then(|extra| extra.radius);
+        let fixed = radius.and_then(|radius| fixed_bounds(placed.placement, radius));
         fixed.unwrap_or_else(|| world_bounds(placed))
     }
 
-    /// Takes another shape.
-    pub fn set_shape(&mut self, shape: &Shape, boxes: Boxes) {
-        let deformed = self.shape.is_deformation_of(shape);
-        self.shape = shape.clone();
-        self.spare = None;
-        self.radius = if deformed { None } else { radius(shape, boxes) };
+    /// Notes that it leaves the place and the shape of the previous frame, before it does.
+    pub fn displace(&mut self) {
+        if !std::mem::replace(&mut self.displaced, true) {
+            match &mut self.previous_placement {
+                Some(previous) => **previous = self.placement,
+                None => self.previous_placement = Some(Box::new(self.placement)),
+            }
+        }
     }
 
-    /// Takes new vertex positions. The previous frame keeps the old ones, so the first deformation of a frame goes to a
-    /// buffer of its own: that of the frame before, when there is one (double buffering; thesis, section 6.3.3).
+    /// Takes another place; it is displaced.
+    pub fn set_placement(&mut self, placement: DAffine3) {
+        self.displace();
+        self.placement = placement;
+    }
+
+    /// Takes another shape; it is displaced.
+    pub fn set_shape(&mut self, shape: &Shape, boxes: Boxes) {
+        self.displace();
+        let deformed = self.shape.is_deformation_of(shape);
+        let old = std::mem::replace(&mut self.shape, shape.clone());
+        let radius = if deformed { None } else { radius(shape, boxes) };
+        let extra = self.extra_mut();
+        extra.previous_shape.get_or_insert(old);
+        (extra.spare, extra.radius) = (None, radius);
+    }
+
+    /// Takes new vertex positions; it is displaced. The previous frame keeps the old ones, so the first deformation of a frame
+    /// goes to a buffer of its own: that of the frame before, when there is one (double buffering; thesis, section 6.3.3).
     pub fn deform(&mut self, positions: &[DVec3]) -> Result<()> {
-        match &mut self.spare {
+        let first = self.extra.as_ref().is_none_or(|extra| extra.previous_shape.is_none());
+        let old = first.then(|| self.shape.clone());
+        match self.extra.as_mut().and_then(|extra| extra.spare.as_mut()) {
             Some(spare) => {
                 spare.deform(positions)?;
                 self.shape = spare.clone();
-                self.spare = None;
             }
             None => self.shape.deform(positions)?,
         }
-        self.radius = None;
+        self.displace();
+        let extra = self.extra_mut();
+        extra.previous_shape = old.or(extra.previous_shape.take());
+        (extra.spare, extra.radius) = (None, None);
         Ok(())
     }
 
     /// What is now becomes the previous frame.
     pub fn proceed(&mut self) {
         self.displaced = false;
-        self.previous_placement = self.placement;
-        let old = std::mem::replace(&mut self.previous_shape, self.shape.clone());
-        if old.is_deformation_of(&self.shape) {
-            self.spare = Some(old);
+        if let Some(extra) = &mut self.extra
+            && let Some(old) = extra.previous_shape.take()
+            && old.is_deformation_of(&self.shape)
+        {
+            extra.spare = Some(old);
         }
+    }
+
+    fn extra_mut(&mut self) -> &mut Extra {
+        self.extra.get_or_insert_default()
     }
 }
 

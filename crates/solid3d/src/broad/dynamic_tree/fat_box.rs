@@ -44,8 +44,9 @@ impl FatBox {
         FatBox::around(&Aabb::new(bounds.min - margin - below, bounds.max + margin + above))
     }
 
-    pub fn contains(&self, other: &FatBox) -> bool {
-        (0..3).all(|k| self.min[k] <= other.min[k] && other.max[k] <= self.max[k])
+    /// Whether a box lies in this one. Then so does [`around`](Self::around) it: this box is one of those that it is chosen from.
+    pub fn contains(&self, bounds: &Aabb) -> bool {
+        (0..3).all(|k| f64::from(self.min[k]) <= bounds.min[k] && bounds.max[k] <= f64::from(self.max[k]))
     }
 
     pub fn overlaps(&self, other: &FatBox) -> bool {

@@ -1,5 +1,7 @@
 //! The 8-wide node: eight boxes as a structure of arrays.
 
+use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
+
 use super::fat_box::FatBox;
 use crate::broad::Proxy;
 
@@ -132,20 +134,14 @@ impl Node {
     }
 
     /// One box against eight: bit `i` is set where the box of lane `i` overlaps `b`.
-    #[inline]
-    pub fn overlap_mask(&self, b: &FatBox) -> u32 {
-        let mut hits = [0u32; WIDTH];
-        for (i, hit) in hits.iter_mut().enumerate() {
-            // `&`, not `&&`: no branches, so the compiler makes vectors of it.
-            let overlaps = (self.min[0][i] <= b.max[0])
-                & (b.min[0] <= self.max[0][i])
-                & (self.min[1][i] <= b.max[1])
-                & (b.min[1] <= self.max[1][i])
-                & (self.min[2][i] <= b.max[2])
-                & (b.min[2] <= self.max[2][i]);
-            *hit = u32::from(overlaps) << i;
-        }
-        hits.iter().fold(0, |mask, hit| mask | hit)
+    #[inline(always)]
+    pub fn overlap_mask<S: Simd>(&self, simd: S, b: &FatBox) -> u32 {
+        let above =
+            |k: usize| f32x8::load_array_ref(simd, &self.min[k]).simd_le(f32x8::splat(simd, b.max[k]));
+        let below =
+            |k: usize| f32x8::splat(simd, b.min[k]).simd_le(f32x8::load_array_ref(simd, &self.max[k]));
+        let hits = (above(0) & below(0)) & (above(1) & below(1)) & (above(2) & below(2));
+        hits.to_bitmask() as u32
     }
 
     /// The lane whose box grows least in area when `b` joins it, the smaller one among equals. At least one child.
@@ -173,4 +169,48 @@ pub(super) fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
             lane
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::dispatch;
+    use rand::Rng;
+    use solid_convex::simd::levels;
+    use solid_oracle::generate::seeded;
+
+    use super::*;
+
+    /// Law: at any level, a lane is set where its box overlaps; boxes that touch do, lanes that are not in use do not.
+    #[test]
+    fn the_mask_is_that_of_box_against_box() {
+        let mut rng = seeded(810);
+        let mut any_box = || {
+            let min: [f32; 3] = std::array::from_fn(|_| rng.random_range(-2..2) as f32);
+            let max = std::array::from_fn(|k| min[k] + rng.random_range(0..5) as f32);
+            FatBox { min, max }
+        };
+        let (mut hits, mut tests) = (0, 0);
+        for case in 0..2000 {
+            let mut node = Node::empty(Place::NONE);
+            let boxes: Vec<FatBox> = (0..case % (WIDTH + 1)).map(|_| any_box()).collect();
+            for (proxy, b) in (0..).zip(&boxes) {
+                node.push(Child::leaf(proxy), b);
+            }
+            let b = any_box();
+            let expected = (0..)
+                .zip(&boxes)
+                .filter(|(_, other)| other.overlaps(&b))
+                .fold(0, |mask, (i, _)| mask | 1 << i);
+            for level in levels() {
+                assert_eq!(
+                    dispatch!(level, simd => node.overlap_mask(simd, &b)),
+                    expected,
+                    "{level:?}, {b:?}, {boxes:?}"
+                );
+            }
+            hits += expected.count_ones();
+            tests += boxes.len() as u32;
+        }
+        assert!((tests * 3 / 10..tests * 7 / 10).contains(&hits), "{hits} of {tests} overlap");
+    }
 }

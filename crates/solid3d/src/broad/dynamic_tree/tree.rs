@@ -5,6 +5,8 @@
 //! the tree anew after as many changes as there are leaves, so the build's cost is shared among them, and at once when
 //! an insertion ends deeper than [`DEPTH_MAX`].
 
+use fearless_simd::{Simd, dispatch};
+
 use super::fat_box::FatBox;
 use super::node::{Child, Kind, Node, Place, WIDTH, lanes};
 use crate::broad::Proxy;
@@ -135,16 +137,26 @@ impl Tree {
         }
     }
 
-    /// Visits the leaves below the node `top` whose boxes overlap `b`; gives the number of nodes visited.
-    /// `stack` is scratch.
-    pub fn query(&self, top: u32, b: &FatBox, stack: &mut Vec<u32>, mut visit: impl FnMut(Proxy)) -> u64 {
+    /// Visits the leaves whose boxes overlap `b`; gives the number of nodes visited. `stack` is scratch.
+    pub fn query(&self, b: &FatBox, stack: &mut Vec<u32>, mut visit: impl FnMut(Proxy)) -> u64 {
+        dispatch!(solid_convex::simd::level(), simd => self.query_with(simd, b, stack, &mut visit))
+    }
+
+    #[inline(always)]
+    fn query_with<S: Simd>(
+        &self,
+        simd: S,
+        b: &FatBox,
+        stack: &mut Vec<u32>,
+        visit: &mut impl FnMut(Proxy),
+    ) -> u64 {
         let mut visits = 0;
         stack.clear();
-        stack.push(top);
+        stack.push(ROOT);
         while let Some(at) = stack.pop() {
             visits += 1;
             let node = &self.nodes[at as usize];
-            for lane in lanes(node.overlap_mask(b)) {
+            for lane in lanes(node.overlap_mask(simd, b)) {
                 match node.child(lane) {
                     Kind::Node(below) => stack.push(below),
                     Kind::Leaf(proxy) => visit(proxy),
