@@ -3,7 +3,7 @@
 use glam::DAffine3;
 
 use super::Witness;
-use super::descent::{End, Goal, descend};
+use super::descent::{Descent, End, Goal, descend};
 use crate::Support;
 use crate::difference::Difference;
 
@@ -18,7 +18,7 @@ pub struct Closest {
 
 /// The relative error of a distance, as far as the rounding error of positions allows: polytopes reach it in their last
 /// iteration anyway, and for quadrics each digit costs some four iterations.
-const DISTANCE_TOLERANCE: f64 = 1e-12;
+pub(super) const DISTANCE_TOLERANCE: f64 = 1e-12;
 
 /// The closest points of two placed convex objects, and their distance. Algorithm 4.1 of the thesis.
 ///
@@ -42,10 +42,20 @@ where
 {
     let difference = Difference::new(a, placement_a, b, placement_b);
     let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
-    let (on_a, on_b) = descent.simplex.witness();
-    let distance = match descent.end {
-        End::Separated => descent.v.length() / difference.scale(),
-        End::Undecided | End::Inside => 0.0,
-    };
-    Closest { distance, points: Witness { on_a, on_b } }
+    Closest::of(&descent, &difference)
+}
+
+impl Closest {
+    /// What a descent for the distance found.
+    pub(super) fn of<A, B>(descent: &Descent, difference: &Difference<A, B>) -> Closest
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let distance = match descent.end {
+            End::Separated => descent.v.length() / difference.scale(),
+            End::Undecided | End::Inside => 0.0,
+        };
+        Closest { distance, points: Witness::of(&descent.simplex) }
+    }
 }

@@ -11,12 +11,14 @@
 //!   simplex was computed anew from the edges of the two objects, which gives it the precision of the edges instead of
 //!   that of the positions; a plate of 1000 x 1000 x 0.001 needs it.
 
+mod coherent;
 mod descent;
 mod distance;
 mod intersection;
 #[cfg(test)]
 mod tests;
 
+pub use coherent::{Coherent, Memory};
 pub use distance::{Closest, closest_points};
 pub use intersection::{Outcome, Witness, intersection, separates};
 

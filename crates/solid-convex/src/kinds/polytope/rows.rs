@@ -37,7 +37,8 @@ impl Rows {
 /// Each lane of the two rows of a pair keeps its own furthest point, the first of equals; then they are compared.
 #[inline(always)]
 fn furthest<S: Simd>(simd: S, pairs: &[[Row; 2]], direction: DVec3) -> usize {
-    let [x, y, z] = direction.to_array().map(|coordinate| f64x4::splat(simd, coordinate));
+    let (x, y, z) =
+        (f64x4::splat(simd, direction.x), f64x4::splat(simd, direction.y), f64x4::splat(simd, direction.z));
     let along = |[xs, ys, zs]: &Row| {
         f64x4::simd_from(simd, *xs) * x + f64x4::simd_from(simd, *ys) * y + f64x4::simd_from(simd, *zs) * z
     };
