@@ -32,8 +32,6 @@ pub(crate) struct Difference<'a, A: ?Sized, B: ?Sized> {
     b: &'a B,
     linear_a: DMat3,
     linear_b: DMat3,
-    transposed_a: DMat3,
-    transposed_b: DMat3,
     /// The origin of `B` as seen from that of `A`.
     offset: DVec3,
     /// World lengths times this are lengths of the difference; a power of two.
@@ -54,23 +52,21 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
             + offset.abs().max_element();
         let scale = unit_scale(size);
         let (linear_a, linear_b) = (placement_a.matrix3 * scale, placement_b.matrix3 * scale);
-        Difference {
-            a,
-            b,
-            linear_a,
-            linear_b,
-            transposed_a: linear_a.transpose(),
-            transposed_b: linear_b.transpose(),
-            offset: offset * scale,
-            scale,
-        }
+        Difference { a, b, linear_a, linear_b, offset: offset * scale, scale }
     }
 
     /// A support point in the direction `-v`: where `v` points from `B` to `A`, the point that is least along `v`.
     /// Theorem 4.7 for each of the two objects.
+    #[inline]
     pub fn support_against(&self, v: DVec3) -> SupportPoint {
-        let a = self.a.support(self.transposed_a * -v);
-        let b = self.b.support(self.transposed_b * v);
+        let a = self.a.support(self.linear_a.mul_transpose_vec3(-v));
+        let b = self.b.support(self.linear_b.mul_transpose_vec3(v));
+        self.point(a, b)
+    }
+
+    /// The point of the difference that a point of each object makes.
+    #[inline]
+    pub fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
         SupportPoint { w: self.linear_a * a - (self.linear_b * b + self.offset), a, b }
     }
 
@@ -86,6 +82,7 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
     }
 
     /// Where to start: from the middle of `B` to that of `A`, and along x when they coincide.
+    #[inline]
     pub fn initial_direction(&self) -> DVec3 {
         let v = self.linear_a * self.a.center() - (self.linear_b * self.b.center() + self.offset);
         if v.abs().max_element() > SUPPORT_ERROR { v } else { DVec3::X }

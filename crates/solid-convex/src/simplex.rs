@@ -12,11 +12,27 @@ use crate::difference::{SUPPORT_ERROR, SupportPoint};
 
 /// Up to four support points. Invariant: after [`reduce`](Simplex::reduce), the smallest set whose hull contains the
 /// closest point, with positive barycentric coordinates that sum to 1.
+///
+/// Support points stay in the slots that they were put in; which of them belong to the simplex is a matter of a few bytes.
 #[derive(Clone, Debug)]
 pub(crate) struct Simplex {
-    points: [SupportPoint; 4],
-    barycentric: [f64; 4],
+    slots: [SupportPoint; 4],
+    members: Members,
+}
+
+/// Which slots a simplex consists of, the oldest first, and the barycentric coordinates of these.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Members {
+    slots: [u8; 4],
     len: usize,
+    barycentric: [f64; 4],
+}
+
+impl Members {
+    /// Whether there are any.
+    pub fn any(&self) -> bool {
+        self.len > 0
+    }
 }
 
 /// What [`Simplex::reduce`] found.
@@ -44,42 +60,85 @@ const FACES: [([usize; 3], usize); 4] = [([0, 1, 3], 2), ([1, 2, 3], 0), ([2, 0,
 /// coordinates are below 2. Of flatter tetrahedra all faces are looked at.
 const CLEARLY_INSIDE: f64 = 1e-6;
 
+/// A bound on the error of six times a volume as the sum of four triple products, and of each of these: coordinates are below 4,
+/// so that each of the 24 products of three is below 64, and takes part in less than 12 roundings of 2^-53.
+const VOLUME_ERROR: f64 = 24.0 * 64.0 * 12.0 / (1u64 << 53) as f64;
+
+/// The square of the sine of the angle between two edges, beyond which their product is as good a normal as that of the two
+/// shortest edges: none of the three edges is then less than a quarter of the shorter of the two.
+const SLIVER_SINE_SQUARED: f64 = 1.0 / 16.0;
+
 impl Simplex {
+    #[inline]
     pub fn new() -> Self {
         let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
-        Simplex { points: [zero; 4], barycentric: [0.0; 4], len: 0 }
+        Simplex { slots: [zero; 4], members: Members { slots: [0; 4], len: 0, barycentric: [0.0; 4] } }
     }
 
-    pub fn points(&self) -> &[SupportPoint] {
-        &self.points[..self.len]
+    /// The support points, the oldest first.
+    pub fn points(&self) -> impl Iterator<Item = &SupportPoint> + Clone {
+        (0..self.members.len).map(|i| self.point(i))
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.members.len == 0
+    }
+
+    fn point(&self, i: usize) -> &SupportPoint {
+        &self.slots[usize::from(self.members.slots[i] & 3)]
     }
 
     /// Whether a support point is in the simplex already, or coincides with one that is.
+    #[inline]
     pub fn contains(&self, p: &SupportPoint) -> bool {
-        self.points().iter().any(|q| q.w == p.w || q.same_features(p))
+        self.points().any(|q| q.w == p.w || q.same_features(p))
     }
 
     /// Adds a support point; there is room, since a reduced simplex of four contains the origin and ends the search.
+    #[inline]
     pub fn push(&mut self, p: SupportPoint) {
-        self.points[self.len] = p;
-        self.len += 1;
+        let members = &mut self.members;
+        let taken = members.slots[..members.len].iter().fold(0u8, |taken, slot| taken | 1 << slot);
+        let free = taken.trailing_ones() as usize & 3;
+        self.slots[free] = p;
+        members.slots[members.len] = free as u8;
+        members.len += 1;
+    }
+
+    /// What the simplex consists of, to be gone back to before the next but one point is added.
+    pub fn members(&self) -> Members {
+        self.members
+    }
+
+    /// Goes back to what the simplex was before the last point was added.
+    pub fn restore(&mut self, members: Members) {
+        self.members = members;
     }
 
     /// The points of `A` and of `B`, each in its local space, that the closest point is the difference of.
     pub fn witness(&self) -> (DVec3, DVec3) {
-        let weighted = self.points().iter().zip(self.barycentric);
+        let weighted = self.points().zip(self.members.barycentric);
         weighted.fold((DVec3::ZERO, DVec3::ZERO), |(a, b), (p, weight)| (a + p.a * weight, b + p.b * weight))
+    }
+
+    /// Whether a simplex of any four points contains the origin: then it is as [`reduce`](Simplex::reduce) leaves it.
+    pub fn reduce_if_inside(&mut self) -> bool {
+        let sides = self.sides_of_origin().filter(|sides| sides.iter().all(|&side| side >= 0.0));
+        if let Some(sides) = sides {
+            self.members.barycentric = self.origin_in_tetrahedron(sides);
+        }
+        sides.is_some()
     }
 
     /// Finds the point of the hull closest to the origin, and drops the points that it does not need.
     pub fn reduce(&mut self) -> Reduced {
-        let feature = match self.len {
+        let feature = match self.members.len {
             1 => self.vertex(0),
             2 => self.edge([0, 1]),
             3 => self.face([0, 1, 2]),
             4 => match self.sides_of_origin() {
                 Some(sides) if sides.iter().all(|&side| side >= 0.0) => {
-                    self.barycentric = self.origin_in_tetrahedron();
+                    self.members.barycentric = self.origin_in_tetrahedron(sides);
                     return Reduced::ContainsOrigin;
                 }
                 sides => self.tetrahedron_boundary(sides.unwrap_or_default()),
@@ -91,14 +150,22 @@ impl Simplex {
     }
 
     fn keep(&mut self, feature: &Feature) {
-        let kept = feature.indices.map(|i| self.points[i]);
-        self.len = feature.len;
-        self.points[..feature.len].copy_from_slice(&kept[..feature.len]);
-        self.barycentric[..feature.len].copy_from_slice(&feature.weights[..feature.len]);
+        let members = &mut self.members;
+        let kept = feature.indices.map(|i| members.slots[i]);
+        members.len = feature.len;
+        members.slots[..3].copy_from_slice(&kept);
+        members.barycentric[..3].copy_from_slice(&feature.weights);
     }
 
     fn w(&self, i: usize) -> DVec3 {
-        self.points[i].w
+        self.point(i).w
+    }
+
+    /// Which of three points is nearest to the origin: 0, 1 or 2; the first of equals.
+    fn nearest_of(&self, indices: [usize; 3]) -> usize {
+        let [p, q, r] = indices.map(|i| self.w(i).length_squared());
+        let (first, least) = if q < p { (1, q) } else { (0, p) };
+        if r < least { 2 } else { first }
     }
 
     fn vertex(&self, i: usize) -> Feature {
@@ -122,17 +189,29 @@ impl Simplex {
 
     /// The closest point of a face whose last point is the newest.
     fn face(&self, [i, j, k]: [usize; 3]) -> Feature {
-        let (p, q, r) = (self.w(i), self.w(j), self.w(k));
-        let weights = weights([p, q, r], 1.0, DVec3::ZERO);
-        if weights.iter().all(|&weight| weight > 0.0) {
-            let n = normal([q - p, r - q, p - r]);
-            let nearest = nearest([p, q, r]);
-            return Feature {
-                v: n * (n.dot(nearest) / n.length_squared()),
-                indices: [i, j, k],
-                weights,
-                len: 3,
-            };
+        // From the vertex nearest to the origin, whose rounding error is the smallest: next to it a weight may be 10^-17 of
+        // those of the others, and still its sign decides.
+        let around = [[i, j, k], [j, k, i], [k, i, j]][self.nearest_of([i, j, k])];
+        let [p, q, r] = around.map(|i| self.w(i));
+        let (pq, pr) = (q - p, r - p);
+        let n = pq.cross(pr);
+        let n_squared = n.length_squared();
+        if n_squared > SLIVER_SINE_SQUARED * pq.length_squared() * pr.length_squared() {
+            // -p = y pq + z pr + an offset along n; all times n^2.
+            let across = p.cross(n);
+            let (y, z) = (pr.dot(across), -pq.dot(across));
+            let x = n_squared - y - z;
+            if x > 0.0 && y > 0.0 && z > 0.0 {
+                let inverse = 1.0 / n_squared;
+                let weights = [x * inverse, y * inverse, z * inverse];
+                return Feature { v: n * (n.dot(p) * inverse), indices: around, weights, len: 3 };
+            }
+        } else {
+            let weights = weights([p, q, r], 1.0, DVec3::ZERO);
+            if weights.iter().all(|&weight| weight > 0.0) {
+                let n = normal([pq, r - q, -pr]);
+                return Feature { v: n * (n.dot(p) / n.length_squared()), indices: around, weights, len: 3 };
+            }
         }
         // The newest point is part of the result (Theorem 4.8), whatever the weights of a sliver say.
         closest([[j, k], [k, i]].into_iter().map(|edge| self.edge(edge))).unwrap_or_else(|| self.vertex(k))
@@ -141,6 +220,19 @@ impl Simplex {
     /// On which side of each of the [`FACES`] the origin is, six times the volume it makes with the face: positive inside,
     /// with exact signs. `None` for a flat tetrahedron.
     fn sides_of_origin(&self) -> Option<[f64; 4]> {
+        let [p, q, r, s] = [0, 1, 2, 3].map(|i| self.w(i));
+        let parts = [-p.cross(q).dot(s), -q.cross(r).dot(s), -r.cross(p).dot(s), p.cross(q).dot(r)];
+        let volume = parts[0] + parts[1] + parts[2] + parts[3];
+        // The least magnitude, for a single branch that is nearly always taken.
+        let least = parts.iter().fold(volume.abs(), |least, part| least.min(part.abs()));
+        if least > VOLUME_ERROR {
+            return Some(parts.map(|part| part * volume.signum()));
+        }
+        self.exact_sides_of_origin()
+    }
+
+    #[cold]
+    fn exact_sides_of_origin(&self) -> Option<[f64; 4]> {
         let [p, q, r, s] = [0, 1, 2, 3].map(|i| coord(self.w(i)));
         let volume = orient3d(p, q, r, s);
         let origin = coord(DVec3::ZERO);
@@ -156,9 +248,12 @@ impl Simplex {
 
     /// The barycentric coordinates of the origin in the tetrahedron that contains it.
     ///
-    /// Not the ratios of its determinants: of a flat tetrahedron these have the right sign but no right digit. Of the
+    /// The ratios of its determinants, unless it is flat: then these have the right sign but no right digit. Of the
     /// coordinates found from each face, with and without the fourth point, those are taken that give the origin best.
-    fn origin_in_tetrahedron(&self) -> [f64; 4] {
+    fn origin_in_tetrahedron(&self, sides: [f64; 4]) -> [f64; 4] {
+        let mut ratios = [0.0; 4];
+        let inverse = 1.0 / sides.iter().sum::<f64>();
+        FACES.iter().zip(sides).for_each(|(&(_, apex), side)| ratios[apex] = side * inverse);
         let over_faces = FACES.iter().map(|&(face, apex)| self.origin_over(face, apex));
         let on_faces = FACES.iter().map(|&(face, _)| {
             let feature = self.face(face);
@@ -167,7 +262,7 @@ impl Simplex {
             weights
         });
         let (mut best, mut best_residual) = ([0.25; 4], f64::INFINITY);
-        for weights in over_faces.chain(on_faces) {
+        for weights in std::iter::once(ratios).chain(over_faces).chain(on_faces) {
             let residual = (0..4).map(|i| self.w(i) * weights[i]).sum::<DVec3>().length_squared();
             if residual < best_residual {
                 (best, best_residual) = (weights, residual);
@@ -203,12 +298,6 @@ impl Simplex {
             .or_else(|| closest(newest().map(|(face, _)| self.face(face))))
             .unwrap_or_else(|| self.vertex(3))
     }
-}
-
-/// The point nearest to the origin; the first of equals.
-fn nearest(points: [DVec3; 3]) -> DVec3 {
-    let nearer = |x: DVec3, y: DVec3| if y.length_squared() < x.length_squared() { y } else { x };
-    points.into_iter().fold(points[0], nearer)
 }
 
 /// The point closest to the origin on the line through `p` along `edge`. `p` should be the nearer end of the edge, whose

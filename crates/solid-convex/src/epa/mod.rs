@@ -96,7 +96,7 @@ where
     if core_a.radius() > 0.0 || core_b.radius() > 0.0 {
         return Some(rounded::penetration(&core_a, placement_a, &core_b, placement_b));
     }
-    let ended = descent.simplex.points();
+    let ended: &[SupportPoint] = &descent.simplex.points().copied().collect::<Vec<_>>();
     let found = match start(&difference, ended) {
         Ok(mut polytope) => expand(&difference, &mut polytope),
         Err(normal) => flat(&difference, normal, ended),

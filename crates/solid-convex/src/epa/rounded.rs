@@ -80,7 +80,7 @@ where
 {
     let difference = Difference::new(a, placement_a, b, placement_b);
     let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
-    let ended = descent.simplex.points();
+    let ended: &[SupportPoint] = &descent.simplex.points().copied().collect::<Vec<_>>();
     let nearest = match descent.end {
         End::Separated => apart(&difference, descent.v, ended),
         End::Undecided | End::Inside => match start(&difference, ended) {

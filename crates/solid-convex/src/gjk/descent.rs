@@ -34,7 +34,7 @@ pub(crate) struct Descent {
     pub end: End,
     /// The point of the simplex closest to the origin, or the separating axis.
     pub v: DVec3,
-    /// The simplex.
+    /// The simplex; may be empty when the search for an axis ends with the first.
     pub simplex: Simplex,
 }
 
@@ -58,7 +58,20 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    descend_within(difference, goal, ITERATIONS_MAX)
+    descend_from(difference, goal, None)
+}
+
+/// Runs a descent from a simplex in the difference and a point of its hull near the origin, or from none.
+pub(super) fn descend_from<A, B>(
+    difference: &Difference<A, B>,
+    goal: Goal,
+    start: Option<(Simplex, DVec3)>,
+) -> Descent
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    descend_within(difference, goal, start, ITERATIONS_MAX)
 }
 
 /// Runs a descent of at most so many iterations. One that has to stop is undecided, whatever the objects do: it claims
@@ -66,6 +79,7 @@ where
 pub(super) fn descend_within<A, B>(
     difference: &Difference<A, B>,
     goal: Goal,
+    start: Option<(Simplex, DVec3)>,
     iterations_max: usize,
 ) -> Descent
 where
@@ -74,16 +88,15 @@ where
 {
     // v: the point of conv(W) closest to the origin; w: a support point of A - B against v; W: `simplex`;
     // mu: the greatest lower bound of the distance so far.
-    let mut simplex = Simplex::new();
-    let mut v = difference.initial_direction();
+    let (mut simplex, mut v) = start.unwrap_or_else(|| (Simplex::new(), difference.initial_direction()));
     let mut mu = 0.0;
     let mut refinements = 0;
     for _ in 0..iterations_max {
         let p = difference.support_against(v);
-        if goal.reached(v, &p, &mut mu, !simplex.points().is_empty()) {
-            return Descent { end: End::Separated, v, simplex: first_or(simplex, p) };
+        if goal.reached(v, &p, &mut mu, !simplex.is_empty()) {
+            return Descent { end: End::Separated, v, simplex };
         }
-        let before = (simplex.clone(), v);
+        let (members_before, v_before) = (simplex.members(), v);
         let mut stalled = simplex.contains(&p);
         if !stalled {
             simplex.push(p);
@@ -91,14 +104,16 @@ where
                 Reduced::ContainsOrigin => return Descent { end: End::Inside, v: DVec3::ZERO, simplex },
                 Reduced::Closest(closest) => v = closest,
             }
-            if v.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
+            let length_squared = v.length_squared();
+            if length_squared <= SUPPORT_ERROR * SUPPORT_ERROR {
                 return Descent { end: End::Undecided, v, simplex };
             }
-            if !before.0.points().is_empty() {
-                let shrunk = v.length_squared() / before.1.length_squared();
-                stalled = shrunk > 1.0 - PROGRESS_MIN;
-                if shrunk > GROWTH_MAX {
-                    (simplex, v) = before.clone();
+            if members_before.any() {
+                let before = v_before.length_squared();
+                stalled = length_squared > (1.0 - PROGRESS_MIN) * before;
+                if length_squared > GROWTH_MAX * before {
+                    simplex.restore(members_before);
+                    v = v_before;
                 }
             }
         }
@@ -109,9 +124,10 @@ where
             }
             refinements += 1;
         }
-        if v.length() < mu - SUPPORT_ERROR {
+        if mu > 0.0 && v.length() < mu - SUPPORT_ERROR {
             // Nothing of A - B is that near: the simplex is too thin a sliver for its closest point to be computed.
-            (simplex, v) = before;
+            simplex.restore(members_before);
+            v = v_before;
             break;
         }
     }
@@ -140,15 +156,6 @@ pub(super) fn certifies(v: DVec3, w: DVec3) -> bool {
     v.dot(w) > SUPPORT_ERROR * v.abs().element_sum()
 }
 
-/// The simplex, or the support point alone when the very first direction was the answer.
-fn first_or(mut simplex: Simplex, p: SupportPoint) -> Simplex {
-    if simplex.points().is_empty() {
-        simplex.push(p);
-        simplex.reduce();
-    }
-    simplex
-}
-
 /// The point closest to the origin on the line or plane of the simplex, computed from the objects' edges; `None` where
 /// that says nothing new.
 fn refined<A, B>(difference: &Difference<A, B>, simplex: &Simplex) -> Option<DVec3>
@@ -156,11 +163,12 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let points = simplex.points();
-    let nearest = points.iter().min_by(|x, y| x.w.length_squared().total_cmp(&y.w.length_squared()))?;
-    let v = match points {
-        [p, q] => perpendicular(nearest.w, difference.edge(p, q)),
-        [p, q, r] => {
+    let nearer = |x: &&SupportPoint, y: &&SupportPoint| x.w.length_squared().total_cmp(&y.w.length_squared());
+    let nearest = simplex.points().min_by(nearer)?;
+    let mut points = simplex.points();
+    let v = match [points.next(), points.next(), points.next(), points.next()] {
+        [Some(p), Some(q), None, None] => perpendicular(nearest.w, difference.edge(p, q)),
+        [Some(p), Some(q), Some(r), None] => {
             let normal = normal([difference.edge(p, q), difference.edge(q, r), difference.edge(r, p)]);
             normal * (nearest.w.dot(normal) / normal.length_squared())
         }

@@ -3,7 +3,7 @@
 use glam::DAffine3;
 
 use super::Witness;
-use super::descent::{End, Goal, descend};
+use super::descent::{Descent, End, Goal, descend};
 use crate::Support;
 use crate::difference::Difference;
 
@@ -42,10 +42,20 @@ where
 {
     let difference = Difference::new(a, placement_a, b, placement_b);
     let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
-    let (on_a, on_b) = descent.simplex.witness();
-    let distance = match descent.end {
-        End::Separated => descent.v.length() / difference.scale(),
-        End::Undecided | End::Inside => 0.0,
-    };
-    Closest { distance, points: Witness { on_a, on_b } }
+    Closest::of(&descent, &difference)
+}
+
+impl Closest {
+    /// What a descent for the distance found.
+    pub(super) fn of<A, B>(descent: &Descent, difference: &Difference<A, B>) -> Closest
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let distance = match descent.end {
+            End::Separated => descent.v.length() / difference.scale(),
+            End::Undecided | End::Inside => 0.0,
+        };
+        Closest { distance, points: Witness::of(&descent.simplex) }
+    }
 }

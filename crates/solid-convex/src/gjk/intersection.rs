@@ -5,6 +5,7 @@ use glam::{DAffine3, DVec3};
 use super::descent::{End, Goal, descend};
 use crate::Support;
 use crate::difference::Difference;
+use crate::simplex::Simplex;
 
 /// Whether two placed convex objects intersect, with the evidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,14 @@ pub struct Witness {
     pub on_a: DVec3,
     /// A point of `B`. Space: local to `B`.
     pub on_b: DVec3,
+}
+
+impl Witness {
+    /// The points that the closest point of a simplex comes from.
+    pub(super) fn of(simplex: &Simplex) -> Witness {
+        let (on_a, on_b) = simplex.witness();
+        Witness { on_a, on_b }
+    }
 }
 
 impl Outcome {
@@ -62,11 +71,10 @@ where
 {
     let difference = Difference::new(a, placement_a, b, placement_b);
     let descent = descend(&difference, Goal::Separation);
-    let (on_a, on_b) = descent.simplex.witness();
     match descent.end {
         End::Separated => Outcome::Separated { axis: descent.v.normalize() },
-        End::Undecided => Outcome::Touching(Witness { on_a, on_b }),
-        End::Inside => Outcome::Intersecting(Witness { on_a, on_b }),
+        End::Undecided => Outcome::Touching(Witness::of(&descent.simplex)),
+        End::Inside => Outcome::Intersecting(Witness::of(&descent.simplex)),
     }
 }
 

@@ -12,6 +12,7 @@
 //!   that of the positions; a plate of 1000 x 1000 x 0.001 needs it.
 
 mod cast;
+mod coherent;
 mod descent;
 mod distance;
 mod intersection;
@@ -19,6 +20,7 @@ mod intersection;
 mod tests;
 
 pub use cast::{CAST_ERROR, Impact, cast};
+pub use coherent::{Coherent, Memory};
 pub(crate) use descent::{End, Goal, descend};
 pub(crate) use distance::DISTANCE_TOLERANCE;
 pub use distance::{Closest, closest_points};

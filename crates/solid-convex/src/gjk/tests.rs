@@ -3,7 +3,7 @@
 use glam::{DAffine3, DQuat, DVec3};
 
 use super::descent::{End, Goal, ITERATIONS_MAX, descend_within};
-use super::{Outcome, closest_points, intersection, separates};
+use super::{Coherent, Outcome, closest_points, intersection, separates};
 use crate::difference::Difference;
 use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
 
@@ -118,11 +118,11 @@ fn the_iteration_limit_is_undecided() {
     let near = DAffine3::from_translation(DVec3::new(1.3, 2.0, 0.1)) * DAffine3::from_rotation_z(1.0);
     let difference = Difference::new(&ball, &egg, &ball, &near);
     let needed = (0..=ITERATIONS_MAX).find(|&limit| {
-        descend_within(&difference, Goal::Distance { tolerance: 1e-12 }, limit).end != End::Undecided
+        descend_within(&difference, Goal::Distance { tolerance: 1e-12 }, None, limit).end != End::Undecided
     });
     let needed = needed.expect("it ends in time");
     assert!(needed > 2, "{needed}");
-    assert_eq!(descend_within(&difference, Goal::Separation, 1).end, End::Undecided);
+    assert_eq!(descend_within(&difference, Goal::Separation, None, 1).end, End::Undecided);
 }
 
 /// A support mapping that is none: it must not hang nor crash whoever asks it.
@@ -147,4 +147,38 @@ fn a_support_mapping_that_lies_is_survived() {
         let calls = liar.0.load(std::sync::atomic::Ordering::Relaxed) - seed;
         assert!(calls as usize <= 4 * ITERATIONS_MAX, "{calls} calls");
     }
+}
+
+/// Pairs on their way past each other: what is kept from frame to frame changes no answer, and no distance beyond its error.
+#[test]
+fn coherence_changes_no_answer() {
+    let (mut frames, mut hits) = (0, 0);
+    let spiked = crate::Polytope::new((0..90).map(|i| placement(i).translation).collect()).unwrap();
+    let shapes = || shapes().into_iter().chain([Box::new(spiked.clone()) as Box<dyn Support>]);
+    for (i, a) in shapes().enumerate() {
+        for (j, b) in shapes().enumerate() {
+            let (at_a, mut at_b) = (placement(i as u32), placement(31 + j as u32));
+            let (mut asked, mut measured) = (Coherent::new(&*a, &*b), Coherent::new(&*a, &*b));
+            let turn = DQuat::from_axis_angle(placement(7).translation.normalize(), 0.02);
+            for frame in 0..100 {
+                // Through the other and away; every so often a jump.
+                at_b.translation = at_a.translation
+                    + placement(frame / 25).translation * 0.2
+                    + DVec3::new(f64::from(frame % 50) * 0.08 - 2.0, 0.1, 0.2);
+                at_b.matrix3 = glam::DMat3::from_quat(turn) * at_b.matrix3;
+                let outcome = intersection(&*a, &at_a, &*b, &at_b);
+                let hit = !matches!(outcome, Outcome::Separated { .. });
+                assert_eq!(asked.intersects(&at_a, &at_b), hit, "{i} {j} {frame}");
+                let cold = closest_points(&*a, &at_a, &*b, &at_b);
+                let warm = measured.closest_points(&at_a, &at_b);
+                assert!((warm.distance - cold.distance).abs() < 1e-11, "{i} {j} {frame}: {warm:?}, {cold:?}");
+                let (on_a, on_b) = (warm.points.on_a, warm.points.on_b);
+                let between = at_a.transform_point3(on_a).distance(at_b.transform_point3(on_b));
+                assert!((between - warm.distance).abs() < 1e-11, "{i} {j} {frame}: {between}, {warm:?}");
+                frames += 1;
+                hits += usize::from(hit);
+            }
+        }
+    }
+    assert!((30..=70).contains(&(100 * hits / frames)), "{hits} of {frames}: not representative");
 }

@@ -173,8 +173,8 @@ pub(super) fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::dispatch;
     use rand::Rng;
+    use solid_convex::simd::dispatch;
     use solid_convex::simd::levels;
     use solid_oracle::generate::seeded;
 

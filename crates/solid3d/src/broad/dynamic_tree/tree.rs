@@ -5,7 +5,8 @@
 //! the tree anew after as many changes as there are leaves, so the build's cost is shared among them, and at once when
 //! an insertion ends deeper than [`DEPTH_MAX`].
 
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::Simd;
+use solid_convex::simd::{dispatch, level};
 
 use super::fat_box::FatBox;
 use super::node::{Child, Kind, Node, Place, WIDTH, lanes};
@@ -139,7 +140,7 @@ impl Tree {
 
     /// Visits the leaves whose boxes overlap `b`; gives the number of nodes visited. `stack` is scratch.
     pub fn query(&self, b: &FatBox, stack: &mut Vec<u32>, mut visit: impl FnMut(Proxy)) -> u64 {
-        dispatch!(solid_convex::simd::level(), simd => self.query_with(simd, b, stack, &mut visit))
+        dispatch!(level(), simd => self.query_with(simd, b, stack, &mut visit))
     }
 
     #[inline(always)]
