@@ -390,12 +390,6 @@ mod tests {
     #[test]
     fn objects_and_candidates_are_small() {
         let shape = size_of::<Shape>();
-        println!(
-            "{shape} {} {} {}",
-            size_of::<Object>(),
-            size_of::<candidates::Candidate>(),
-            size_of::<Collision>()
-        );
         assert!(size_of::<Object>() <= shape + 136, "{} bytes", size_of::<Object>() - shape);
         assert!(size_of::<Option<candidates::Candidate>>() <= 64);
     }
