@@ -7,6 +7,7 @@
 //!
 //! Placements were checked by the caller.
 
+mod closed_form;
 mod complex_complex;
 mod complex_convex;
 mod containment;
@@ -28,7 +29,7 @@ pub(crate) use fixed_box::fixed_bounds;
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};
-pub(crate) use table::{axis, closest, intersection};
+pub(crate) use table::{axis, closest, intersection, intersects};
 
 use crate::placement::inverse_linear;
 use crate::shape::{Class, Shape};
