@@ -9,6 +9,7 @@
 
 mod approach;
 mod cast;
+mod closed_form;
 mod complex_complex;
 mod complex_convex;
 mod containment;
@@ -37,7 +38,7 @@ pub(crate) use ray::{Hits, Wanted, entry, ray_hits};
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};
-pub(crate) use table::{axis, closest, intersection, penetration};
+pub(crate) use table::{axis, closest, intersection, intersects, penetration};
 
 use crate::placement::inverse_linear;
 use crate::shape::{Class, Shape};

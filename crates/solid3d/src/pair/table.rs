@@ -5,7 +5,9 @@ use std::ops::ControlFlow;
 use glam::{DAffine3, DVec3};
 use solid_convex::{Closest, Penetration, Support};
 
-use super::{Mirror, Placed, Relation, Scratch, complex_complex, complex_convex, convex_convex, depth};
+use super::{
+    Mirror, Placed, Relation, Scratch, closed_form, complex_complex, complex_convex, convex_convex, depth,
+};
 use crate::shape::{Class, Complex};
 
 /// A convex shape at a place.
@@ -34,8 +36,23 @@ impl<T: Mirror> Row<T> {
     }
 }
 
+/// Whether they intersect: what [`intersection`] says, without a common point.
+pub(crate) fn intersects(a: Placed, b: Placed, scratch: &mut Scratch) -> bool {
+    match closed_form::intersects(a, b) {
+        Some(answer) => {
+            scratch.primitive_tests += 1;
+            answer
+        }
+        None => matches!(intersection(a, b, scratch), Relation::Common(_)),
+    }
+}
+
 /// Whether they intersect. Of complex shapes, the common point is one of the first pair of primitives found.
 pub(crate) fn intersection(a: Placed, b: Placed, scratch: &mut Scratch) -> Relation {
+    if let Some(relation) = closed_form::intersection(a, b) {
+        scratch.primitive_tests += 1;
+        return relation;
+    }
     const ROW: Row<Relation> = Row {
         convex_convex: convex_convex::intersection,
         complex_convex: complex_convex::intersection,
@@ -46,6 +63,10 @@ pub(crate) fn intersection(a: Placed, b: Placed, scratch: &mut Scratch) -> Relat
 
 /// The closest points.
 pub(crate) fn closest(a: Placed, b: Placed, scratch: &mut Scratch) -> Closest {
+    if let Some(closest) = closed_form::closest(a, b) {
+        scratch.primitive_tests += 1;
+        return closest;
+    }
     const ROW: Row<Closest> = Row {
         convex_convex: convex_convex::closest,
         complex_convex: complex_convex::closest,
@@ -56,6 +77,9 @@ pub(crate) fn closest(a: Placed, b: Placed, scratch: &mut Scratch) -> Closest {
 
 /// A separating axis of the shapes' convex hulls.
 pub(crate) fn axis(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<DVec3> {
+    if let Some(Relation::Separated { axis }) = closed_form::intersection(a, b) {
+        return axis;
+    }
     const ROW: Row<Option<DVec3>> = Row {
         convex_convex: convex_convex::axis,
         complex_convex: |a, b, scratch| convex_convex::axis((&a.0.hull(), a.1), b, scratch),

@@ -51,7 +51,8 @@ pub struct Distance {
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn intersects(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<bool> {
-    Ok(common_point(a, placement_a, b, placement_b)?.is_some())
+    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    Ok(pair::intersects(a, b, &mut Scratch::default()))
 }
 
 /// A point that two placed shapes have in common, in the world; `None` when they do not intersect.

@@ -6,6 +6,7 @@ mod complex;
 mod kind;
 mod parts;
 mod radius;
+mod simple;
 mod solid;
 mod surface;
 mod validate;
@@ -18,6 +19,7 @@ use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 pub use builder::ComplexShapeBuilder;
 pub(crate) use complex::Complex;
 pub use kind::ShapeKind;
+pub(crate) use simple::Simple;
 pub use solid::OpenEdge;
 pub(crate) use surface::{Surface, boundary};
 

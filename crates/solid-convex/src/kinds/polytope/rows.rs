@@ -56,7 +56,7 @@ fn furthest<S: Simd>(simd: S, pairs: &[[Row; 2]], direction: DVec3) -> usize {
             best[k] = further.select(dot, best[k]);
             best_index[k] = further.select(index, best_index[k]);
         }
-        index = index + step;
+        index += step;
     }
     let greatest = best[0].max(best[1]).reduce_max();
     // The first of equals: of the lanes that have the greatest, the least index.

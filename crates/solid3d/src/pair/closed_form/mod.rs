@@ -1,0 +1,146 @@
+//! Pairs that need no search: balls, capsules and boxes that their placements leave what they are.
+//!
+//! A closed form speaks only where it is sure: the placements must be rotations with a uniform scale, up to
+//! [`SKEW_MAX`], and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
+//! ([`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR)). So both say the same, and GJK decides the rest.
+
+mod boxes;
+mod round;
+mod similarity;
+#[cfg(test)]
+mod tests;
+
+use glam::DVec3;
+use solid_convex::{Closest, Witness, unit_scale};
+
+use super::{Mirror, Placed, Relation};
+use crate::shape::Simple;
+use boxes::PlacedBox;
+use round::{Cores, PlacedRound};
+use similarity::Similarity;
+
+/// The least gap or overlap that a closed form decides, relative to the size of the data, which here is that of the balls around
+/// the shapes and of the distance of their origins: no less than GJK's. Beyond GJK's error, by more than the errors of a
+/// closed form: some twenty roundings, and half of [`SKEW_MAX`](similarity::SKEW_MAX).
+const GAP_MIN: f64 = 4.0 * solid_convex::gjk::TOUCHING_ERROR;
+
+/// Two simple shapes in one space: along the world's axes, the origin at that of `A`, in a unit of length that is a power of two
+/// near the size of the data, which is then in [1, 2).
+enum Pair {
+    Rounds(PlacedRound, PlacedRound),
+    RoundBox(PlacedRound, PlacedBox),
+    BoxRound(PlacedBox, PlacedRound),
+    Boxes(PlacedBox, PlacedBox),
+}
+
+/// Whether they intersect; `None` where GJK has to say.
+pub(super) fn intersects(a: Placed, b: Placed) -> Option<bool> {
+    match Pair::new(a, b)?.0 {
+        Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).gap().intersects(),
+        Pair::RoundBox(round, cuboid) | Pair::BoxRound(cuboid, round) => {
+            Cores::of_round_and_box(&round, &cuboid)?.gap().intersects()
+        }
+        Pair::Boxes(a, b) => boxes::separation(&a, &b).intersects(),
+    }
+}
+
+/// Whether they intersect, with the evidence; `None` where GJK has to say.
+pub(super) fn intersection(a: Placed, b: Placed) -> Option<Relation> {
+    match Pair::new(a, b)?.0 {
+        Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).relation(),
+        Pair::RoundBox(a, b) => Cores::of_round_and_box(&a, &b)?.relation(),
+        Pair::BoxRound(a, b) => Cores::of_round_and_box(&b, &a)?.relation().mirrored(),
+        // A common point is for GJK to find.
+        Pair::Boxes(a, b) => match boxes::separation(&a, &b) {
+            boxes::Separation::Along(axis) => Some(Relation::Separated { axis: Some(axis) }),
+            _ => None,
+        },
+    }
+}
+
+/// The closest points; `None` where GJK has to find them.
+pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
+    let (pair, scale) = Pair::new(a, b)?;
+    let (cores, swapped) = match &pair {
+        Pair::Rounds(a, b) => (Cores::of_rounds(a, b), false),
+        Pair::RoundBox(a, b) => (Cores::of_round_and_box(a, b)?, false),
+        Pair::BoxRound(a, b) => (Cores::of_round_and_box(b, a)?, true),
+        Pair::Boxes(..) => return None,
+    };
+    let (distance, points) = cores.closest()?;
+    let closest = Closest { distance: distance / scale, points };
+    Some(if swapped { closest.mirrored() } else { closest })
+}
+
+impl Pair {
+    /// With the scale: world lengths times it are lengths of the pair.
+    fn new(a: Placed, b: Placed) -> Option<(Pair, f64)> {
+        let (of_a, of_b) = (a.shape.simple()?, b.shape.simple()?);
+        let (at_a, at_b) = (Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?);
+        let offset = b.placement.translation - a.placement.translation;
+        let size = of_a.radius() * at_a.stretch + of_b.radius() * at_b.stretch + offset.abs().element_sum();
+        let scale = unit_scale(size);
+        let (at_a, at_b) = (at_a.scaled(scale), at_b.scaled(scale));
+        let offset = offset * scale;
+        let pair = match (of_a, of_b) {
+            (Simple::Round { radius, half_height }, other) => {
+                let round = PlacedRound::new(radius, half_height, at_a, DVec3::ZERO);
+                match other {
+                    Simple::Round { radius, half_height } => {
+                        Pair::Rounds(round, PlacedRound::new(radius, half_height, at_b, offset))
+                    }
+                    Simple::Cuboid { half } => {
+                        Pair::RoundBox(round, PlacedBox { half, at: at_b, center: offset })
+                    }
+                }
+            }
+            (Simple::Cuboid { half }, other) => {
+                let cuboid = PlacedBox { half, at: at_a, center: DVec3::ZERO };
+                match other {
+                    Simple::Round { radius, half_height } => {
+                        Pair::BoxRound(cuboid, PlacedRound::new(radius, half_height, at_b, offset))
+                    }
+                    Simple::Cuboid { half } => {
+                        Pair::Boxes(cuboid, PlacedBox { half, at: at_b, center: offset })
+                    }
+                }
+            }
+        };
+        Some((pair, scale))
+    }
+}
+
+impl Simple {
+    /// The radius of a ball around the local origin that contains the shape.
+    fn radius(&self) -> f64 {
+        match self {
+            Simple::Round { radius, half_height } => radius + half_height,
+            Simple::Cuboid { half } => half.element_sum(),
+        }
+    }
+}
+
+/// The gap between two shapes: negative for an overlap.
+#[derive(Clone, Copy)]
+struct Gap {
+    least: f64,
+    greatest: f64,
+}
+
+impl Gap {
+    /// `None` for a gap that is too small to tell.
+    fn intersects(self) -> Option<bool> {
+        if self.least > GAP_MIN {
+            Some(false)
+        } else if self.greatest < -GAP_MIN {
+            Some(true)
+        } else {
+            None
+        }
+    }
+}
+
+/// A common point, or the closest points: of either shape in the space of the pair, then in the shape's own.
+fn witness([at_a, at_b]: [(&Similarity, DVec3); 2], [on_a, on_b]: [DVec3; 2]) -> Witness {
+    Witness { on_a: at_a.0.to_local(on_a - at_a.1), on_b: at_b.0.to_local(on_b - at_b.1) }
+}

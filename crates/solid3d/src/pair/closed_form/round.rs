@@ -1,0 +1,133 @@
+//! Balls and capsules: all points within a radius of a core. Their gap is that of the cores, less the radii.
+
+use glam::DVec3;
+use solid_convex::Witness;
+
+use super::boxes::PlacedBox;
+use super::similarity::Similarity;
+use super::{Gap, Relation, witness};
+
+/// A ball or a capsule, in the space of the pair.
+pub(super) struct PlacedRound {
+    radius: f64,
+    center: DVec3,
+    /// From the centre to an end of the core; zero for a ball.
+    half_axis: DVec3,
+    at: Similarity,
+}
+
+/// The closest points of the cores of two shapes, the second of which may be a box without a radius.
+pub(super) struct Cores<'a> {
+    on_a: DVec3,
+    on_b: DVec3,
+    radii: [f64; 2],
+    /// The gap of the cores, along the line from one point to the other: no more than the distance of the cores. The points'
+    /// own distance is no less.
+    gap_along: f64,
+    at_a: (&'a Similarity, DVec3),
+    at_b: (&'a Similarity, DVec3),
+}
+
+impl PlacedRound {
+    pub fn new(radius: f64, half_height: f64, at: Similarity, center: DVec3) -> PlacedRound {
+        let half_axis = if half_height == 0.0 { DVec3::ZERO } else { at.y_axis() * half_height };
+        PlacedRound { radius: radius * at.stretch, center, half_axis, at }
+    }
+}
+
+impl<'a> Cores<'a> {
+    pub fn of_rounds(a: &'a PlacedRound, b: &'a PlacedRound) -> Cores<'a> {
+        let between = a.center - b.center;
+        let (s, t) = closest_on_segments(between, a.half_axis, b.half_axis);
+        let (on_a, on_b) = (a.center + a.half_axis * s, b.center + b.half_axis * t);
+        let v = on_a - on_b;
+        // What A has least along v, less what B has most.
+        let along = v.dot(between) - v.dot(a.half_axis).abs() - v.dot(b.half_axis).abs();
+        Cores {
+            on_a,
+            on_b,
+            radii: [a.radius, b.radius],
+            gap_along: along,
+            at_a: (&a.at, a.center),
+            at_b: (&b.at, b.center),
+        }
+        .with_length(v)
+    }
+
+    /// `None` for a capsule.
+    pub fn of_round_and_box(a: &'a PlacedRound, b: &'a PlacedBox) -> Option<Cores<'a>> {
+        if a.half_axis != DVec3::ZERO {
+            return None;
+        }
+        let local = b.at.to_local(a.center - b.center);
+        // From the difference in the box's own space, which is exactly along its axes where the centre is beyond a face: as
+        // an axis it must be right over the whole box, however near to it a small ball is.
+        let v = b.at.apply(local - local.clamp(-b.half, b.half));
+        let cores = Cores {
+            on_a: a.center,
+            on_b: a.center - v,
+            radii: [a.radius, 0.0],
+            gap_along: v.dot(a.center - b.center) - b.at.reach_along(v, b.half),
+            at_a: (&a.at, a.center),
+            at_b: (&b.at, b.center),
+        };
+        Some(cores.with_length(v))
+    }
+
+    /// With the gap in units of length, where it was times the length of `v`.
+    fn with_length(mut self, v: DVec3) -> Self {
+        let length = v.length();
+        self.gap_along = if length > 0.0 { self.gap_along / length } else { 0.0 };
+        self
+    }
+
+    pub fn gap(&self) -> Gap {
+        let radii = self.radii[0] + self.radii[1];
+        Gap { least: self.gap_along - radii, greatest: (self.on_a - self.on_b).length() - radii }
+    }
+
+    pub fn relation(&self) -> Option<Relation> {
+        Some(if self.gap().intersects()? {
+            Relation::Common(self.common_point())
+        } else {
+            Relation::Separated { axis: Some((self.on_a - self.on_b).normalize()) }
+        })
+    }
+
+    /// A point between those of the cores, as far from each as its radius is of both; of a box without a radius, its own.
+    fn common_point(&self) -> Witness {
+        let part = self.radii[0] / (self.radii[0] + self.radii[1]);
+        let point = if self.radii[1] == 0.0 { self.on_b } else { self.on_a.lerp(self.on_b, part) };
+        witness([self.at_a, self.at_b], [point, point])
+    }
+
+    /// The distance and the closest points, where the distance is known to [`DISTANCE_ERROR`].
+    pub fn closest(&self) -> Option<(f64, Witness)> {
+        let gap = self.gap();
+        if gap.intersects()? {
+            return Some((0.0, self.common_point()));
+        }
+        let axis = (self.on_a - self.on_b).normalize();
+        let points = [self.on_a - axis * self.radii[0], self.on_b + axis * self.radii[1]];
+        (gap.greatest - gap.least <= DISTANCE_ERROR)
+            .then(|| (gap.greatest, witness([self.at_a, self.at_b], points)))
+    }
+}
+
+/// The error of a distance that is given out, relative to the size of the data: no more than GJK's.
+const DISTANCE_ERROR: f64 = 0.25 * solid_convex::gjk::TOUCHING_ERROR;
+
+/// Where two segments are the closest, in half axes from their middles, from -1 to 1 (Ericson, *Real-Time Collision
+/// Detection*, section 5.1.9). Only points of the segments, however nearly parallel they are; how good these are is told
+/// by the gap along the line that joins them.
+fn closest_on_segments(between: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
+    let (aa, bb, ab) = (a.length_squared(), b.length_squared(), a.dot(b));
+    let (to_a, to_b) = (a.dot(between), b.dot(between));
+    // The place on the other segment's line that is closest, kept on the segment; the middle of a point.
+    let on_a = |t: f64| if aa > 0.0 { ((ab * t - to_a) / aa).clamp(-1.0, 1.0) } else { 0.0 };
+    let on_b = |s: f64| if bb > 0.0 { ((ab * s + to_b) / bb).clamp(-1.0, 1.0) } else { 0.0 };
+    let square = aa * bb - ab * ab;
+    let first = if square > 0.0 { ((ab * to_b - bb * to_a) / square).clamp(-1.0, 1.0) } else { 0.0 };
+    let t = on_b(first);
+    (on_a(t), t)
+}

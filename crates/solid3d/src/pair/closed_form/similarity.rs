@@ -1,0 +1,81 @@
+//! Placements that turn and scale alike in all directions.
+
+use glam::{DMat3, DVec3};
+
+/// How far the scalar products of a placement's axes, relative to their squared length, may be from those of
+/// perpendicular axes of equal length. Products of a dozen rotations in f64 are within it; what it lets through changes
+/// no length by more than half of it.
+pub(super) const SKEW_MAX: f64 = 256.0 / (1u64 << 53) as f64;
+
+/// The linear part of a placement that is a rotation, or a reflection, with a uniform scale.
+#[derive(Clone, Copy)]
+pub(super) struct Similarity {
+    linear: DMat3,
+    /// The scale.
+    pub stretch: f64,
+}
+
+impl Similarity {
+    /// `None` for other maps.
+    #[inline]
+    pub fn new(linear: &DMat3) -> Option<Similarity> {
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *linear;
+        let square = x.length_squared();
+        let skew = (y.length_squared() - square).abs().max((z.length_squared() - square).abs());
+        let skew = skew.max(x.dot(y).abs()).max(y.dot(z).abs()).max(z.dot(x).abs());
+        (skew <= SKEW_MAX * square).then(|| Similarity { linear: *linear, stretch: square.sqrt() })
+    }
+
+    /// The map, then a scale.
+    pub fn scaled(self, scale: f64) -> Similarity {
+        Similarity { linear: self.linear * scale, stretch: self.stretch * scale }
+    }
+
+    pub fn apply(&self, local: DVec3) -> DVec3 {
+        self.linear * local
+    }
+
+    /// The image of the local axis y.
+    pub fn y_axis(&self) -> DVec3 {
+        self.linear.y_axis
+    }
+
+    /// The local axes as unit vectors.
+    pub fn units(&self) -> [DVec3; 3] {
+        let inverse = 1.0 / self.stretch;
+        [self.linear.x_axis * inverse, self.linear.y_axis * inverse, self.linear.z_axis * inverse]
+    }
+
+    /// How far the image of a box of half extents `half` reaches along a vector from its centre, times the vector's length.
+    pub fn reach_along(&self, vector: DVec3, half: DVec3) -> f64 {
+        self.linear.mul_transpose_vec3(vector).abs().dot(half)
+    }
+
+    pub fn to_local(&self, displacement: DVec3) -> DVec3 {
+        self.linear.mul_transpose_vec3(displacement) / (self.stretch * self.stretch)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_and_scales_are_similarities_and_skews_are_none() {
+        let mut turn = DMat3::IDENTITY;
+        for k in 1..=12 {
+            turn *= DMat3::from_rotation_y(f64::from(k)) * DMat3::from_rotation_x(0.7);
+            for scale in [1e-100, 0.1, -1.0, 1e100] {
+                let similarity = Similarity::new(&(turn * scale)).unwrap();
+                assert!((similarity.stretch / scale.abs() - 1.0).abs() < 1e-14);
+                let point = DVec3::new(1.0, 2.0, 3.0);
+                assert!((similarity.to_local(similarity.apply(point)) - point).length() < 1e-13);
+            }
+            for skew in
+                [DVec3::new(1.0, 1.0, 1.0 + 1e-13), DVec3::new(1.0, 2.0, 1.0), DVec3::new(1.0, 0.0, 1.0)]
+            {
+                assert!(Similarity::new(&(turn * DMat3::from_diagonal(skew))).is_none(), "{skew}");
+            }
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The slow twin is GJK.
+
+use glam::{DAffine3, DQuat, DVec3};
+use rand::{Rng, SeedableRng, rngs::StdRng};
+use solid_convex::{Outcome, Support, gjk};
+
+use super::*;
+use crate::Shape;
+use crate::shape::Class;
+
+const SEED: u64 = 77;
+
+fn kinds() -> [Shape; 3] {
+    [Shape::sphere(0.6).unwrap(), Shape::capsule(0.3, 1.0).unwrap(), Shape::cuboid([1.0, 0.8, 1.2]).unwrap()]
+}
+
+fn support(shape: &Shape) -> &dyn Support {
+    match shape.class() {
+        Class::Convex(convex) => convex,
+        Class::Complex(_) => panic!("a simple shape"),
+    }
+}
+
+/// Any rotation, or a quarter turn; any scale; near the origin or far from it.
+fn placements(rng: &mut StdRng) -> [DAffine3; 2] {
+    let mut unit = || DVec3::from([0; 3].map(|_| rng.random_range(-1.0..1.0)));
+    let (at, way) = (unit() * 100.0, unit());
+    [at, at + way * 1.35].map(|translation| {
+        let axis = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE.normalize()][rng.random_range(0..4)];
+        let quarters = f64::from(rng.random_range(0..4)) * std::f64::consts::FRAC_PI_2;
+        let angle = if rng.random() { quarters } else { rng.random_range(-3.0..3.0) };
+        let scale = DVec3::splat(rng.random_range(0.7..1.4));
+        DAffine3::from_scale_rotation_translation(scale, DQuat::from_axis_angle(axis, angle), translation)
+    })
+}
+
+#[test]
+fn closed_forms_say_what_gjk_says() {
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let (mut all_hits, mut all_decided) = (0, 0);
+    for (i, a) in kinds().iter().enumerate() {
+        for (j, b) in kinds().iter().enumerate() {
+            let (mut hits, mut decided) = (0, 0);
+            for _ in 0..2_000 {
+                let [at_a, at_b] = placements(&mut rng);
+                let placed = [Placed { shape: a, placement: &at_a }, Placed { shape: b, placement: &at_b }];
+                let outcome = gjk::intersection(support(a), &at_a, support(b), &at_b);
+                let separated = matches!(outcome, Outcome::Separated { .. });
+                if let Some(answer) = intersects(placed[0], placed[1]) {
+                    decided += 1;
+                    hits += usize::from(answer);
+                    assert_eq!(answer, !separated, "{at_a}, {at_b}");
+                }
+                match intersection(placed[0], placed[1]) {
+                    Some(Relation::Separated { axis: Some(axis) }) => {
+                        assert!(gjk::separates(axis, support(a), &at_a, support(b), &at_b), "{axis}");
+                        assert!((axis.length() - 1.0).abs() < 1e-14);
+                    }
+                    Some(Relation::Common(points)) => {
+                        assert!(!separated);
+                        let on = [at_a.transform_point3(points.on_a), at_b.transform_point3(points.on_b)];
+                        assert!(on[0].distance(on[1]) < 1e-12, "{points:?}");
+                        for (shape, point) in [(a, points.on_a), (b, points.on_b)] {
+                            let here = DAffine3::IDENTITY;
+                            let dot = solid_convex::Points::new(std::slice::from_ref(&point)).unwrap();
+                            let out = gjk::closest_points(support(shape), &here, &dot, &here).distance;
+                            assert!(out < 1e-12, "{out:e} outside");
+                        }
+                    }
+                    Some(Relation::Separated { axis: None }) => panic!("no axis"),
+                    None => {}
+                }
+                if let Some(found) = closest(placed[0], placed[1]) {
+                    let slow = gjk::closest_points(support(a), &at_a, support(b), &at_b);
+                    assert!((found.distance - slow.distance).abs() < 1e-11, "{found:?}, {slow:?}");
+                    let on_a = at_a.transform_point3(found.points.on_a);
+                    let on_b = at_b.transform_point3(found.points.on_b);
+                    assert!((on_a.distance(on_b) - found.distance).abs() < 1e-11, "{found:?}");
+                }
+            }
+            // Of a capsule and a box, nothing is decided.
+            if i + j != 3 {
+                assert!(decided > 1_700, "{i}, {j}: {decided} of 2000 decided");
+                assert!((15..=85).contains(&(100 * hits / decided)), "{i}, {j}: {hits} of {decided} hit");
+                (all_hits, all_decided) = (all_hits + hits, all_decided + decided);
+            }
+        }
+    }
+    assert!((30..=70).contains(&(100 * all_hits / all_decided)), "{all_hits} of {all_decided}");
+}
+
+/// Nearer than the error, a closed form says nothing.
+#[test]
+fn what_touches_is_left_to_gjk() {
+    let [ball, _, block] = kinds();
+    for gap in [-1e-12, 0.0, 1e-12] {
+        let (here, beside) = (DAffine3::IDENTITY, DAffine3::from_translation(DVec3::X * (1.2 + gap)));
+        let placed = |shape, placement| Placed { shape, placement };
+        assert_eq!(intersects(placed(&ball, &here), placed(&ball, &beside)), None);
+        let beside = DAffine3::from_translation(DVec3::X * (1.0 + gap));
+        assert_eq!(intersects(placed(&block, &here), placed(&block, &beside)), None);
+    }
+}
