@@ -20,6 +20,11 @@ impl Pose {
     /// No rotation, at the origin.
     pub const IDENTITY: Pose = Pose { rotation: DQuat::IDENTITY, translation: DVec3::ZERO };
 
+    /// A random rotation, the origin at the given place.
+    pub fn random_at(rng: &mut StdRng, translation: DVec3) -> Self {
+        Pose { rotation: rotation(rng), translation }
+    }
+
     /// The same, so many times as far from the origin.
     pub fn scaled(&self, factor: f64) -> Self {
         Pose { translation: self.translation * factor, ..*self }

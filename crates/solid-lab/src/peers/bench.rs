@@ -12,6 +12,9 @@ use crate::inputs::seeded;
 /// A turn takes at least so long, so that reading the clock is nothing beside it.
 const TURN_MIN: Duration = Duration::from_millis(1);
 
+/// Who needs longer for a turn has only one: it is long enough to be a mean of its own.
+const TURN_MAX: f64 = 1.0;
+
 /// No contestant takes more turns than this.
 const ROUNDS_MAX: usize = 101;
 
@@ -63,7 +66,7 @@ impl Bench {
     }
 
     /// Lets contestants, ours among them or not, take turns at `operations` operations, and adds a row for each of the others. The
-    /// figure of each is the median of its turns, in `unit`, of which a second has `units_per_second`.
+    /// figure of each is the median of its turns, in `unit` an operation.
     pub fn race(&mut self, work: &str, operations: usize, unit: Unit, mut entries: Vec<Entry>) {
         let mut turns: Vec<(usize, Vec<f64>)> = entries
             .iter_mut()
@@ -75,12 +78,17 @@ impl Bench {
                 (passes as usize, first)
             })
             .collect();
+        let done = |(_, times): &(usize, Vec<f64>), rounds: usize| {
+            times.len() >= rounds || times.first().is_some_and(|time| *time > TURN_MAX)
+        };
         let start = Instant::now();
-        while turns.iter().any(|(_, times)| times.len() < self.effort.rounds_min())
-            || (start.elapsed() < self.effort.budget() && turns[0].1.len() < ROUNDS_MAX)
+        while turns.iter().any(|turn| !done(turn, self.effort.rounds_min()))
+            || (start.elapsed() < self.effort.budget() && turns.iter().any(|turn| !done(turn, ROUNDS_MAX)))
         {
-            for (entry, (passes, times)) in entries.iter_mut().zip(&mut turns) {
-                times.push(entry.time(*passes).as_secs_f64() / *passes as f64);
+            for (entry, turn) in entries.iter_mut().zip(&mut turns) {
+                if !done(turn, ROUNDS_MAX) {
+                    turn.1.push(entry.time(turn.0).as_secs_f64() / turn.0 as f64);
+                }
             }
         }
         let spreads: Vec<(Peer, Spread)> = entries

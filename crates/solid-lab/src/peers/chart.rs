@@ -5,7 +5,7 @@ use std::path::Path;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{Kind, Peer, Report, Row};
+use super::{Kind, Peer, Report, Row, TARGETS, targets};
 
 /// Height of a work's two bars, of the head and of the foot, in pixels.
 const WORK_HEIGHT: u32 = 24;
@@ -20,17 +20,40 @@ const PEERS: [(Peer, RGBColor, &str); 2] = [
     (Peer::Thesis, RGBColor(230, 159, 0), "the thesis's design"),
 ];
 
+/// What is known of a work and a peer: the ratio, the geometric mean where there are several, and the one asked for.
+struct Bar {
+    ratio: Option<f64>,
+    target: Option<f64>,
+}
+
+/// The bars of a work, one for each of [`PEERS`].
+struct Work {
+    name: &'static str,
+    bars: [Bar; 2],
+}
+
+fn works(report: &Report) -> Vec<Work> {
+    let mut names: Vec<&str> = TARGETS.iter().map(|target| target.work).collect();
+    names.dedup();
+    let bar = |name: &str, peer: Peer| {
+        let of_work =
+            |row: &&Row| row.kind == Kind::Time && row.peer == peer && targets::name(&row.work) == Some(name);
+        let logs: Vec<f64> =
+            report.rows.iter().filter(of_work).filter_map(|row| row.ratio).map(f64::ln).collect();
+        let ratio = (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp());
+        Bar { ratio, target: targets::ratio(name, peer) }
+    };
+    let works = names.into_iter().map(|name| Work { name, bars: PEERS.map(|(peer, ..)| bar(name, peer)) });
+    works.filter(|work| work.bars.iter().any(|bar| bar.ratio.is_some())).collect()
+}
+
 /// Writes the chart as SVG: a bar from 1 to the ratio for each work and peer, and a line at the target.
 pub fn draw(report: &Report, path: &Path) -> anyhow::Result<()> {
-    let drawn = |row: &&Row| {
-        row.kind == Kind::Time && row.ratio.is_some() && PEERS.iter().any(|(peer, ..)| *peer == row.peer)
-    };
-    let rows: Vec<&Row> = report.rows.iter().filter(drawn).collect();
-    let mut works: Vec<&str> = rows.iter().map(|row| row.work.as_str()).collect();
-    works.dedup();
+    let works = works(report);
     anyhow::ensure!(!works.is_empty(), "there is nothing to draw");
-    let greatest = rows.iter().flat_map(|row| [row.ratio, row.target]).flatten().fold(10.0, f64::max);
-    let least = rows.iter().filter_map(|row| row.ratio).fold(0.5, f64::min);
+    let bars = || works.iter().flat_map(|work| &work.bars);
+    let greatest = bars().flat_map(|bar| [bar.ratio, bar.target]).flatten().fold(10.0, f64::max);
+    let least = bars().filter_map(|bar| bar.ratio).fold(0.5, f64::min);
 
     let height = HEAD_HEIGHT + FOOT_HEIGHT + WORK_HEIGHT * works.len() as u32;
     let root = SVGBackend::new(path, (WIDTH, height)).into_drawing_area();
@@ -50,28 +73,24 @@ pub fn draw(report: &Report, path: &Path) -> anyhow::Result<()> {
         .x_label_formatter(&|x| format!("{x}×"))
         .x_desc("times as fast (logarithmic); a black line is the target")
         .draw()?;
-    let from_top = |place: f64| works.len() as f64 - place;
     let names = ("sans-serif", 13).into_font().color(&BLACK).pos(Pos::new(HPos::Right, VPos::Center));
-    for (i, work) in works.iter().enumerate() {
-        let (_, y) = chart.backend_coord(&(1.0, from_top(i as f64 + 0.5)));
-        root.draw(&Text::new((*work).to_owned(), (NAMES_WIDTH as i32 - 8, y), names.clone()))?;
-    }
-    for row in &rows {
-        let Some(i) = works.iter().position(|work| *work == row.work) else { continue };
-        let Some(lane) = PEERS.iter().position(|(peer, ..)| *peer == row.peer) else { continue };
-        let top = i as f64 + 0.1 + 0.4 * lane as f64;
-        let (above, below) = (from_top(top), from_top(top + 0.36));
-        let ratio = row.ratio.unwrap_or(1.0);
-        chart.draw_series([Rectangle::new([(1.0, above), (ratio, below)], PEERS[lane].1.filled())])?;
-        if let Some(target) = row.target {
-            let line = [(target, above + 0.04), (target, below - 0.04)];
-            chart.draw_series([PathElement::new(line.to_vec(), BLACK.stroke_width(2))])?;
+    for (place, work) in (0..works.len()).rev().zip(&works) {
+        let bottom = place as f64;
+        let (_, y) = chart.backend_coord(&(1.0, bottom + 0.5));
+        root.draw(&Text::new(work.name, (NAMES_WIDTH as i32 - 8, y), names.clone()))?;
+        for (lane, bar) in work.bars.iter().enumerate() {
+            let above = bottom + 0.9 - 0.4 * lane as f64;
+            let below = above - 0.36;
+            let ratio = bar.ratio.unwrap_or(1.0);
+            chart.draw_series([Rectangle::new([(1.0, above), (ratio, below)], PEERS[lane].1.filled())])?;
+            if let Some(target) = bar.target {
+                let line = vec![(target, above + 0.04), (target, below - 0.04)];
+                chart.draw_series([PathElement::new(line, BLACK.stroke_width(2))])?;
+            }
         }
     }
-    chart.draw_series([PathElement::new(
-        vec![(1.0, 0.0), (1.0, works.len() as f64)],
-        BLACK.stroke_width(1),
-    )])?;
+    let one = vec![(1.0, 0.0), (1.0, works.len() as f64)];
+    chart.draw_series([PathElement::new(one, BLACK.stroke_width(1))])?;
     root.present()?;
     Ok(())
 }

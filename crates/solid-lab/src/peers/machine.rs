@@ -6,8 +6,10 @@ pub fn name() -> String {
     let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
     let model = model.map_or(std::env::consts::ARCH, |(_, model)| model);
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let level = solid3d::convex::simd::level();
-    format!("{model}, {cores} cores, {level:?}, one thread used")
+    // The variant's name without what it holds.
+    let level = format!("{:?}", solid3d::convex::simd::level());
+    let level = level.split('(').next().unwrap_or_default();
+    format!("{model}, {cores} cores, {level}, one thread used")
 }
 
 /// Today, as year-month-day.

@@ -11,13 +11,18 @@ pub struct Target {
     pub ratio: f64,
 }
 
-/// The ratio asked of a work. Of the targets whose names it begins with, the longest name counts.
-pub fn ratio(work: &str, peer: Peer) -> Option<f64> {
+/// The name of the targets of a work: the longest that it begins with.
+pub fn name(work: &str) -> Option<&'static str> {
     let names = |target: &&Target| {
         work.strip_prefix(target.work).is_some_and(|rest| rest.is_empty() || rest.starts_with(", "))
     };
-    let longest = TARGETS.iter().filter(names).map(|target| target.work).max_by_key(|name| name.len())?;
-    TARGETS.iter().find(|target| target.work == longest && target.peer == peer).map(|target| target.ratio)
+    TARGETS.iter().filter(names).map(|target| target.work).max_by_key(|name| name.len())
+}
+
+/// The ratio asked of a work.
+pub fn ratio(work: &str, peer: Peer) -> Option<f64> {
+    let name = name(work)?;
+    TARGETS.iter().find(|target| target.work == name && target.peer == peer).map(|target| target.ratio)
 }
 
 const fn thesis(work: &'static str, ratio: f64) -> Target {

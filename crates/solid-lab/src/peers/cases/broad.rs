@@ -11,11 +11,11 @@ use crate::peers::contestants::parry::{double, single};
 use crate::peers::contestants::{Boxes, each};
 use crate::peers::{Bench, Kind, Peer};
 
-/// Frames there; then they are played backwards, so that the motion has no jump.
-const FRAMES: usize = 4;
+/// Frames there, of a full and of a quick run; then they are played backwards, so that the motion has no jump.
+const FRAMES: [usize; 2] = [4, 2];
 
 /// More boxes times movers than this take the sweep and prune of the thesis minutes.
-const SWEPT_MAX: f64 = 2e10;
+const SWEPT_MAX: f64 = 1e10;
 
 /// The oracle, which tests all with all, judges so many boxes at most.
 const JUDGED_MAX: usize = 10_000;
@@ -52,16 +52,20 @@ fn scene(bench: &Bench, name: &str, count: usize, percent: usize) -> Scene {
     let movers = (count * percent / 100).max(1);
     let start = (0..count).map(|i| swarm.bounds(i)).collect();
     let mut frames: Vec<Vec<(u32, Aabb)>> = Vec::new();
-    for _ in 0..FRAMES {
+    let there = FRAMES[usize::from(!bench.effort.large())];
+    for _ in 0..there {
         swarm.step(movers);
         frames.push((0..movers).map(|i| (i as u32, swarm.bounds(i))).collect());
     }
-    frames.extend_from_within(..FRAMES - 1);
-    frames[FRAMES..].reverse();
+    frames.extend_from_within(..there - 1);
+    frames[there..].reverse();
     Scene { start, frames }
 }
 
-fn converted<B: Boxes>(scene: &Scene) -> (B, Vec<Vec<(u32, B::Bounds)>>) {
+/// The boxes of the movers in each frame, in a library's own types.
+type Frames<B> = Vec<Vec<(u32, <B as Boxes>::Bounds)>>;
+
+fn converted<B: Boxes>(scene: &Scene) -> (B, Frames<B>) {
     let start: Vec<B::Bounds> = scene.start.iter().map(B::bounds).collect();
     let frame = |frame: &Vec<(u32, Aabb)>| frame.iter().map(|(i, bounds)| (*i, B::bounds(bounds))).collect();
     (B::new(&start), scene.frames.iter().map(frame).collect())

@@ -6,7 +6,7 @@ use solid3d::glam::DVec3;
 
 use super::pairs::{Scene, distance, intersection};
 use super::with_commas;
-use crate::inputs::{Mesh, PairPose, Polyhedron, Pose, Primitive, direction, rotation};
+use crate::inputs::{Mesh, PairPose, Polyhedron, Pose, Primitive, direction};
 use crate::peers::Bench;
 use crate::peers::bench::{Entry, Unit};
 use crate::peers::contestants::parry::{double, single};
@@ -66,7 +66,7 @@ fn poses(bench: &Bench, terrain: &Mesh) -> Vec<PairPose> {
         .map(|i| {
             let vertex = terrain.vertices[(i * 7919) % terrain.vertices.len()];
             let lift = DVec3::Z * direction(&mut rng).z * LIFT * SIZE;
-            [Pose::IDENTITY, Pose { rotation: rotation(&mut rng), translation: vertex + lift }]
+            [Pose::IDENTITY, Pose::random_at(&mut rng, vertex + lift)]
         })
         .collect()
 }
