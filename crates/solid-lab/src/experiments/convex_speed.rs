@@ -16,7 +16,7 @@ use super::random::stream;
 use super::{Claim, Kind, Report, Settings};
 use crate::comparators::broad::{BroadTest, LinkedSweep};
 use crate::comparators::convex::{
-    ChungWang, ConvexTest, EnhancedGjk, IsaGjk, Library, Memory, Pair, Polytope, SignedVolumes,
+    ChungWang, ConvexTest, EnhancedGjk, IsaGjk, Library, LinCanny, Memory, Pair, Polytope, SignedVolumes,
 };
 use crate::inputs::{self, ICollide};
 
@@ -68,6 +68,14 @@ const FIGURES: [Figure; 3] = [
 /// The thesis: ISA-GJK takes twice the time of Chung-Wang on average.
 const THESIS_OVER_CHUNG_WANG: f64 = 2.0;
 
+/// The thesis: ISA-GJK is roughly five times as fast as Lin-Canny.
+const THESIS_LIN_CANNY_OVER: f64 = 5.0;
+
+/// What the tests are called.
+const ISA_GJK: &str = "ISA-GJK";
+const CHUNG_WANG: &str = "Chung-Wang";
+const LIN_CANNY: &str = "Lin-Canny (V-Clip)";
+
 #[derive(Serialize)]
 struct Row {
     figure: &'static str,
@@ -94,11 +102,12 @@ struct Contender {
 }
 
 fn contenders() -> Vec<Contender> {
-    let tests: [Box<dyn ConvexTest>; 5] = [
+    let tests: [Box<dyn ConvexTest>; 6] = [
         Box::new(IsaGjk::default()),
         Box::new(EnhancedGjk::default()),
         Box::new(SignedVolumes::default()),
         Box::new(ChungWang::default()),
+        Box::new(LinCanny::default()),
         Box::new(Library::default()),
     ];
     let contender =
@@ -145,22 +154,30 @@ pub fn run(settings: &Settings) -> Result<Report> {
         let total = |name: &str, of: fn(&Row) -> f64| {
             of_figure.iter().filter(|row| row.test == name).map(of).sum::<f64>()
         };
-        claims.push(Claim {
-            what: format!("Figure {}: time of ISA-GJK, of Chung-Wang's", figure.number),
-            thesis: THESIS_OVER_CHUNG_WANG,
-            ours: total("ISA-GJK", |r| r.nanoseconds_a_frame)
-                / total("Chung-Wang", |r| r.nanoseconds_a_frame),
-            unit: "",
-            kind: Kind::Time,
-        });
-        // The thesis: ISA-GJK and Chung-Wang consistently return the same collisions.
-        claims.push(Claim {
-            what: format!("Figure {}: answers of Chung-Wang that differ from ISA-GJK's", figure.number),
-            thesis: 0.0,
-            ours: total("Chung-Wang", |r| r.disagreements as f64),
-            unit: "",
-            kind: Kind::Count { error: 0.0 },
-        });
+        for (over, under, thesis) in
+            [(ISA_GJK, CHUNG_WANG, THESIS_OVER_CHUNG_WANG), (LIN_CANNY, ISA_GJK, THESIS_LIN_CANNY_OVER)]
+        {
+            claims.push(Claim {
+                what: format!("Figure {}: time of {over}, of that of {under}", figure.number),
+                thesis,
+                ours: total(over, |r| r.nanoseconds_a_frame) / total(under, |r| r.nanoseconds_a_frame),
+                unit: "",
+                kind: Kind::Time,
+            });
+        }
+        // The thesis: ISA-GJK and Chung-Wang consistently return the same collisions, Lin-Canny occasionally misses one.
+        for (name, kind) in [(CHUNG_WANG, Kind::Count { error: 0.0 }), (LIN_CANNY, Kind::Model)] {
+            claims.push(Claim {
+                what: format!(
+                    "Figure {}: answers of {name} that differ from those of {ISA_GJK}",
+                    figure.number
+                ),
+                thesis: if name == CHUNG_WANG { 0.0 } else { f64::NAN },
+                ours: total(name, |r| r.disagreements as f64),
+                unit: "",
+                kind,
+            });
+        }
         charts.push((file, title));
         rows.extend(of_figure);
     }

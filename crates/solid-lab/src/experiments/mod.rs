@@ -17,6 +17,8 @@ mod random;
 mod report;
 mod summary;
 mod termination;
+#[cfg(test)]
+mod tests;
 mod trees;
 
 use std::path::PathBuf;

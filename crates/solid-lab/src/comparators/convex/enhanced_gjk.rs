@@ -18,7 +18,7 @@ impl ConvexTest for EnhancedGjk {
     }
 
     fn intersects(&mut self, pair: &Pair, memory: &mut Memory) -> bool {
-        let Memory { axis, vertices } = memory;
+        let Memory { axis, vertices, .. } = memory;
         if *axis == DVec3::ZERO {
             *axis = pair.center();
         }

@@ -1,5 +1,7 @@
 use solid3d::glam::DVec3;
 
+use super::Feature;
+
 /// What a test learned about a pair, for the next frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Memory {
@@ -7,10 +9,12 @@ pub struct Memory {
     pub axis: DVec3,
     /// The vertices of A and of B seen last, where hill climbing starts.
     pub vertices: [u32; 2],
+    /// The features of A and of B that were closest, if any were looked for.
+    pub features: Option<(Feature, Feature)>,
 }
 
 impl Default for Memory {
     fn default() -> Self {
-        Memory { axis: DVec3::ZERO, vertices: [0, 0] }
+        Memory { axis: DVec3::ZERO, vertices: [0, 0], features: None }
     }
 }

@@ -3,14 +3,17 @@
 //! The letters are the thesis's: `v` is the point of the simplex closest to the origin, or an axis; `w` the support point of
 //! A-B against it. A positive `v . w` separates.
 
+mod body;
 mod chung_wang;
 mod cone;
 mod counters;
+mod edges;
 mod enhanced_gjk;
 mod gjk_distance;
 mod isa_gjk;
 mod johnson;
 mod library;
+mod lin_canny;
 mod linear_program;
 mod memory;
 mod pair;
@@ -26,6 +29,7 @@ pub use gjk_distance::{Distance, End, Rules, distance};
 pub use isa_gjk::IsaGjk;
 pub use johnson::Johnson;
 pub use library::Library;
+pub use lin_canny::{Feature, LinCanny};
 pub use linear_program::LinearProgram;
 pub use memory::Memory;
 pub use pair::{Pair, SupportPoint};

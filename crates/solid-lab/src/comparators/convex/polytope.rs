@@ -1,6 +1,10 @@
+use std::sync::OnceLock;
+
 use solid3d::convex::Support;
 use solid3d::glam::DVec3;
 use solid3d::hull::Hull;
+
+use super::edges::Edges;
 
 /// A convex polyhedron: vertices, the edges at each, and the surface. Space: its own.
 #[derive(Clone, Debug)]
@@ -9,6 +13,8 @@ pub struct Polytope {
     neighbour_starts: Vec<u32>,
     neighbours: Vec<u32>,
     triangles: Vec<[u32; 3]>,
+    /// Made when first asked for: only solid polytopes have them.
+    edges: OnceLock<Edges>,
 }
 
 impl Polytope {
@@ -26,6 +32,7 @@ impl Polytope {
             neighbour_starts,
             neighbours,
             triangles: hull.triangles().iter().map(|t| t.map(slot)).collect(),
+            edges: OnceLock::new(),
         })
     }
 
@@ -37,6 +44,14 @@ impl Polytope {
     /// The surface, counter-clockwise seen from outside.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
+    }
+
+    /// The features and how they touch each other.
+    ///
+    /// # Panics
+    /// When the polytope is not solid.
+    pub(super) fn edges(&self) -> &Edges {
+        self.edges.get_or_init(|| Edges::of(self))
     }
 
     /// The vertices joined to one by an edge.

@@ -40,7 +40,7 @@ fn agrees_with_the_oracle(mut test: impl ConvexTest) {
     each_pair(400, |pair, hit, _| {
         // Two starts: from nothing, and from what the pair left.
         memory = Memory::default();
-        assert_eq!(test.intersects(pair, &mut memory), hit, "{}: {pair:?}", test.name());
+        assert_eq!(test.intersects(pair, &mut memory), hit, "{}: {:?}, {pair:?}", test.name(), memory);
         assert_eq!(test.intersects(pair, &mut memory), hit, "{}, warm: {pair:?}", test.name());
     });
     assert_eq!(test.counters().tests, 800);
@@ -55,6 +55,11 @@ fn isa_gjk_agrees_with_the_oracle() {
 #[test]
 fn chung_wang_agrees_with_the_oracle() {
     agrees_with_the_oracle(ChungWang::default());
+}
+
+#[test]
+fn lin_canny_agrees_with_the_oracle() {
+    agrees_with_the_oracle(LinCanny::default());
 }
 
 #[test]
