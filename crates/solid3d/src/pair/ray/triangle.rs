@@ -73,23 +73,29 @@ impl Shear {
 
     #[inline(always)]
     fn candidates_on<S: Simd>(&self, simd: S, corners: &Corners) -> u32 {
-        let splat = |x: f64| f64x8::splat(simd, x);
-        let origin = self.axes.map(|axis| splat(self.origin[axis]));
-        let (scale, shear) = (splat(self.scale), [splat(self.shear.x), splat(self.shear.y)]);
+        // Loops, not closures: what is called from a closure is compiled for the baseline, and nothing of it is inlined.
+        let (scale, error) = (f64x8::splat(simd, self.scale), f64x8::splat(simd, DETERMINANT_ERROR));
+        let zero = f64x8::splat(simd, 0.0);
         // The same operations as for one.
-        let points = [0, 1, 2].map(|i| {
-            let row = |axis: usize| (f64x8::from_slice(simd, &corners[i][axis]) - origin[axis]) * scale;
-            let depth = row(2);
-            [row(0) - shear[0] * depth, row(1) - shear[1] * depth]
-        });
-        let error = splat(DETERMINANT_ERROR);
-        let sides = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| {
+        let mut points = [[zero; 2]; 3];
+        for (point, rows) in points.iter_mut().zip(corners) {
+            let mut local = [zero; 3];
+            for axis in 0..3 {
+                let origin = f64x8::splat(simd, self.origin[self.axes[axis]]);
+                local[axis] = (f64x8::from_slice(simd, &rows[axis]) - origin) * scale;
+            }
+            point[0] = local[0] - f64x8::splat(simd, self.shear.x) * local[2];
+            point[1] = local[1] - f64x8::splat(simd, self.shear.y) * local[2];
+        }
+        let none = zero.simd_gt(zero);
+        let (mut left, mut right) = (none, none);
+        for [i, j] in [[1, 2], [2, 0], [0, 1]] {
             let (x, y) = (points[i][0] * points[j][1], points[i][1] * points[j][0]);
-            (x - y, error * (x.abs() + y.abs()))
-        });
-        let left = sides.map(|(area, doubt)| area.simd_gt(doubt));
-        let right = sides.map(|(area, doubt)| (-area).simd_gt(doubt));
-        let missed = (left[0] | left[1] | left[2]) & (right[0] | right[1] | right[2]);
+            let (area, doubt) = (x - y, error * (x.abs() + y.abs()));
+            left = left | area.simd_gt(doubt);
+            right = right | (-area).simd_gt(doubt);
+        }
+        let missed = left & right;
         !(missed.to_bitmask() as u32) & ((1 << LANES) - 1)
     }
 
