@@ -72,6 +72,10 @@ impl Support for Polytope {
     fn center(&self) -> DVec3 {
         self.center
     }
+
+    fn is_polytope(&self) -> bool {
+        true
+    }
 }
 
 #[cfg(test)]
