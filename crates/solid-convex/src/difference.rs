@@ -88,6 +88,11 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
         if v.abs().max_element() > SUPPORT_ERROR { v } else { DVec3::X }
     }
 
+    /// Whether it is the hull of finitely many points.
+    pub fn is_polytope(&self) -> bool {
+        self.a.is_polytope() && self.b.is_polytope()
+    }
+
     /// World lengths times this are lengths of the difference; a power of two.
     pub fn scale(&self) -> f64 {
         self.scale

@@ -20,12 +20,17 @@ pub trait Support: Send + Sync {
         DVec3::ZERO
     }
 
+    /// Whether it is the hull of finitely many points, which its support points are: then a search among them ends with the exact answer.
+    fn is_polytope(&self) -> bool {
+        false
+    }
+
     /// The object is all that is within this distance of its core; 0 for one that is its own core.
     fn core_radius(&self) -> f64 {
         0.0
     }
 
-    /// A support point of the core, which is what the object is rounded from: of a ball its centre.
+    /// A support point of the core, a polytope that the object is rounded from: of a ball its centre.
     fn core_support(&self, direction: DVec3) -> DVec3 {
         self.support(direction)
     }

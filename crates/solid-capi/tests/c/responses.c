@@ -136,7 +136,7 @@ static void smart(void) {
     /* When they collided in the previous frame already, the normal is the way out, and the points are the deepest. */
     dtProceed();
     CHECK(test() == 1 && NEAR(data->normal[1], -1) && NEAR(data->normal[0], 0) && NEAR(data->normal[2], 0));
-    CHECK(NEAR(data->point1[1], 1) && NEAR(data->point2[1], 1)); /* b is turned upside down. */
+    CHECK(NEAR(data->point1[1], 1) && NEAR(data->point2[1], -1));
     dtDeleteObject(&a);
     dtDeleteObject(&b);
 

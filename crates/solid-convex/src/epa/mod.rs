@@ -32,8 +32,8 @@ use polytope::Polytope;
 use rounded::Core;
 use start::start;
 
-/// A depth is searched until its bounds are this near, relative to it. Polytopes are exact in the end; a curved surface needs
-/// some five support points for each digit.
+/// The depth of curved objects is searched until its bounds are this near, relative to it: they need some five support points for
+/// each digit. That of polytopes is searched to the rounding error, for a few vertices more.
 pub const DEPTH_TOLERANCE: f64 = 1e-7;
 
 /// The most vertices of a polytope. Curved shapes that have their least depth in many directions at once, as a cylinder around
@@ -137,6 +137,8 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
+    let relative = if difference.is_polytope() { 0.0 } else { DEPTH_TOLERANCE };
+    let tolerance = |height: f64| tolerance(height, relative);
     let (mut height, mut normal) = (f64::INFINITY, DVec3::X);
     for _ in 0..EXPANSIONS_MAX {
         let Some(index) = polytope.nearest_open() else { break };
@@ -175,8 +177,8 @@ where
 }
 
 /// How far above a face `A - B` may reach for the face to count as its boundary.
-fn tolerance(height: f64) -> f64 {
-    if height.is_finite() { DEPTH_TOLERANCE * height.max(0.0) + HEIGHT_ERROR } else { 0.0 }
+fn tolerance(height: f64, relative: f64) -> f64 {
+    if height.is_finite() { relative * height.max(0.0) + HEIGHT_ERROR } else { 0.0 }
 }
 
 /// The point of the hull of up to three points that is closest to a target, with the square of the distance.

@@ -53,6 +53,10 @@ impl<S: Support + ?Sized> Support for Core<'_, S> {
     fn center(&self) -> DVec3 {
         self.object.center()
     }
+
+    fn is_polytope(&self) -> bool {
+        self.scale.is_some() || self.object.is_polytope()
+    }
 }
 
 /// The scale of a placement that is a rotation or mirroring and a scale, up to rounding.

@@ -38,4 +38,8 @@ impl Support for Cuboid {
     fn reach(&self) -> DVec3 {
         self.half
     }
+
+    fn is_polytope(&self) -> bool {
+        true
+    }
 }

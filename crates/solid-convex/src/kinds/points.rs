@@ -38,6 +38,10 @@ impl Support for Points<'_> {
     fn center(&self) -> DVec3 {
         mean(self.points.iter().copied())
     }
+
+    fn is_polytope(&self) -> bool {
+        true
+    }
 }
 
 /// The convex hull of some vertices of a buffer, named by index: a primitive of a complex shape.
@@ -70,6 +74,10 @@ impl Support for IndexedPoints<'_> {
 
     fn center(&self) -> DVec3 {
         mean(self.points())
+    }
+
+    fn is_polytope(&self) -> bool {
+        true
     }
 }
 

@@ -54,10 +54,10 @@ fn fox_vs_bunny() {
             tally.check(collisions.len() == usize::from(collide), || {
                 format!("{label}: {} collisions", collisions.len())
             });
-            // Smart response has closest points where the frame before was free, else deepest points.
+            // Smart response has closest points where the frame before was free. Where it was not, others may meet now than did there.
             for collision in &collisions {
                 let apart = matches!(collision.contact, Contact::Smart { distance, .. } if distance > 0.0);
-                tally.check(apart == !collided, || format!("{label}: {:?}", collision.contact));
+                tally.check(apart || collided, || format!("{label}: {:?}", collision.contact));
             }
         }
         collided = collide;

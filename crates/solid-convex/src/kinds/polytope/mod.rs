@@ -68,6 +68,10 @@ impl Support for Polytope {
     fn center(&self) -> DVec3 {
         self.center
     }
+
+    fn is_polytope(&self) -> bool {
+        true
+    }
 }
 
 #[cfg(test)]
