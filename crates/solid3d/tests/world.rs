@@ -145,7 +145,7 @@ fn bits(collision: &Collision) -> Bits {
         }
         Contact::Curve { point, ref curve } => {
             let points = curve.polylines.iter().flat_map(|polyline| polyline.path());
-            (4, of(&std::iter::once(point).chain(points).collect::<Vec<_>>()))
+            (3, of(&std::iter::once(point).chain(points).collect::<Vec<_>>()))
         }
     };
     (collision.a, collision.b, kind, numbers)

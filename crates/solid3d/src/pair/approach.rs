@@ -26,11 +26,15 @@ pub(crate) struct Approach {
 /// How two shapes that meet now, or did on the way, came together since the previous frame.
 pub(crate) fn approach(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch) -> Approach {
     let pairs = pairs_to_look_at(now, before, scratch);
+    let ([a, b], solid) = (before, before.iter().any(is_solid));
     let nearest = pairs.iter().map(|&pair| (with_primitives(before, pair, closest_points), pair));
     let nearest = nearest.min_by(|(x, i), (y, j)| x.distance.total_cmp(&y.distance).then(i.cmp(j)));
     match nearest {
-        Some((closest, _)) if closest.distance > 0.0 => apart(before, closest),
-        Some(_) if !before.iter().any(|placed| is_solid(placed)) => {
+        // In a solid, what is apart from its surface is deep.
+        Some((nearest, _)) if nearest.distance > 0.0 && (!solid || closest(a, b, scratch).distance > 0.0) => {
+            apart(before, nearest)
+        }
+        Some((nearest, _)) if nearest.distance == 0.0 && !solid => {
             let mut deepest = Deepest::default();
             pairs.iter().for_each(|&pair| deepest.take(pair, with_primitives(before, pair, of_common)));
             deep(deepest.found().expect("there is a pair"))

@@ -16,6 +16,12 @@ impl DynamicTree {
         mut until: f64,
         visit: &mut dyn FnMut(Proxy) -> f64,
     ) {
+        // What waits for the next flush is not in the tree, or not where it is.
+        for &proxy in &self.queue {
+            if self.is_alive(proxy) && bound(&self.tight[proxy as usize]) <= until {
+                until = visit(proxy);
+            }
+        }
         let mut stack = vec![(f64::NEG_INFINITY, Kind::Node(ROOT))];
         while let Some((least, kind)) = stack.pop() {
             if least > until {
@@ -23,7 +29,8 @@ impl DynamicTree {
             }
             match kind {
                 Kind::Leaf(proxy) => {
-                    if self.is_alive(proxy) && bound(&self.tight[proxy as usize]) <= until {
+                    let here = self.is_alive(proxy) && !self.status[proxy as usize].queued;
+                    if here && bound(&self.tight[proxy as usize]) <= until {
                         until = visit(proxy);
                     }
                 }
