@@ -4,5 +4,5 @@ mod build;
 mod nearest;
 mod overlap;
 mod pairs;
-mod scenes;
+pub(super) mod scenes;
 mod timing;
