@@ -36,6 +36,19 @@ impl Aabb {
         points.into_iter().fold(Aabb::EMPTY, |b, p| Aabb { min: b.min.min(p), max: b.max.max(p) })
     }
 
+    /// Grows the box to hold a point, whose coordinates must be numbers.
+    #[inline(always)]
+    pub(crate) fn grow(&mut self, p: DVec3) {
+        // Plain comparisons are one instruction each; `DVec3::min` also looks for what is not a number.
+        let (least, greatest) = (&mut self.min, &mut self.max);
+        least.x = if p.x < least.x { p.x } else { least.x };
+        least.y = if p.y < least.y { p.y } else { least.y };
+        least.z = if p.z < least.z { p.z } else { least.z };
+        greatest.x = if p.x > greatest.x { p.x } else { greatest.x };
+        greatest.y = if p.y > greatest.y { p.y } else { greatest.y };
+        greatest.z = if p.z > greatest.z { p.z } else { greatest.z };
+    }
+
     /// Whether two boxes share a point.
     pub fn overlaps(&self, other: &Aabb) -> bool {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()

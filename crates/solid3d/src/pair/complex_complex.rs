@@ -2,52 +2,100 @@
 
 use std::ops::ControlFlow;
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
+use solid_convex::simd::level;
 use solid_convex::{Closest, Witness, gjk};
 
 use super::containment::{PlacedSolid, part_inside};
+use super::crossing_point::{crossing_point, weighted};
 use super::frame::{Frame, Stretch};
+use super::row::{Near, Row, distances, exceed, parted};
 use super::scratch::PlacedPrimitive;
 use super::table::PlacedComplex;
-use super::{Relation, Scratch, triangle_triangle};
+use super::triangle_triangle::{self, Triangle};
+use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 use crate::shape::Complex;
-use crate::tree::{PairMetric, nearest_pairs, pairs};
+use crate::tree::{LeafPairs, NearLeafPairs, PairMetric, bits, nearest_pairs_on, pairs_on};
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
-    let found = meetings(a, b, scratch, |i, j| ControlFlow::Break((i, j)));
-    match found.break_value() {
-        Some((i, j)) => Relation::Common(closest_of(a, i, b, j).points),
+    let mut first = None;
+    let mut found = |i, j| {
+        first = Some((i, j));
+        ControlFlow::Break(())
+    };
+    let frame = frame(a, b);
+    let _ = meeting_pairs_in(&frame, a, b, scratch, &mut found);
+    match first {
+        Some((i, j)) => Relation::Common(common_point(a, i, b, j, &frame.common)),
         None => contained(a, b, scratch).map_or(Relation::Separated { axis: None }, Relation::Common),
     }
 }
 
-/// Visits the pairs of primitives that meet.
-pub(super) fn meetings<B>(
+/// Calls `found` with the pairs of primitives that meet, all of them unless it breaks off. Cost: follows the number of pairs of
+/// primitives whose boxes overlap.
+pub(super) fn meeting_pairs(
     a: PlacedComplex,
     b: PlacedComplex,
     scratch: &mut Scratch,
-    mut visit: impl FnMut(u32, u32) -> ControlFlow<B>,
-) -> ControlFlow<B> {
-    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
-    let Frame { relative, common: [from_a, from_b], .. } = frame(a, b);
-    pairs(a.0.tree(), b.0.tree(), &relative, traversal, |leaf_a, leaf_b| {
-        place(a.0, leaf_a, &from_a, in_a);
-        place(b.0, leaf_b, &from_b, in_b);
-        for x in &*in_a {
-            for y in in_b.iter().filter(|y| x.bounds.overlaps(&y.bounds)) {
-                *primitive_tests += 1;
-                let meet = match (&x.triangle, &y.triangle) {
-                    (Some(x), Some(y)) => triangle_triangle::intersect(x, y),
-                    _ => hulls_meet(a, x.primitive, b, y.primitive),
+    found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    meeting_pairs_in(&frame(a, b), a, b, scratch, found)
+}
+
+fn meeting_pairs_in(
+    frame: &Frame,
+    a: PlacedComplex,
+    b: PlacedComplex,
+    scratch: &mut Scratch,
+    found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let Scratch { traversal, rows, primitive_tests, .. } = scratch;
+    let Frame { relative, common, .. } = frame;
+    rows.iter_mut().for_each(Row::clear);
+    let mut meeting = Meeting { a, b, common, rows, primitive_tests, found };
+    pairs_on(level(), a.0.tree(), b.0.tree(), relative, traversal, &mut meeting)
+}
+
+/// Looks for primitives that meet in pairs of leaves.
+struct Meeting<'s> {
+    a: PlacedComplex<'s>,
+    b: PlacedComplex<'s>,
+    common: &'s [DAffine3; 2],
+    rows: &'s mut [Row; 2],
+    primitive_tests: &'s mut u64,
+    found: &'s mut dyn FnMut(u32, u32) -> ControlFlow<()>,
+}
+
+impl LeafPairs<()> for Meeting<'_> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32]) -> ControlFlow<()> {
+        let [in_a, in_b] = &mut *self.rows;
+        in_a.place(simd, self.a.0, leaf_a, &self.common[0]);
+        in_b.place(simd, self.b.0, leaf_b, &self.common[1]);
+        for i in bits(in_a.overlapping(simd, &in_b.union(simd))) {
+            let mut near = in_b.overlapping(simd, &in_a.bounds(i));
+            *self.primitive_tests += u64::from(near.count_ones());
+            let x = in_a.triangle(i);
+            let is_triangle = in_a.triangles() >> i & 1 == 1;
+            if is_triangle && near != 0 {
+                near &= !(parted(simd, &x, in_b) & in_b.triangles());
+            }
+            for j in bits(near) {
+                let (one, other) = (in_a.primitive(i), in_b.primitive(j));
+                let meet = if is_triangle && in_b.triangles() >> j & 1 == 1 {
+                    triangle_triangle::intersect(&x, &in_b.triangle(j))
+                } else {
+                    hulls_meet(self.a, one, self.b, other)
                 };
                 if meet {
-                    visit(x.primitive, y.primitive)?;
+                    (self.found)(one, other)?;
                 }
             }
         }
         ControlFlow::Continue(())
-    })
+    }
 }
 
 /// A point of a part of one that is inside the other, a solid; for surfaces that do not meet.
@@ -69,36 +117,96 @@ pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch)
     if let Relation::Common(points) = intersection(a, b, scratch) {
         return Closest { distance: 0.0, points };
     }
-    let Frame { relative, common: [from_a, from_b], scale, stretch: [of_a, of_b] } = frame(a, b);
-    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
+    let (i, j) = closest_pair(a, b, scratch);
+    closest_of(a, i, b, j)
+}
+
+/// The primitives of two complex shapes that are closest to each other, up to [`CONFIRMED`].
+fn closest_pair(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> (u32, u32) {
+    let Frame { relative, common, scale, stretch: [of_a, of_b] } = frame(a, b);
+    let Scratch { traversal, rows, primitive_tests, .. } = scratch;
+    rows.iter_mut().for_each(Row::clear);
     // The best distance so far is kept in the common frame, as the bounds are.
-    let (mut best, mut answer) = (f64::INFINITY, None);
+    let mut best = f64::INFINITY;
     let metric = metric(&of_a, &of_b);
-    // From the closest point of B to that of A so far: what is further apart along it is no nearer.
-    let mut axis = DVec3::ZERO;
-    let visit = |leaf_a: &[u32], leaf_b: &[u32], best: &mut f64| {
-        place(a.0, leaf_a, &from_a, in_a);
-        place(b.0, leaf_b, &from_b, in_b);
-        for x in &*in_a {
-            for y in &*in_b {
-                let apart = x.bounds.gap(&y.bounds).length() >= *best
-                    || x.least_along(axis) + y.least_along(-axis) >= *best;
-                if apart {
+    let mut approach =
+        Approach { a, b, common: &common, scale, rows, primitive_tests, axis: DVec3::ZERO, answer: None };
+    nearest_pairs_on(
+        level(),
+        a.0.tree(),
+        b.0.tree(),
+        &relative,
+        &metric,
+        &mut best,
+        traversal,
+        &mut approach,
+    );
+    approach.answer.expect("a complex shape has a primitive, and every distance is finite")
+}
+
+/// A distance of triangles is taken for right when a lower bound comes as near, in the common frame, where the size of the
+/// data is from 1 to 2: well within the error that distances may have.
+const CONFIRMED: f64 = 1e-13;
+
+/// Looks for the closest primitives in pairs of leaves.
+struct Approach<'s> {
+    a: PlacedComplex<'s>,
+    b: PlacedComplex<'s>,
+    common: &'s [DAffine3; 2],
+    scale: f64,
+    rows: &'s mut [Row; 2],
+    primitive_tests: &'s mut u64,
+    /// From the closest point of B to that of A so far: what is further apart along it is no nearer.
+    axis: DVec3,
+    answer: Option<(u32, u32)>,
+}
+
+impl NearLeafPairs for Approach<'_> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32], best: &mut f64) {
+        let [in_a, in_b] = &mut *self.rows;
+        in_a.place(simd, self.a.0, leaf_a, &self.common[0]);
+        in_b.place(simd, self.b.0, leaf_b, &self.common[1]);
+        let least_of_a = in_a.least_along(simd, self.axis);
+        let least_of_b = in_b.least_along(simd, -self.axis);
+        for i in bits(in_a.nearer(simd, &in_b.union(simd), *best * *best)) {
+            let along = exceed(simd, &least_of_b, *best - least_of_a[i]);
+            let near = in_b.nearer(simd, &in_a.bounds(i), *best * *best) & !along;
+            if near == 0 {
+                continue;
+            }
+            *self.primitive_tests += u64::from(near.count_ones());
+            let x = in_a.triangle(i);
+            let is_triangle = in_a.triangles() >> i & 1 == 1;
+            let known = if is_triangle { near & in_b.triangles() } else { 0 };
+            let known_of = if known != 0 { distances(simd, &x, in_b) } else { Near::UNKNOWN };
+            let Near { distance, least, .. } = &known_of;
+            for j in bits(near) {
+                let is_known = known >> j & 1 == 1;
+                if is_known && least[j] >= *best {
                     continue;
                 }
-                *primitive_tests += 1;
-                let closest = closest_of(a, x.primitive, b, y.primitive);
-                if closest.distance * scale < *best {
-                    *best = closest.distance * scale;
-                    let on_a = from_a.transform_point3(closest.points.on_a);
-                    axis = (on_a - from_b.transform_point3(closest.points.on_b)).normalize_or_zero();
-                    answer = Some(closest);
+                let pair = (in_a.primitive(i), in_b.primitive(j));
+                if is_known && distance[j] - least[j] <= CONFIRMED {
+                    if distance[j] < *best {
+                        *best = distance[j];
+                        self.answer = Some(pair);
+                        self.axis = known_of.axis(j);
+                    }
+                } else {
+                    let closest = closest_of(self.a, pair.0, self.b, pair.1);
+                    if closest.distance * self.scale < *best {
+                        *best = closest.distance * self.scale;
+                        self.answer = Some(pair);
+                        let [from_a, from_b] = self.common;
+                        let on_a = from_a.transform_point3(closest.points.on_a);
+                        let on_b = from_b.transform_point3(closest.points.on_b);
+                        self.axis = (on_a - on_b).normalize_or_zero();
+                    }
                 }
             }
         }
-    };
-    nearest_pairs(a.0.tree(), b.0.tree(), &relative, &metric, &mut best, traversal, visit);
-    answer.expect("a complex shape has a primitive, and every distance is finite")
+    }
 }
 
 fn frame(a: PlacedComplex, b: PlacedComplex) -> Frame {
@@ -109,27 +217,36 @@ fn metric(a: &Stretch, b: &Stretch) -> PairMetric {
     PairMetric { facet_a: a.facets, facet_b: b.facets, sigma_min_a: a.least, sigma_min_b: b.least }
 }
 
-/// The primitives of a leaf in the common frame.
+/// The boxes of the primitives of a leaf in the common frame.
 pub(super) fn place(complex: &Complex, leaf: &[u32], map: &DAffine3, placed: &mut Vec<PlacedPrimitive>) {
-    let vertex = |index: u32| map.transform_point3(complex.vertices()[index as usize]);
-    let corners = |indices: &[u32]| -> Option<[DVec3; 3]> {
-        match *indices {
-            [i] => Some([vertex(i); 3]),
-            [i, j] => Some([vertex(i), vertex(j), vertex(j)]),
-            [i, j, k] => Some([vertex(i), vertex(j), vertex(k)]),
-            _ => None,
-        }
-    };
     placed.clear();
     placed.extend(leaf.iter().map(|&primitive| {
-        let indices = complex.primitive(primitive);
-        let triangle = corners(indices);
-        let bounds = match &triangle {
-            Some(corners) => Aabb::of_points(*corners),
-            None => Aabb::of_points(indices.iter().map(|&index| vertex(index))),
-        };
-        PlacedPrimitive { primitive, bounds, triangle }
+        let vertex = |&index: &u32| map.transform_point3(complex.vertices()[index as usize]);
+        let bounds = Aabb::of_points(complex.primitive(primitive).iter().map(vertex));
+        PlacedPrimitive { primitive, bounds }
     }));
+}
+
+/// A common point of two primitives that meet.
+fn common_point(a: PlacedComplex, i: u32, b: PlacedComplex, j: u32, common: &[DAffine3; 2]) -> Witness {
+    let (Some(x), Some(y)) = (corners(a.0, i), corners(b.0, j)) else {
+        return closest_of(a, i, b, j).points;
+    };
+    let [from_a, from_b] = common;
+    let placed_x = x.map(|corner| from_a.transform_point3(corner));
+    let placed_y = y.map(|corner| from_b.transform_point3(corner));
+    match crossing_point(&placed_x, &placed_y) {
+        Some([of_x, of_y]) => Witness { on_a: weighted(&x, &of_x), on_b: weighted(&y, &of_y) },
+        None => closest_of(a, i, b, j).points,
+    }
+}
+
+/// The corners of a primitive that is a triangle.
+fn corners(complex: &Complex, primitive: u32) -> Option<Triangle> {
+    match *complex.primitive(primitive) {
+        [i, j, k] => Some([i, j, k].map(|index| complex.vertices()[index as usize])),
+        _ => None,
+    }
 }
 
 fn hulls_meet(a: PlacedComplex, i: u32, b: PlacedComplex, j: u32) -> bool {

@@ -1,95 +1,196 @@
 //! A complex shape against a convex one: the tree is walked with the convex shape's box (thesis, section 6.3.4).
+//!
+//! What parts one primitive from the convex shape mostly parts its neighbours too. So an axis is kept, and leaves are tested
+//! along it, eight primitives at a time, before GJK looks at what remains.
 
 use std::ops::ControlFlow;
 
-use solid_convex::{Closest, Support, Witness, gjk};
+use fearless_simd::Simd;
+use glam::{DAffine3, DVec3};
+use solid_convex::simd::level;
+use solid_convex::{Closest, Outcome, Support, Witness, gjk};
 
 use super::containment::PlacedSolid;
-use super::frame::Frame;
+use super::frame::{Frame, ROUNDINGS};
 use super::reach::convex_bounds;
+use super::row::{Row, exceed};
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 use crate::shape::Complex;
+use crate::tree::{Leaves, NearLeaves, PairMetric, bits};
 
-pub(super) fn intersection(
-    (complex, at_complex): PlacedComplex,
-    (convex, at_convex): PlacedConvex,
-    scratch: &mut Scratch,
-) -> Relation {
-    let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
-    let found = meetings_in((complex, at_complex), (convex, at_convex), &query, scratch, |_, w| {
-        ControlFlow::Break(w)
+/// A gap in the common frame, where the size of the data is from 1 to 2, at which GJK calls shapes separate without fail: four
+/// times the one at which it does so by a cached axis.
+const CLEARLY_APART: f64 = 1.0 / (1u64 << 24) as f64;
+
+pub(super) fn intersection(complex: PlacedComplex, convex: PlacedConvex, scratch: &mut Scratch) -> Relation {
+    let mut first = None;
+    let mut found = |_, witness| {
+        first = Some(witness);
+        ControlFlow::Break(())
+    };
+    let _ = meeting_primitives(complex, convex, scratch, &mut found);
+    let common = first.or_else(|| {
+        let (_, frame) = convex_in_complex(complex, convex);
+        contained(complex.0, convex.0, &frame, scratch)
     });
-    let common = found.break_value().or_else(|| contained(complex, convex, &frame, scratch));
     common.map_or(Relation::Separated { axis: None }, Relation::Common)
 }
 
-/// Visits the primitives that the convex shape meets.
-pub(super) fn meetings(
+/// Calls `found` with the primitives that meet the convex shape, and a common point: all of them unless it breaks off.
+pub(super) fn meeting_primitives(
     complex: PlacedComplex,
     convex: PlacedConvex,
     scratch: &mut Scratch,
-    mut visit: impl FnMut(u32),
-) {
-    let (query, _) = convex_in_complex(complex, convex);
-    let _ = meetings_in(complex, convex, &query, scratch, |primitive, _| {
-        visit(primitive);
-        ControlFlow::<()>::Continue(())
-    });
+    found: &mut dyn FnMut(u32, Witness) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let (query, frame) = convex_in_complex(complex, convex);
+    let Scratch { traversal, rows: [row, _], primitive_tests, .. } = scratch;
+    row.clear();
+    let shadow = Shadow::new(convex.0, &frame, CLEARLY_APART);
+    let mut meeting =
+        Meeting { complex, convex, query, map: frame.common[0], shadow, row, primitive_tests, found };
+    complex.0.tree().overlapping_on(level(), &query, traversal, &mut meeting)
 }
 
-/// Visits the primitives that the convex shape, which is in this box, meets, each with a common point.
-fn meetings_in<B>(
-    (complex, at_complex): PlacedComplex,
-    (convex, at_convex): PlacedConvex,
-    query: &Aabb,
-    scratch: &mut Scratch,
-    mut visit: impl FnMut(u32, Witness) -> ControlFlow<B>,
-) -> ControlFlow<B> {
-    let Scratch { traversal, primitive_tests, .. } = scratch;
-    complex.tree().overlapping(query, traversal, |leaf| {
-        for &primitive in leaf {
-            if complex.primitive_bounds(primitive).overlaps(query) {
-                *primitive_tests += 1;
-                let points = complex.primitive_hull(primitive);
-                if let Some(witness) = gjk::intersection(&points, at_complex, convex, at_convex).witness() {
-                    visit(primitive, *witness)?;
+/// The convex shape in the common frame.
+struct Shadow<'s> {
+    shape: &'s dyn Support,
+    map: DAffine3,
+    bounds: Aabb,
+    /// What tells the primitives looked at last from the shape, pointing to them; at first none.
+    axis: DVec3,
+    /// The greatest coordinate of the shape along it.
+    greatest: f64,
+}
+
+impl<'s> Shadow<'s> {
+    /// With bounds grown by a margin.
+    fn new(shape: &'s dyn Support, frame: &Frame, margin: f64) -> Self {
+        let map = frame.common[1];
+        let Aabb { min, max } = convex_bounds(shape, &map.matrix3);
+        let bounds = Aabb::new(min + map.translation, max + map.translation).inflated(margin);
+        Shadow { shape, map, bounds, axis: DVec3::ZERO, greatest: 0.0 }
+    }
+
+    /// Takes another axis.
+    fn turn(&mut self, axis: DVec3) {
+        let furthest = self.shape.support(self.map.matrix3.transpose() * axis);
+        (self.axis, self.greatest) = (axis, axis.dot(self.map.transform_point3(furthest)));
+    }
+
+    /// The lanes that are further along the axis than the shape, by a gap, as bits.
+    #[inline(always)]
+    fn beyond<S: Simd>(&self, simd: S, row: &Row, gap: f64) -> u32 {
+        exceed(simd, &row.least_along(simd, self.axis), self.greatest + gap)
+    }
+}
+
+/// Looks for primitives that meet the convex shape.
+struct Meeting<'s> {
+    complex: PlacedComplex<'s>,
+    convex: PlacedConvex<'s>,
+    query: Aabb,
+    map: DAffine3,
+    shadow: Shadow<'s>,
+    row: &'s mut Row,
+    primitive_tests: &'s mut u64,
+    found: &'s mut dyn FnMut(u32, Witness) -> ControlFlow<()>,
+}
+
+impl Leaves<()> for Meeting<'_> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32]) -> ControlFlow<()> {
+        let (complex, at_complex) = self.complex;
+        self.row.place(simd, complex, leaf, &self.map);
+        let mut near = self.row.overlapping(simd, &self.shadow.bounds);
+        if near != 0 {
+            near &= !self.shadow.beyond(simd, self.row, CLEARLY_APART);
+        }
+        while let Some(lane) = bits(near).next() {
+            near &= near - 1;
+            let primitive = self.row.primitive(lane);
+            if !complex.primitive_bounds(primitive).overlaps(&self.query) {
+                continue;
+            }
+            *self.primitive_tests += 1;
+            let points = complex.primitive_hull(primitive);
+            match gjk::intersection(&points, at_complex, self.convex.0, self.convex.1) {
+                Outcome::Separated { axis } => {
+                    self.shadow.turn(axis);
+                    near &= !self.shadow.beyond(simd, self.row, CLEARLY_APART);
+                }
+                Outcome::Touching(witness) | Outcome::Intersecting(witness) => {
+                    (self.found)(primitive, witness)?;
                 }
             }
         }
         ControlFlow::Continue(())
-    })
+    }
 }
 
-pub(super) fn closest(
-    (complex, at_complex): PlacedComplex,
-    (convex, at_convex): PlacedConvex,
-    scratch: &mut Scratch,
-) -> Closest {
-    let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
-    if let Some(points) = contained(complex, convex, &frame, scratch) {
+pub(super) fn closest(complex: PlacedComplex, convex: PlacedConvex, scratch: &mut Scratch) -> Closest {
+    let (query, frame) = convex_in_complex(complex, convex);
+    if let Some(points) = contained(complex.0, convex.0, &frame, scratch) {
         return Closest { distance: 0.0, points };
     }
-    let bound = |node: &Aabb| frame.stretch[0].at_least(node.gap(&query));
-    let Scratch { traversal, primitive_tests, .. } = scratch;
+    let Scratch { traversal, rows: [row, _], primitive_tests, .. } = scratch;
+    row.clear();
+    let [of_complex, _] = &frame.stretch;
+    let metric = PairMetric {
+        facet_a: of_complex.facets,
+        sigma_min_a: of_complex.least,
+        facet_b: DVec3::ZERO,
+        sigma_min_b: 0.0,
+    };
     // The best distance so far is kept in the common frame, as the bounds are.
-    let (mut best, mut answer) = (f64::INFINITY, None);
-    complex.tree().nearest(bound, &mut best, traversal, |leaf, best| {
-        for &primitive in leaf {
-            if bound(&complex.primitive_bounds(primitive)) < *best {
-                *primitive_tests += 1;
-                let points = complex.primitive_hull(primitive);
-                let closest = gjk::closest_points(&points, at_complex, convex, at_convex);
-                let distance = closest.distance * frame.scale;
-                if distance < *best {
-                    *best = distance;
-                    answer = Some(closest);
-                }
+    let mut best = f64::INFINITY;
+    let shadow = Shadow::new(convex.0, &frame, ROUNDINGS);
+    let mut approach =
+        Approach { complex, convex, frame: &frame, shadow, row, primitive_tests, answer: None };
+    complex.0.tree().nearest_on(level(), &query, &metric, &mut best, traversal, &mut approach);
+    approach.answer.expect("a complex shape has a primitive, and every distance is finite")
+}
+
+/// Looks for the primitive closest to the convex shape.
+struct Approach<'s> {
+    complex: PlacedComplex<'s>,
+    convex: PlacedConvex<'s>,
+    frame: &'s Frame,
+    /// Its axis is from the closest point of the convex shape to that of the complex one so far.
+    shadow: Shadow<'s>,
+    row: &'s mut Row,
+    primitive_tests: &'s mut u64,
+    answer: Option<Closest>,
+}
+
+impl NearLeaves for Approach<'_> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32], best: &mut f64) {
+        let (complex, at_complex) = self.complex;
+        let [from_complex, from_convex] = &self.frame.common;
+        self.row.place(simd, complex, leaf, from_complex);
+        let mut near = self.row.nearer(simd, &self.shadow.bounds, *best * *best);
+        if near != 0 {
+            near &= !self.shadow.beyond(simd, self.row, *best);
+        }
+        while let Some(lane) = bits(near).next() {
+            near &= near - 1;
+            *self.primitive_tests += 1;
+            let points = complex.primitive_hull(self.row.primitive(lane));
+            let closest = gjk::closest_points(&points, at_complex, self.convex.0, self.convex.1);
+            let distance = closest.distance * self.frame.scale;
+            if distance < *best {
+                *best = distance;
+                let on_complex = from_complex.transform_point3(closest.points.on_a);
+                let on_convex = from_convex.transform_point3(closest.points.on_b);
+                self.shadow.turn((on_complex - on_convex).normalize_or_zero());
+                self.answer = Some(closest);
+                near &= !self.shadow.beyond(simd, self.row, *best);
             }
         }
-    });
-    answer.expect("a complex shape has a primitive, and every distance is finite")
+    }
 }
 
 /// The centre of the convex shape, when it is in a solid. (A part of the solid inside the convex shape meets it.)

@@ -29,8 +29,9 @@ pub(super) fn complex_convex(
         };
     }
     let mut deepest = Deepest::default();
-    complex_convex::meetings(a, b, scratch, |i| {
+    let _ = complex_convex::meeting_primitives(a, b, scratch, &mut |i, _| {
         deepest.take([i, 0], of_common((&a.0.primitive_hull(i), a.1), b));
+        ControlFlow::Continue(())
     });
     deepest.found()
 }
@@ -46,21 +47,21 @@ pub(super) fn complex_complex(
     }
     let (hull_a, hull_b) = (a.0.hull(), b.0.hull());
     let mut deepest = Deepest::default();
-    match (a.0.is_solid(), b.0.is_solid()) {
-        (true, true) => {}
-        (true, false) => complex_convex::meetings(b, (&hull_a, a.1), scratch, |j| {
+    let _ = match (a.0.is_solid(), b.0.is_solid()) {
+        (true, true) => ControlFlow::Continue(()),
+        (true, false) => complex_convex::meeting_primitives(b, (&hull_a, a.1), scratch, &mut |j, _| {
             deepest.take([0, j], of_common((&hull_a, a.1), (&b.0.primitive_hull(j), b.1)));
+            ControlFlow::Continue(())
         }),
-        (false, true) => complex_convex::meetings(a, (&hull_b, b.1), scratch, |i| {
+        (false, true) => complex_convex::meeting_primitives(a, (&hull_b, b.1), scratch, &mut |i, _| {
             deepest.take([i, 0], of_common((&a.0.primitive_hull(i), a.1), (&hull_b, b.1)));
+            ControlFlow::Continue(())
         }),
-        (false, false) => {
-            let _ = complex_complex::meetings(a, b, scratch, |i, j| {
-                deepest.take([i, j], of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1)));
-                ControlFlow::<()>::Continue(())
-            });
-        }
-    }
+        (false, false) => complex_complex::meeting_pairs(a, b, scratch, &mut |i, j| {
+            deepest.take([i, j], of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1)));
+            ControlFlow::Continue(())
+        }),
+    };
     // Also when rounding keeps the hull of a solid apart from what it meets.
     deepest.found().or_else(|| solid.then(|| of_common((&hull_a, a.1), (&hull_b, b.1))))
 }

@@ -81,11 +81,4 @@ impl Stretch {
             least: (least * scale).min(STRETCH_MAX),
         }
     }
-
-    /// A lower bound of the length, in the common frame, of a displacement whose local coordinates are at least `gap` in
-    /// magnitude.
-    pub fn at_least(&self, gap: DVec3) -> f64 {
-        // In this order, for local and world lengths may be so large or small that their squares are not numbers.
-        (self.least * gap).length().max((self.facets * gap).max_element())
-    }
 }

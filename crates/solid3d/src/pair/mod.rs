@@ -15,6 +15,7 @@ mod complex_convex;
 mod containment;
 mod convex_convex;
 mod crossing;
+mod crossing_point;
 mod curve;
 mod depth;
 mod fixed_box;
@@ -22,9 +23,12 @@ mod frame;
 
 mod ray;
 mod reach;
+mod row;
 mod scratch;
 pub(crate) mod swept;
 mod table;
+
+use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
 
@@ -58,6 +62,35 @@ pub(crate) enum Relation {
     Separated { axis: Option<DVec3> },
     /// They do: a common point, as a point of each shape.
     Common(Witness),
+}
+
+/// Calls `found` with every pair of primitives that meet, in no particular order, until it breaks off. A convex shape is
+/// its only primitive; what lies wholly inside a solid meets nothing.
+pub(crate) fn meeting_primitives(
+    a: Placed,
+    b: Placed,
+    scratch: &mut Scratch,
+    found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let (at_a, at_b) = (a.placement, b.placement);
+    match (a.shape.class(), b.shape.class()) {
+        (Class::Convex(_), Class::Convex(_)) => match intersection(a, b, scratch) {
+            Relation::Common(_) => found(0, 0),
+            Relation::Separated { .. } => ControlFlow::Continue(()),
+        },
+        (Class::Complex(a), Class::Convex(b)) => {
+            let mut found = |i, _| found(a.owner(i), 0);
+            complex_convex::meeting_primitives((a, at_a), (b, at_b), scratch, &mut found)
+        }
+        (Class::Convex(a), Class::Complex(b)) => {
+            let mut found = |j, _| found(0, b.owner(j));
+            complex_convex::meeting_primitives((b, at_b), (a, at_a), scratch, &mut found)
+        }
+        (Class::Complex(a), Class::Complex(b)) => {
+            let mut found = |i, j| found(a.owner(i), b.owner(j));
+            complex_complex::meeting_pairs((a, at_a), (b, at_b), scratch, &mut found)
+        }
+    }
 }
 
 /// Whether the axis of an earlier frame clearly separates two convex shapes; the answer of [`intersection`] is then

@@ -1,8 +1,6 @@
 //! Working memory of the algorithms, and what they count.
 
-use glam::DVec3;
-
-use super::triangle_triangle::Triangle;
+use super::row::Row;
 use crate::bounds::Aabb;
 use crate::tree::Traversal;
 
@@ -13,18 +11,6 @@ pub(crate) struct PlacedPrimitive {
     pub primitive: u32,
     /// Its box.
     pub bounds: Aabb,
-    /// Its corners, when it has up to three vertices.
-    pub triangle: Option<Triangle>,
-}
-
-impl PlacedPrimitive {
-    /// The least coordinate along an axis, or a bound below it.
-    pub fn least_along(&self, axis: DVec3) -> f64 {
-        match &self.triangle {
-            Some([p, q, r]) => p.dot(axis).min(q.dot(axis)).min(r.dot(axis)),
-            None => self.bounds.center().dot(axis) - self.bounds.half_extents().dot(axis.abs()),
-        }
-    }
 }
 
 /// Working memory: kept from pair to pair, so that nothing is allocated once it has grown. One for each thread.
@@ -32,6 +18,8 @@ impl PlacedPrimitive {
 pub(crate) struct Scratch {
     /// For walks over trees.
     pub traversal: Traversal,
+    /// The primitives of two leaves, in a common frame, in vectors.
+    pub rows: [Row; 2],
     /// The primitives of two leaves, in a common frame.
     pub leaves: [Vec<PlacedPrimitive>; 2],
     /// The primitives of one complex shape that the other may meet on its way.

@@ -117,14 +117,17 @@ pub(super) fn meetings(a: Placed, b: Placed, scratch: &mut Scratch) -> Meetings 
         },
         complex_convex: |a, b, scratch| {
             let mut pairs = Vec::new();
-            complex_convex::meetings(a, b, scratch, |i| pairs.push([i, 0]));
+            let _ = complex_convex::meeting_primitives(a, b, scratch, &mut |i, _| {
+                pairs.push([i, 0]);
+                ControlFlow::Continue(())
+            });
             Meetings(pairs)
         },
         complex_complex: |a, b, scratch| {
             let mut pairs = Vec::new();
-            let _ = complex_complex::meetings(a, b, scratch, |i, j| {
+            let _ = complex_complex::meeting_pairs(a, b, scratch, &mut |i, j| {
                 pairs.push([i, j]);
-                ControlFlow::<()>::Continue(())
+                ControlFlow::Continue(())
             });
             Meetings(pairs)
         },

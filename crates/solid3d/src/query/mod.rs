@@ -14,6 +14,7 @@ mod cast;
 mod penetration;
 mod point;
 mod ray;
+use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
 
@@ -78,6 +79,40 @@ pub fn common_point(
         Relation::Common(witness) => Some(pair::midpoint(a, b, &witness)),
         Relation::Separated { .. } => None,
     })
+}
+
+/// Calls `found` with every pair of primitives of two placed shapes that meet, by their numbers in `a` and `b`, until it
+/// breaks off. The order is unspecified, but the same for the same input. The only primitive of a convex shape is 0; a simple
+/// polygon may be named more than once; what lies wholly inside a solid mesh meets none of its triangles.
+///
+/// Cost: follows the number of pairs of primitives whose boxes overlap.
+///
+/// ```
+/// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
+/// use std::ops::ControlFlow;
+/// let strip: Vec<DVec3> = (0..22).map(|i| DVec3::new(f64::from(i / 2), f64::from(i % 2), 0.0)).collect();
+/// let strip = Shape::mesh(strip, (0..20).map(|i| [i, i + 1, i + 2]).collect::<Vec<_>>())?;
+/// let wall = Shape::cuboid([0.5, 3.0, 3.0])?;
+/// let at = DAffine3::from_translation(DVec3::new(4.5, 0.0, 0.0));
+/// let mut met = Vec::new();
+/// query::intersecting_primitives(&strip, &DAffine3::IDENTITY, &wall, &at, |i, _| {
+///     met.push(i);
+///     ControlFlow::Continue(())
+/// })?;
+/// met.sort();
+/// assert_eq!(met, [8, 9]);
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+pub fn intersecting_primitives(
+    a: &Shape,
+    placement_a: &DAffine3,
+    b: &Shape,
+    placement_b: &DAffine3,
+    mut found: impl FnMut(u32, u32) -> ControlFlow<()>,
+) -> Result<()> {
+    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let _ = pair::meeting_primitives(a, b, &mut Scratch::default(), &mut found);
+    Ok(())
 }
 
 /// An axis that separates two placed shapes: a unit vector in the world, pointing from `b` to `a`, along which every point

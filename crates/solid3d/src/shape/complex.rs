@@ -73,7 +73,37 @@ impl Primitives {
     }
 
     fn bounds(&self, primitive: u32, vertices: &[DVec3]) -> Aabb {
-        Aabb::of_points(self.get(primitive).iter().map(|&index| vertices[index as usize]))
+        self.union(&[primitive], vertices)
+    }
+
+    /// The box around some primitives, of which there is at least one.
+    fn union(&self, primitives: &[u32], vertices: &[DVec3]) -> Aabb {
+        let mut bounds = Aabb::EMPTY;
+        match self {
+            Primitives::Triangles(triangles) => {
+                for &primitive in primitives {
+                    for &index in &triangles[primitive as usize] {
+                        bounds.grow(vertices[index as usize]);
+                    }
+                }
+            }
+            Primitives::Mixed { .. } => {
+                for &index in primitives.iter().flat_map(|&primitive| self.get(primitive)) {
+                    bounds.grow(vertices[index as usize]);
+                }
+            }
+        }
+        bounds
+    }
+
+    /// The memory that the primitives own, in bytes.
+    fn memory(&self) -> usize {
+        match self {
+            Primitives::Triangles(triangles) => triangles.capacity() * size_of::<[u32; 3]>(),
+            Primitives::Mixed { first, indices, owners } => {
+                (first.capacity() + indices.capacity() + owners.capacity()) * size_of::<u32>()
+            }
+        }
     }
 }
 
@@ -170,6 +200,14 @@ impl Complex {
             .expect("a primitive has a vertex, and its indices were checked")
     }
 
+    /// The memory that it owns, in bytes, with what clones share.
+    pub fn memory(&self) -> usize {
+        let parts = self.parts.get().map_or(0, |parts| parts.capacity() * size_of::<u32>());
+        let solid = self.solid.as_ref().map_or(0, |solid| solid.memory());
+        let vertices = self.vertices.capacity() * size_of::<DVec3>();
+        size_of::<Complex>() + self.primitives.memory() + vertices + self.tree.bytes() + solid + parts
+    }
+
     /// The tree over the primitives.
     pub fn tree(&self) -> &Tree {
         &self.tree
@@ -197,7 +235,7 @@ impl Complex {
     /// Takes new positions, which were checked.
     pub fn deform(&mut self, positions: &[DVec3]) {
         self.vertices.copy_from_slice(positions);
-        self.tree.refit(|primitive| self.primitives.bounds(primitive, &self.vertices));
+        self.tree.refit_leaves(|leaf| self.primitives.union(leaf, &self.vertices));
         if self.tree.degraded() {
             self.tree = build(&self.primitives, &self.vertices);
         }

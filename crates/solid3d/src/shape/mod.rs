@@ -205,6 +205,28 @@ impl Shape {
         }
     }
 
+    /// The memory that the shape owns, in bytes, everything counted: vertices, indices, tree. Clones share it.
+    ///
+    /// ```
+    /// use solid3d::{Shape, glam::DVec3};
+    /// // A floor of 5,000 triangles: at most 70 bytes each.
+    /// let at = |i: u32| DVec3::new(f64::from(i % 51), f64::from(i / 51), 0.0);
+    /// let vertices: Vec<DVec3> = (0..51 * 51).map(at).collect();
+    /// let cell = |i: u32| 51 * (i / 50) + i % 50;
+    /// let triangles: Vec<[u32; 3]> =
+    ///     (0..2500).map(cell).flat_map(|i| [[i, i + 1, i + 52], [i, i + 52, i + 51]]).collect();
+    /// assert!(Shape::mesh(vertices, triangles)?.memory() <= 70 * 5000);
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn memory(&self) -> usize {
+        let owned = match &self.geometry {
+            Geometry::Complex(complex) => complex.memory(),
+            Geometry::Polytope(polytope) => size_of::<Polytope>() + size_of_val(polytope.points()),
+            _ => 0,
+        };
+        size_of::<Shape>() + owned
+    }
+
     /// The vertices of a convex hull (those on its surface), a mesh or a complex shape; `None` for the other kinds.
     pub fn vertices(&self) -> Option<&[DVec3]> {
         match &self.geometry {

@@ -59,6 +59,11 @@ impl Solid {
         &self.twins
     }
 
+    /// The memory that it owns, in bytes.
+    pub fn memory(&self) -> usize {
+        size_of::<Solid>() + self.twins.capacity() * size_of::<[u32; 2]>()
+    }
+
     /// Whether the mesh is still closed with other positions: what was at one place must stay at one.
     pub fn check(&self, positions: &[DVec3]) -> Result<()> {
         let at = |index: u32| positions[index as usize];

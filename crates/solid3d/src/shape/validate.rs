@@ -11,7 +11,8 @@ pub(super) const NAMEABLE_MAX: usize = u32::MAX as usize;
 
 /// Every coordinate finite and in range.
 pub(super) fn vertices(vertices: &[DVec3]) -> Result<()> {
-    let in_range = |v: &DVec3| v.is_finite() && v.abs().max_element() <= MAGNITUDE_MAX;
+    // What is not a number is not in range either.
+    let in_range = |v: &DVec3| v.abs().cmple(DVec3::splat(MAGNITUDE_MAX)).all();
     match vertices.iter().position(|v| !in_range(v)) {
         Some(index) => Err(Error::Vertex { index, value: vertices[index] }),
         None => Ok(()),

@@ -54,7 +54,8 @@ impl Tree {
         let item = |(bounds, index): (&Aabb, u32)| Item { bounds: normal.pack(bounds), index };
         let mut items: Vec<Item> = boxes.iter().zip(0..).map(item).collect();
 
-        let nodes = build_nodes(&mut items, heuristic_depth);
+        let mut nodes = build_nodes(&mut items, heuristic_depth);
+        nodes.shrink_to_fit();
         let order = items.iter().map(|item| item.index).collect();
         let root = nodes[0].union();
         let mut tree = Tree { nodes, order, normal, root, bounds, cost: 0.0, cost_at_build: 0.0 };

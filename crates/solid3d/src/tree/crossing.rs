@@ -17,9 +17,11 @@
 //! |G| h. [`MARGIN`] is 8u, and counts sum |G| twice. Underflow loses less than 12 * 2^-149: [`UNDERFLOW`] is more.
 //! What is beyond [`HUGE`] might overflow: that axis then separates nothing.
 
-use super::normal::{Normal, round_down};
-use super::packed::{FAR, PackedBox};
+use super::normal::{GROWTH, GROWTH_RELATIVE, Normal};
+use super::packed::PackedBox;
 use super::relative::Relative;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, f64x4};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// 8u for `f32`: see the module.
@@ -35,7 +37,6 @@ const HUGE: f64 = 1e30;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// An affine map between tree coordinates, and the error it makes.
-#[derive(Clone, Copy, Debug)]
 struct Folded {
     map: DAffine3,
     abs: DMat3,
@@ -62,86 +63,141 @@ fn row_sums(m: &DMat3) -> DVec3 {
     m.x_axis + m.y_axis + m.z_axis
 }
 
+/// A vector, and a fourth lane that means nothing.
+type Quad = [f64; 4];
+
+fn quad(v: DVec3) -> Quad {
+    [v.x, v.y, v.z, 0.0]
+}
+
+fn columns(m: &DMat3) -> [Quad; 3] {
+    [quad(m.x_axis), quad(m.y_axis), quad(m.z_axis)]
+}
+
 /// The relative placement of the space of a single box and that of a tree, folded with their tree coordinates.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
 pub(super) struct Crossing {
-    /// S to L.
-    into_lanes: Folded,
+    /// S to L: F, |F|, f, and the error.
+    into: [Quad; 3],
+    into_abs: [Quad; 3],
+    into_offset: Quad,
+    into_slack: Quad,
     /// g.
-    offset: DVec3,
+    offset: Quad,
     /// Error in S.
-    slack: DVec3,
-    /// Sum of |G| over each row.
-    row_sums: DVec3,
+    slack: Quad,
+    /// Twice the sum of |G| over each row.
+    sums: Quad,
     /// G / 2, as lanes give twice the centre and the half extents; and its absolute value.
     pub half_rows: [[f32; 3]; 3],
     pub half_rows_abs: [[f32; 3]; 3],
+    magnification: f64,
 }
 
 /// A single box, prepared for tests against lanes of the other space.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(32))]
 pub(super) struct Probe {
-    /// On the axes of L: the interval of the single box.
-    pub lo: [f32; 3],
-    pub hi: [f32; 3],
-    /// On the axes of S: g - c', and h' with all margins.
-    pub base: [f32; 3],
-    pub reach: [f32; 3],
+    /// On the axes of L, the interval of the single box: three least coordinates, and from the fifth on the greatest.
+    interval: [f32; 8],
+    /// On the axes of S: g - c', and from the fifth on h' with all margins.
+    against: [f32; 8],
+}
+
+impl Probe {
+    /// The interval of the single box on an axis of L.
+    #[inline(always)]
+    pub fn interval(&self, axis: usize) -> (f32, f32) {
+        (self.interval[axis], self.interval[4 + axis])
+    }
+
+    /// On an axis of S, g - c', and h' with all margins.
+    #[inline(always)]
+    pub fn base_reach(&self, axis: usize) -> (f32, f32) {
+        (self.against[axis], self.against[4 + axis])
+    }
 }
 
 impl Crossing {
     /// From the space `b` of single boxes to the lanes of a tree in `a`.
     pub fn new(relative: &Relative, b: &Normal, a: &Normal) -> Self {
-        let into_lanes = Folded::new(&relative.b_to_a, relative.slack_in_a, b, a);
+        let into = Folded::new(&relative.b_to_a, relative.slack_in_a, b, a);
         let back = Folded::new(&relative.a_to_b, relative.slack_in_b, a, b);
         let rows = back.map.matrix3.transpose().to_cols_array_2d();
         let half_rows = rows.map(|row| row.map(|x| (0.5 * x) as f32));
         Crossing {
-            into_lanes,
-            offset: back.map.translation,
-            slack: back.slack,
-            row_sums: row_sums(&back.abs),
+            into: columns(&into.map.matrix3),
+            into_abs: columns(&into.abs),
+            into_offset: quad(into.map.translation),
+            into_slack: quad(into.slack),
+            offset: quad(back.map.translation),
+            slack: quad(back.slack),
+            sums: quad(2.0 * row_sums(&back.abs)),
             half_rows,
             half_rows_abs: half_rows.map(|row| row.map(f32::abs)),
+            magnification: into.map.matrix3.determinant().abs().cbrt(),
         }
     }
 
     /// Prepares a box of S.
-    #[inline(always)] // else the box goes through memory, stored by coordinate and loaded by vector: a stall
-    pub fn probe(&self, bounds: &PackedBox) -> Probe {
-        let (center, half) = bounds.center_half();
-        let into = &self.into_lanes;
-        let (c, h) = (into.map.transform_point3(center), into.abs * half + into.slack);
-        let base = self.offset - center;
-        let sums = 2.0 * self.row_sums + base.abs() + half + self.slack;
+    #[inline(always)]
+    pub fn probe<S: Simd>(&self, simd: S, bounds: &PackedBox) -> Probe {
+        // In the fourth lane the box is inverted and the maps are zero: a number comes out, and is not used.
+        let (min, negated_max) = simd.widen_f32x8(f32x8::load_array(simd, bounds.0));
+        let center = one(simd, 0.5) * (min - negated_max);
+        let half = one(simd, -0.5) * (min + negated_max);
+        let c = product(simd, &self.into, center) + load(simd, &self.into_offset);
+        let h = product(simd, &self.into_abs, half) + load(simd, &self.into_slack);
+        let base = load(simd, &self.offset) - center;
+        let slack = load(simd, &self.slack);
+        let sums = load(simd, &self.sums) + base.abs() + half + slack;
         // The margin makes the reach grow with every term, so a small reach means that none overflows.
-        let reach = half + self.slack + MARGIN * sums + UNDERFLOW;
+        let reach = half + slack + one(simd, MARGIN) * sums + one(simd, UNDERFLOW);
+        let reach = -lower(simd, -reach);
+        let reach = reach.simd_lt(one(simd, HUGE)).select(reach, one(simd, f64::INFINITY));
+        let (lo, hi) = (lower(simd, within(simd, c - h)), -lower(simd, within(simd, -c - h)));
         Probe {
-            lo: each(c - h, lower),
-            hi: each(-c - h, |v| -lower(v)),
-            base: each(base, |v| v as f32),
-            reach: each(reach, |v| if v < HUGE { -round_down(-v) } else { f32::INFINITY }),
+            interval: simd.narrow_f64x4(lo, hi).to_array(),
+            against: simd.narrow_f64x4(base, reach).to_array(),
         }
     }
 
     /// The size of things in L over their size in S, for an even comparison of boxes.
     pub fn magnification(&self) -> f64 {
-        self.into_lanes.map.matrix3.determinant().abs().cbrt()
+        self.magnification
     }
 }
 
-/// A function of each coordinate. (As `array::map`, which was not inlined here.)
 #[inline(always)]
-fn each(v: DVec3, f: impl Fn(f64) -> f32) -> [f32; 3] {
-    [f(v.x), f(v.y), f(v.z)]
+fn one<S: Simd>(simd: S, x: f64) -> f64x4<S> {
+    f64x4::splat(simd, x)
 }
 
-/// An `f32` at most `v` and within [`FAR`]; the least if `v` is not a number.
-#[inline]
-fn lower(v: f64) -> f32 {
-    let down = round_down(v);
-    let capped = if down < FAR { down } else { FAR };
-    if v > -HUGE { capped } else { -FAR }
+#[inline(always)]
+fn load<S: Simd>(simd: S, quad: &Quad) -> f64x4<S> {
+    f64x4::load_array_ref(simd, quad)
+}
+
+/// A matrix, by columns, times a vector.
+#[inline(always)]
+fn product<S: Simd>(simd: S, columns: &[Quad; 3], v: f64x4<S>) -> f64x4<S> {
+    let [x, y, z, _] = v.to_array();
+    load(simd, &columns[0]) * one(simd, x)
+        + load(simd, &columns[1]) * one(simd, y)
+        + load(simd, &columns[2]) * one(simd, z)
+}
+
+/// What is at most `v` when rounded to `f32`: see [`round_down`](super::normal::round_down).
+#[inline(always)]
+fn lower<S: Simd>(simd: S, v: f64x4<S>) -> f64x4<S> {
+    v - (v.abs() * one(simd, GROWTH_RELATIVE) + one(simd, GROWTH))
+}
+
+/// Within [`HUGE`], beyond which no box lies; the least if `v` is not a number.
+#[inline(always)]
+fn within<S: Simd>(simd: S, v: f64x4<S>) -> f64x4<S> {
+    v.simd_gt(one(simd, -HUGE)).select(v, one(simd, -HUGE)).min(one(simd, HUGE))
 }
 
 fn abs(m: &DMat3) -> DMat3 {

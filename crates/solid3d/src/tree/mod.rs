@@ -61,10 +61,14 @@ pub use cast_pairs::cast_pairs;
 pub use cost::DEGRADED_RATIO;
 pub(crate) use lanes::bits;
 pub use metric::PairMetric;
+pub(crate) use nearest::NearLeaves;
 pub use nearest_pairs::nearest_pairs;
+pub(crate) use nearest_pairs::{NearLeafPairs, nearest_pairs_on};
 pub use node::{LEAF_SIZE, PRIMITIVES_MAX};
 pub use normal::COORDINATE_MAX;
+pub(crate) use overlap::Leaves;
 pub use pairs::pairs;
+pub(crate) use pairs::{LeafPairs, pairs_on};
 pub use ray::TreeRay;
 pub use relative::{PlacedBox, Relative};
 pub use traversal::{Counters, Traversal};
@@ -150,7 +154,7 @@ impl Tree {
     /// assert!(Tree::build(&[unit; 800]).bytes() < 800 * 20);
     /// ```
     pub fn bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.order.as_slice())
+        self.nodes.capacity() * size_of::<Node>() + self.order.capacity() * size_of::<u32>()
     }
 
     /// The primitives of a leaf word.

@@ -1,8 +1,21 @@
 //! Branch and bound for one query.
 
-use super::node::{Child, Kind};
+use fearless_simd::Simd;
+use solid_convex::simd::{Level, dispatch};
+
+use super::lanes::distances_squared_to_box;
+use super::metric::{Folded, PairMetric};
+use super::node::{Child, Kind, Node};
+use super::packed::PackedBox;
+use super::traversal::STACK_USUAL;
 use super::{Traversal, Tree};
 use crate::Aabb;
+
+/// What is done with leaves, in vectors of the level of instructions that the walk runs on.
+pub(crate) trait NearLeaves {
+    /// Called with the leaves that may hold something nearer than `best`; lowers it.
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32], best: &mut f64);
+}
 
 impl Tree {
     /// Visits the leaves that may hold something nearer than `best`, the nearest child first.
@@ -35,8 +48,53 @@ impl Tree {
         traversal: &mut Traversal,
         mut visit: impl FnMut(&[u32], &mut f64),
     ) {
+        let bounds = |node: &Node, bounds: &mut [f64; 8]| {
+            for (lane, least) in bounds.iter_mut().enumerate() {
+                if node.child[lane] != Child::EMPTY {
+                    *least = bound(&self.normal.unpack(&node.lane(lane)));
+                }
+            }
+        };
+        self.walk_near(bounds, best, traversal, &mut visit);
+    }
+
+    /// As [`nearest`](Tree::nearest), for a query in a box of local coordinates, on a level of instructions. Of `metric`, the
+    /// half for `a` counts.
+    pub(crate) fn nearest_on(
+        &self,
+        level: Level,
+        query: &Aabb,
+        metric: &PairMetric,
+        best: &mut f64,
+        traversal: &mut Traversal,
+        visitor: &mut impl NearLeaves,
+    ) {
+        let query = self.normal.pack_any(query);
+        let metric = Folded::new(metric, &self.normal, &self.normal);
+        dispatch!(level, simd => {
+            self.walk_near(
+                #[inline(always)]
+                |node, bounds| bound_lanes(simd, node, &query, &metric, bounds),
+                best,
+                traversal,
+                #[inline(always)]
+                |leaf, best| visitor.visit(simd, leaf, best),
+            );
+        });
+    }
+
+    /// `bounds` fills in the lower bounds of the lanes in use.
+    #[inline(always)] // into the function that is compiled for a level of instructions
+    fn walk_near(
+        &self,
+        bounds: impl Fn(&Node, &mut [f64; 8]),
+        best: &mut f64,
+        traversal: &mut Traversal,
+        mut visit: impl FnMut(&[u32], &mut f64),
+    ) {
         let Traversal { counters, near: stack, .. } = traversal;
         stack.clear();
+        stack.reserve(STACK_USUAL);
         stack.push((0.0, Child::inner(0)));
         while let Some((least, child)) = stack.pop() {
             if least >= *best {
@@ -52,13 +110,24 @@ impl Tree {
                     counters.box_tests += 1;
                     let node = &self.nodes[index];
                     let from = stack.len();
-                    for (lane, &child) in node.child.iter().enumerate().filter(|(_, c)| **c != Child::EMPTY) {
-                        let least = bound(&self.normal.unpack(&node.lane(lane)));
-                        push_unless_far((least, child), *best, stack, from);
+                    let mut of_lanes = [0.0; 8];
+                    bounds(node, &mut of_lanes);
+                    for (&child, least) in node.child.iter().zip(of_lanes) {
+                        if child != Child::EMPTY {
+                            push_unless_far((least, child), *best, stack, from);
+                        }
                     }
                 }
             }
         }
+    }
+}
+
+#[inline(always)]
+fn bound_lanes<S: Simd>(simd: S, node: &Node, query: &PackedBox, metric: &Folded, bounds: &mut [f64; 8]) {
+    let squared = distances_squared_to_box(simd, node, query, &metric.a);
+    for (bound, squared) in bounds.iter_mut().zip(squared) {
+        *bound = metric.world(squared);
     }
 }
 

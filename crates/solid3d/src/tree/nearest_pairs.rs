@@ -1,11 +1,15 @@
 //! Branch and bound for two trees.
 
+use fearless_simd::Simd;
+use solid_convex::simd::{Level, dispatch, level};
+
 use super::lanes::distances_squared;
 use super::metric::{Folded, PairMetric};
 use super::nearest::push_unless_far;
 use super::node::{Child, WIDTH};
 use super::pairs::{Duel, Step};
 use super::relative::Relative;
+use super::traversal::STACK_USUAL;
 use super::{Place, Traversal, Tree};
 
 /// Visits the pairs of leaves that may hold primitives nearer to each other, in the world, than `best`; nearest children first.
@@ -41,10 +45,57 @@ pub fn nearest_pairs(
     traversal: &mut Traversal,
     mut visit: impl FnMut(&[u32], &[u32], &mut f64),
 ) {
+    nearest_pairs_on(level(), a, b, relative, metric, best, traversal, &mut Plain(&mut visit));
+}
+
+/// What is done with pairs of leaves, in vectors of the level of instructions that the walk runs on.
+pub(crate) trait NearLeafPairs {
+    /// Called with the pairs of leaves that may hold something nearer than `best`; lowers it.
+    fn visit<S: Simd>(&mut self, simd: S, in_a: &[u32], in_b: &[u32], best: &mut f64);
+}
+
+/// What needs no vectors. Not generic over the function: each walk is compiled for every level of instructions.
+struct Plain<'f>(&'f mut Visit<'f>);
+
+type Visit<'f> = dyn FnMut(&[u32], &[u32], &mut f64) + 'f;
+
+impl NearLeafPairs for Plain<'_> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, _: S, in_a: &[u32], in_b: &[u32], best: &mut f64) {
+        (self.0)(in_a, in_b, best);
+    }
+}
+
+/// As [`nearest_pairs`], on a level of instructions.
+#[expect(clippy::too_many_arguments, reason = "the public function, and the level")]
+pub(crate) fn nearest_pairs_on(
+    level: Level,
+    a: &Tree,
+    b: &Tree,
+    relative: &Relative,
+    metric: &PairMetric,
+    best: &mut f64,
+    traversal: &mut Traversal,
+    visitor: &mut impl NearLeafPairs,
+) {
     let duel = Duel::new(a, b, relative);
     let metric = Folded::new(metric, &a.normal, &b.normal);
+    dispatch!(level, simd => walk(simd, &duel, &metric, best, traversal, visitor));
+}
+
+#[inline(always)] // into the function that is compiled for a level of instructions
+fn walk<S: Simd>(
+    simd: S,
+    duel: &Duel,
+    metric: &Folded,
+    best: &mut f64,
+    traversal: &mut Traversal,
+    visitor: &mut impl NearLeafPairs,
+) {
+    let (a, b) = (duel.a, duel.b);
     let Traversal { counters, near_pairs: stack, .. } = traversal;
     stack.clear();
+    stack.reserve(STACK_USUAL);
     stack.push((0.0, (Place::ROOT, Place::ROOT)));
     while let Some((least, (in_a, in_b))) = stack.pop() {
         if least >= *best {
@@ -54,23 +105,23 @@ pub fn nearest_pairs(
         match duel.step(in_a, in_b) {
             Step::Leaves(leaf_a, leaf_b) => {
                 counters.leaf_visits += 1;
-                visit(leaf_a, leaf_b, best);
+                visitor.visit(simd, leaf_a, leaf_b, best);
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let probe = duel.b_to_a.probe(&b.box_at(in_b));
+                let probe = duel.b_to_a.probe(simd, &b.box_at(in_b));
                 let lanes = &a.nodes[node];
-                let squared = distances_squared(lanes, &duel.b_to_a, &probe, &metric.a, &metric.b);
-                each_lane(&lanes.child, &squared, &metric, |least, lane| {
+                let squared = distances_squared(simd, lanes, &duel.b_to_a, &probe, &metric.a, &metric.b);
+                each_lane(&lanes.child, &squared, metric, |least, lane| {
                     push_unless_far((least, (Place::lane(node, lane), in_b)), *best, stack, from);
                 });
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let probe = duel.a_to_b.probe(&a.box_at(in_a));
+                let probe = duel.a_to_b.probe(simd, &a.box_at(in_a));
                 let lanes = &b.nodes[node];
-                let squared = distances_squared(lanes, &duel.a_to_b, &probe, &metric.b, &metric.a);
-                each_lane(&lanes.child, &squared, &metric, |least, lane| {
+                let squared = distances_squared(simd, lanes, &duel.a_to_b, &probe, &metric.b, &metric.a);
+                each_lane(&lanes.child, &squared, metric, |least, lane| {
                     push_unless_far((least, (in_a, Place::lane(node, lane))), *best, stack, from);
                 });
             }

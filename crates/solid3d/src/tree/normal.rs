@@ -12,11 +12,11 @@ pub const COORDINATE_MAX: f64 = 1e100;
 
 /// Relative growth of a coordinate on conversion: twice the unit roundoff of `f32`, 2^-24, of which one half pays for
 /// rounding to `f32` and the other more than pays for that of `x - origin` to `f64`, 2^-53.
-const GROWTH_RELATIVE: f64 = f32::EPSILON as f64;
+pub(super) const GROWTH_RELATIVE: f64 = f32::EPSILON as f64;
 
 /// Absolute growth, in tree coordinates. It covers underflow, is below the resolution of `f64` on the root, 2^-53, and is so
 /// far above the subnormal numbers of `f32` (which are slow) that a flat box does not meet them.
-const GROWTH: f64 = f64::from_bits((1023 - 60) << 52); // 2^-60
+pub(super) const GROWTH: f64 = f64::from_bits((1023 - 60) << 52); // 2^-60
 
 /// The root fills at most this much of `[-1, 1]`, so that it stays there when grown.
 const FILL_MAX: f64 = 1.0 - 1.0 / 1048576.0;
@@ -69,6 +69,13 @@ impl Normal {
         let [x, y, z] = [round_down(min.x), round_down(min.y), round_down(min.z)];
         let [u, v, w] = [round_down(max.x), round_down(max.y), round_down(max.z)];
         PackedBox([x, y, z, FAR, u, v, w, FAR])
+    }
+
+    /// The same for a box that may be anywhere: beyond [`FAR`], where nothing is, it is cut off.
+    pub fn pack_any(&self, bounds: &Aabb) -> PackedBox {
+        let far = DVec3::splat(f64::from(FAR)) * self.scale;
+        let (least, greatest) = (self.origin - far, self.origin + far);
+        self.pack(&Aabb::new(bounds.min.clamp(least, greatest), bounds.max.clamp(least, greatest)))
     }
 
     /// A box in local coordinates, which contains the exact image of `packed`.

@@ -1,5 +1,8 @@
 //! The leaves whose box overlaps one box.
 
+use fearless_simd::Simd;
+use solid_convex::simd::{Level, dispatch, level};
+
 use super::crossing::Crossing;
 use super::lanes::{bits, overlapping_box, overlapping_probe};
 use super::node::{Kind, Node};
@@ -8,6 +11,12 @@ use super::relative::PlacedBox;
 use super::{Traversal, Tree};
 use crate::Aabb;
 use std::ops::ControlFlow;
+
+/// What is done with leaves, in vectors of the level of instructions that the walk runs on.
+pub(crate) trait Leaves<B> {
+    /// Called with every leaf.
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32]) -> ControlFlow<B>;
+}
 
 impl Tree {
     /// Visits the leaves whose box overlaps a box of the same space: all primitives that do, and some that do not.
@@ -33,7 +42,7 @@ impl Tree {
         // Within the bounds there is neither infinity nor overflow.
         let clipped = Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
         let query = self.normal.pack(&clipped);
-        self.walk(|node| overlapping_box(node, &query), traversal, visit)
+        dispatch!(level(), simd => self.walk(|node| overlapping_box(simd, node, &query), traversal, visit))
     }
 
     /// Like [`overlapping`](Tree::overlapping), but only through boxes that `meets` does not refuse: for a query of which the box
@@ -59,11 +68,37 @@ impl Tree {
         }
         let clipped = Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
         let query = self.normal.pack(&clipped);
-        let test = |node: &Node| {
+        let met = |hits: u32, node: &Node| {
             let met = |lane: &usize| meets(&self.normal.unpack(&node.lane(*lane)));
-            bits(overlapping_box(node, &query)).filter(met).fold(0, |hits, lane| hits | 1 << lane)
+            bits(hits).filter(met).fold(0, |hits, lane| hits | 1 << lane)
         };
-        self.walk(test, traversal, visit)
+        dispatch!(level(), simd => {
+            self.walk(|node| met(overlapping_box(simd, node, &query), node), traversal, visit)
+        })
+    }
+
+    /// As [`overlapping`](Tree::overlapping), on a level of instructions.
+    pub(crate) fn overlapping_on<B>(
+        &self,
+        level: Level,
+        query: &Aabb,
+        traversal: &mut Traversal,
+        visitor: &mut impl Leaves<B>,
+    ) -> ControlFlow<B> {
+        if !query.overlaps(&self.bounds) {
+            return ControlFlow::Continue(());
+        }
+        let clipped = Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
+        let query = self.normal.pack(&clipped);
+        dispatch!(level, simd => {
+            self.walk(
+                #[inline(always)]
+                |node| overlapping_box(simd, node, &query),
+                traversal,
+                #[inline(always)]
+                |leaf| visitor.visit(simd, leaf),
+            )
+        })
     }
 
     /// Visits the leaves whose box may overlap a box of another space (six facet axes): all primitives whose box does, and some
@@ -78,11 +113,15 @@ impl Tree {
     ) -> ControlFlow<B> {
         let normal = Normal::of(&query.bounds);
         let crossing = Crossing::new(&query.relative, &normal, &self.normal);
-        let probe = crossing.probe(&normal.pack(&query.bounds));
-        self.walk(|node| overlapping_probe(node, &crossing, &probe), traversal, visit)
+        let bounds = normal.pack(&query.bounds);
+        dispatch!(level(), simd => {
+            let probe = crossing.probe(simd, &bounds);
+            self.walk(|node| overlapping_probe(simd, node, &crossing, &probe), traversal, visit)
+        })
     }
 
     /// Visits the leaves among the lanes that `test` names, depth first, lanes in order.
+    #[inline(always)] // into the function that is compiled for a level of instructions
     fn walk<B>(
         &self,
         test: impl Fn(&Node) -> u32,

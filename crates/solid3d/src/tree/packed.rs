@@ -1,7 +1,5 @@
 //! One box of `f32` in tree coordinates.
 
-use glam::DVec3;
-
 /// Beyond every tree coordinate (they lie within `[-1, 1]`), and far from overflow when squared in `f64`.
 pub(super) const FAR: f32 = 1e30;
 
@@ -43,13 +41,5 @@ impl PackedBox {
     #[inline]
     pub fn size(&self, axis: usize) -> f32 {
         -self.0[4 + axis] - self.0[axis]
-    }
-
-    /// Centre and half extents, in `f64`: off by at most a relative 2^-53.
-    #[inline]
-    pub fn center_half(&self) -> (DVec3, DVec3) {
-        let corner = |i: usize| DVec3::new(self.0[i].into(), self.0[i + 1].into(), self.0[i + 2].into());
-        let (min, neg_max) = (corner(0), corner(4));
-        (0.5 * (min - neg_max), -0.5 * (min + neg_max))
     }
 }

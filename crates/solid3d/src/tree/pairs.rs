@@ -1,10 +1,14 @@
 //! The pairs of leaves of two trees whose boxes may overlap.
 
+use fearless_simd::Simd;
+use solid_convex::simd::{Level, dispatch, level};
+
 use super::crossing::Crossing;
 use super::lanes::{bits, overlapping_probe};
 use super::node::Kind;
 use super::packed::PackedBox;
 use super::relative::Relative;
+use super::traversal::STACK_USUAL;
 use super::{Place, Traversal, Tree};
 use std::ops::ControlFlow;
 
@@ -36,26 +40,68 @@ pub fn pairs<B>(
     traversal: &mut Traversal,
     mut visit: impl FnMut(&[u32], &[u32]) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
+    pairs_on(level(), a, b, relative, traversal, &mut Plain(&mut visit))
+}
+
+/// What is done with pairs of leaves, in vectors of the level of instructions that the walk runs on.
+pub(crate) trait LeafPairs<B> {
+    /// Called with every pair of leaves.
+    fn visit<S: Simd>(&mut self, simd: S, in_a: &[u32], in_b: &[u32]) -> ControlFlow<B>;
+}
+
+/// What needs no vectors. Not generic over the function: each walk is compiled for every level of instructions.
+struct Plain<'f, B>(&'f mut Visit<'f, B>);
+
+type Visit<'f, B> = dyn FnMut(&[u32], &[u32]) -> ControlFlow<B> + 'f;
+
+impl<B> LeafPairs<B> for Plain<'_, B> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, _: S, in_a: &[u32], in_b: &[u32]) -> ControlFlow<B> {
+        (self.0)(in_a, in_b)
+    }
+}
+
+/// As [`pairs`], on a level of instructions.
+pub(crate) fn pairs_on<B>(
+    level: Level,
+    a: &Tree,
+    b: &Tree,
+    relative: &Relative,
+    traversal: &mut Traversal,
+    visitor: &mut impl LeafPairs<B>,
+) -> ControlFlow<B> {
     let duel = Duel::new(a, b, relative);
+    dispatch!(level, simd => walk(simd, &duel, traversal, visitor))
+}
+
+#[inline(always)] // into the function that is compiled for a level of instructions
+fn walk<B, S: Simd>(
+    simd: S,
+    duel: &Duel,
+    traversal: &mut Traversal,
+    visitor: &mut impl LeafPairs<B>,
+) -> ControlFlow<B> {
+    let (a, b) = (duel.a, duel.b);
     let Traversal { counters, pairs: stack, .. } = traversal;
     stack.clear();
+    stack.reserve(STACK_USUAL);
     stack.push((Place::ROOT, Place::ROOT));
     while let Some((in_a, in_b)) = stack.pop() {
         match duel.step(in_a, in_b) {
             Step::Leaves(leaf_a, leaf_b) => {
                 counters.leaf_visits += 1;
-                visit(leaf_a, leaf_b)?;
+                visitor.visit(simd, leaf_a, leaf_b)?;
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let probe = duel.b_to_a.probe(&b.box_at(in_b));
-                let hits = overlapping_probe(&a.nodes[node], &duel.b_to_a, &probe);
+                let probe = duel.b_to_a.probe(simd, &b.box_at(in_b));
+                let hits = overlapping_probe(simd, &a.nodes[node], &duel.b_to_a, &probe);
                 stack.extend(bits(hits).map(|lane| (Place::lane(node, lane), in_b)));
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let probe = duel.a_to_b.probe(&a.box_at(in_a));
-                let hits = overlapping_probe(&b.nodes[node], &duel.a_to_b, &probe);
+                let probe = duel.a_to_b.probe(simd, &a.box_at(in_a));
+                let hits = overlapping_probe(simd, &b.nodes[node], &duel.a_to_b, &probe);
                 stack.extend(bits(hits).map(|lane| (in_a, Place::lane(node, lane))));
             }
             Step::Nothing => {}

@@ -24,6 +24,13 @@ impl Tree {
     /// assert_eq!(tree.bounds(), Aabb::new(DVec3::splat(50.0), DVec3::splat(52.0)));
     /// ```
     pub fn refit(&mut self, box_of: impl Fn(u32) -> Aabb) {
+        self.refit_leaves(|leaf| {
+            leaf.iter().fold(Aabb::EMPTY, |sum, &primitive| sum.union(proper(&box_of(primitive))))
+        });
+    }
+
+    /// The same, from the box around the primitives of each leaf.
+    pub(crate) fn refit_leaves(&mut self, box_of: impl Fn(&[u32]) -> Aabb) {
         self.bounds = self.refit_in(self.normal, &box_of);
         if !self.normal.suits(&self.bounds) {
             let normal = Normal::of(&self.bounds);
@@ -37,7 +44,7 @@ impl Tree {
     }
 
     /// Refits all nodes in given tree coordinates and returns the tight union.
-    fn refit_in(&mut self, normal: Normal, box_of: &impl Fn(u32) -> Aabb) -> Aabb {
+    fn refit_in(&mut self, normal: Normal, box_of: &impl Fn(&[u32]) -> Aabb) -> Aabb {
         let mut total = Aabb::EMPTY;
         for index in (0..self.nodes.len()).rev() {
             for lane in 0..self.nodes[index].child.len() {
@@ -45,8 +52,10 @@ impl Tree {
                     Kind::Empty => break,
                     Kind::Inner(child) => self.nodes[child].union(),
                     Kind::Leaf(range) => {
-                        let tight = union(&self.order[range], box_of);
-                        total = total.union(&tight);
+                        // Rounding is monotone, so packing the union gives the bits of the union of the packed.
+                        let tight = *proper(&box_of(&self.order[range]));
+                        total.grow(tight.min);
+                        total.grow(tight.max);
                         normal.pack(&tight)
                     }
                 };
@@ -55,9 +64,4 @@ impl Tree {
         }
         total
     }
-}
-
-/// The union of some primitives. Rounding is monotone, so packing the union gives the bits of the union of the packed.
-fn union(primitives: &[u32], box_of: &impl Fn(u32) -> Aabb) -> Aabb {
-    primitives.iter().fold(Aabb::EMPTY, |sum, &i| sum.union(proper(&box_of(i))))
 }

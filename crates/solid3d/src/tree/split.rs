@@ -27,11 +27,8 @@ pub(super) struct Set {
 impl Set {
     /// The set of `items`, which begin at `start` in the array of all.
     pub fn new(start: usize, items: &[Item]) -> Self {
-        let mut set = Set { start, len: items.len(), bounds: PackedBox::EMPTY, centers: PackedBox::EMPTY };
-        for item in items {
-            set.bounds.grow(&item.bounds);
-            set.centers.grow(&center(&item.bounds));
-        }
+        let mut set = Set::empty(start);
+        items.iter().for_each(|item| set.add(item));
         set
     }
 
@@ -39,7 +36,7 @@ impl Set {
     pub fn split(&self, all: &mut [Item]) -> [Set; 2] {
         let items = &mut all[self.start..self.start + self.len];
         match best_plane(self, items) {
-            Some(plane) => self.cut(items, |items| partition(items, &plane)),
+            Some(plane) => partition(self.start, items, &plane),
             None => self.split_evenly(all),
         }
     }
@@ -50,18 +47,22 @@ impl Set {
         let half = (self.len / 2).next_multiple_of(LEAF_SIZE).min(self.len - 1);
         let sizes = [0, 1, 2].map(|axis| self.centers.size(axis));
         let axis = (0..3).fold(0, |a, b| if sizes[b] > sizes[a] { b } else { a });
-        self.cut(items, |items| {
-            let key = |item: &Item| item.bounds.center_doubled(axis);
-            let order = |a: &Item, b: &Item| key(a).total_cmp(&key(b)).then(a.index.cmp(&b.index));
-            items.select_nth_unstable_by(half, order);
-            half
-        })
+        let key = |item: &Item| item.bounds.center_doubled(axis);
+        let order = |a: &Item, b: &Item| key(a).total_cmp(&key(b)).then(a.index.cmp(&b.index));
+        items.select_nth_unstable_by(half, order);
+        let (below, above) = items.split_at(half);
+        [Set::new(self.start, below), Set::new(self.start + half, above)]
     }
 
-    fn cut(&self, items: &mut [Item], at: impl FnOnce(&mut [Item]) -> usize) -> [Set; 2] {
-        let at = at(items);
-        let (below, above) = items.split_at(at);
-        [Set::new(self.start, below), Set::new(self.start + at, above)]
+    fn empty(start: usize) -> Self {
+        Set { start, len: 0, bounds: PackedBox::EMPTY, centers: PackedBox::EMPTY }
+    }
+
+    #[inline]
+    fn add(&mut self, item: &Item) {
+        self.len += 1;
+        self.bounds.grow(&item.bounds);
+        self.centers.grow(&center(&item.bounds));
     }
 }
 
@@ -166,16 +167,21 @@ fn cheapest(bins: &[Bin]) -> Option<(f32, usize)> {
     best
 }
 
-/// Moves the items below the plane to the front and counts them.
-fn partition(items: &mut [Item], plane: &Plane) -> usize {
+/// Moves the items below the plane to the front, and measures both sides on the way.
+fn partition(start: usize, items: &mut [Item], plane: &Plane) -> [Set; 2] {
+    let [mut below, mut above] = [Set::empty(start), Set::empty(start)];
     let (mut front, mut back) = (0, items.len());
     while front < back {
-        if plane.binning.bin(&items[front], plane.axis) <= plane.bin {
+        let item = &items[front];
+        if plane.binning.bin(item, plane.axis) <= plane.bin {
+            below.add(item);
             front += 1;
         } else {
+            above.add(item);
             back -= 1;
             items.swap(front, back);
         }
     }
-    front
+    above.start += below.len;
+    [below, above]
 }

@@ -1,0 +1,426 @@
+//! The primitives of a leaf in the common frame of a pair, as structure of arrays: eight triangles at a time.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `planes` | the lanes that a plane parts from a triangle, certainly |
+//! | `distance` | the distances of a triangle and eight, each with a lower bound |
+
+mod distance;
+mod planes;
+
+use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use glam::{DAffine3, DVec3};
+
+pub(super) use distance::{Near, distances};
+pub(super) use planes::parted;
+
+use super::triangle_triangle::Triangle;
+use crate::bounds::Aabb;
+use crate::shape::Complex;
+use crate::tree::{LEAF_SIZE, bits};
+
+/// A coordinate of eight points.
+pub(super) type Lanes = [f64; LEAF_SIZE];
+
+/// Up to eight primitives. Lanes beyond them repeat the first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Row {
+    /// By corner and axis. A point or a segment repeats its last corner; a primitive of more vertices has none that mean
+    /// anything.
+    corners: [[Lanes; 3]; 3],
+    /// The boxes of the primitives.
+    min: [Lanes; 3],
+    max: [Lanes; 3],
+    primitives: [u32; LEAF_SIZE],
+    /// The lanes in use, and those of them that are triangles, as bits.
+    used: u32,
+    triangles: u32,
+    /// The leaf that is here: where it begins in memory, and how long it is.
+    leaf: (usize, usize),
+}
+
+impl Row {
+    /// Forgets what is here: before another shape is placed.
+    pub fn clear(&mut self) {
+        self.leaf = (0, 0);
+    }
+
+    /// Takes in the primitives of a leaf. The same leaf twice, with the same map, costs nothing the second time.
+    #[inline(always)]
+    pub fn place<S: Simd>(&mut self, simd: S, complex: &Complex, leaf: &[u32], map: &DAffine3) {
+        let key = (leaf.as_ptr().addr(), leaf.len());
+        if key == self.leaf {
+            return;
+        }
+        self.leaf = key;
+        self.used = (1 << leaf.len()) - 1;
+        for (lane, primitive) in self.primitives.iter_mut().enumerate() {
+            *primitive = leaf[if lane < leaf.len() { lane } else { 0 }];
+        }
+        match complex.triangles() {
+            Some(triangles) => {
+                self.triangles = self.used;
+                let mut corners = [[0; 3]; LEAF_SIZE];
+                for (corners, &primitive) in corners.iter_mut().zip(&self.primitives) {
+                    *corners = triangles[primitive as usize];
+                }
+                self.place_triangles(simd, complex.vertices(), &corners, map);
+            }
+            None => self.place_mixed(simd, complex, map),
+        }
+    }
+
+    #[inline(never)] // see `distances`
+    fn place_triangles<S: Simd>(
+        &mut self,
+        simd: S,
+        vertices: &[DVec3],
+        indices: &[[u32; 3]; LEAF_SIZE],
+        map: &DAffine3,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.place_triangles_on(simd, vertices, indices, map),
+        );
+    }
+
+    #[inline(always)]
+    fn place_triangles_on<S: Simd>(
+        &mut self,
+        simd: S,
+        vertices: &[DVec3],
+        indices: &[[u32; 3]; LEAF_SIZE],
+        map: &DAffine3,
+    ) {
+        let rows = map.matrix3.transpose().to_cols_array_2d();
+        for corner in 0..3 {
+            let mut local = [[0.0; LEAF_SIZE]; 3];
+            for lane in 0..LEAF_SIZE {
+                let point = vertices[indices[lane][corner] as usize];
+                [local[0][lane], local[1][lane], local[2][lane]] = point.to_array();
+            }
+            for from in steps::<S>() {
+                let x = load(simd, &local[0], from);
+                let y = load(simd, &local[1], from);
+                let z = load(simd, &local[2], from);
+                for (axis, &[a, b, c]) in rows.iter().enumerate() {
+                    // In the order of `DAffine3::transform_point3`, so that its bits come out.
+                    let linear = one(simd, a) * x + one(simd, b) * y + one(simd, c) * z;
+                    let placed = linear + one(simd, map.translation[axis]);
+                    store(simd, placed, &mut self.corners[corner][axis], from);
+                }
+            }
+        }
+        for axis in 0..3 {
+            for from in steps::<S>() {
+                let p = load(simd, &self.corners[0][axis], from);
+                let q = load(simd, &self.corners[1][axis], from);
+                let r = load(simd, &self.corners[2][axis], from);
+                store(simd, p.min(q).min(r), &mut self.min[axis], from);
+                store(simd, p.max(q).max(r), &mut self.max[axis], from);
+            }
+        }
+    }
+
+    /// Primitives of any number of vertices.
+    fn place_mixed<S: Simd>(&mut self, simd: S, complex: &Complex, map: &DAffine3) {
+        let corners = self.primitives.map(|primitive| match *complex.primitive(primitive) {
+            [i, j, k] => [i, j, k],
+            [i, j] => [i, j, j],
+            ref indices => [indices[0]; 3],
+        });
+        self.place_triangles(simd, complex.vertices(), &corners, map);
+        self.triangles = 0;
+        for lane in 0..LEAF_SIZE {
+            let indices = complex.primitive(self.primitives[lane]);
+            if indices.len() <= 3 {
+                self.triangles |= self.used & 1 << lane;
+                continue;
+            }
+            let vertex = |&index: &u32| map.transform_point3(complex.vertices()[index as usize]);
+            let bounds = Aabb::of_points(indices.iter().map(vertex));
+            for axis in 0..3 {
+                self.min[axis][lane] = bounds.min[axis];
+                self.max[axis][lane] = bounds.max[axis];
+            }
+        }
+    }
+
+    /// The number of the primitive in a lane.
+    pub fn primitive(&self, lane: usize) -> u32 {
+        self.primitives[lane]
+    }
+
+    /// The lanes that hold triangles, degenerate ones too, as bits.
+    pub fn triangles(&self) -> u32 {
+        self.triangles
+    }
+
+    /// The corners of the triangle in a lane.
+    #[inline(always)]
+    pub fn triangle(&self, lane: usize) -> Triangle {
+        let [p, q, r] = &self.corners;
+        [at(p, lane), at(q, lane), at(r, lane)]
+    }
+
+    /// The box in a lane.
+    #[inline(always)]
+    pub fn bounds(&self, lane: usize) -> Aabb {
+        Aabb::new(at(&self.min, lane), at(&self.max, lane))
+    }
+
+    /// The box around all lanes.
+    #[inline(always)]
+    pub fn union<S: Simd>(&self, simd: S) -> Aabb {
+        let mut bounds = Aabb::EMPTY;
+        for axis in 0..3 {
+            let mut least = load(simd, &self.min[axis], 0);
+            let mut greatest = load(simd, &self.max[axis], 0);
+            for from in steps::<S>().skip(1) {
+                least = least.min(load(simd, &self.min[axis], from));
+                greatest = greatest.max(load(simd, &self.max[axis], from));
+            }
+            bounds.min[axis] = least.reduce_min();
+            bounds.max[axis] = greatest.reduce_max();
+        }
+        bounds
+    }
+
+    /// The lanes in use whose box overlaps another, as bits: exactly.
+    #[inline(always)]
+    pub fn overlapping<S: Simd>(&self, simd: S, other: &Aabb) -> u32 {
+        let mut lanes = 0;
+        for from in steps::<S>() {
+            let mut on = S::mask64s::splat(simd, true);
+            for axis in 0..3 {
+                on = on
+                    & load(simd, &self.min[axis], from).simd_le(one(simd, other.max[axis]))
+                    & load(simd, &self.max[axis], from).simd_ge(one(simd, other.min[axis]));
+            }
+            lanes |= (on.to_bitmask() as u32) << from;
+        }
+        lanes & self.used
+    }
+
+    /// The lanes in use whose box is nearer to another than the square root of `limit_squared`, as bits.
+    #[inline(always)]
+    pub fn nearer<S: Simd>(&self, simd: S, other: &Aabb, limit_squared: f64) -> u32 {
+        let mut lanes = 0;
+        for from in steps::<S>() {
+            let mut squared = one(simd, 0.0);
+            for axis in 0..3 {
+                let below = load(simd, &self.min[axis], from) - one(simd, other.max[axis]);
+                let above = one(simd, other.min[axis]) - load(simd, &self.max[axis], from);
+                let gap = below.max(above).max(one(simd, 0.0));
+                squared += gap * gap;
+            }
+            let near = squared.simd_lt(one(simd, limit_squared));
+            lanes |= (near.to_bitmask() as u32) << from;
+        }
+        lanes & self.used
+    }
+
+    /// The least coordinates along an axis, or a bound below.
+    #[inline(always)]
+    pub fn least_along<S: Simd>(&self, simd: S, axis: DVec3) -> Lanes {
+        let mut least = [0.0; LEAF_SIZE];
+        for from in steps::<S>() {
+            let [p, q, r] = self.corners(simd, from);
+            let along = splat(simd, axis);
+            let (p, q, r) = (dot(p, along), dot(q, along), dot(r, along));
+            store(simd, p.min(q).min(r), &mut least, from);
+        }
+        for lane in bits(self.used & !self.triangles) {
+            let bounds = self.bounds(lane);
+            least[lane] = bounds.center().dot(axis) - bounds.half_extents().dot(axis.abs());
+        }
+        least
+    }
+
+    /// The corners of some triangles.
+    #[inline(always)]
+    fn corners<S: Simd>(&self, simd: S, from: usize) -> [Vector<S>; 3] {
+        [self.corner(simd, 0, from), self.corner(simd, 1, from), self.corner(simd, 2, from)]
+    }
+
+    #[inline(always)]
+    fn corner<S: Simd>(&self, simd: S, corner: usize, from: usize) -> Vector<S> {
+        let [x, y, z] = &self.corners[corner];
+        Vector([load(simd, x, from), load(simd, y, from), load(simd, z, from)])
+    }
+}
+
+/// The point in a lane.
+#[inline(always)]
+fn at([x, y, z]: &[Lanes; 3], lane: usize) -> DVec3 {
+    DVec3::new(x[lane], y[lane], z[lane])
+}
+
+/// The lanes that are at least a limit, as bits.
+#[inline(always)]
+pub(super) fn exceed<S: Simd>(simd: S, lanes: &Lanes, limit: f64) -> u32 {
+    let mut bits = 0;
+    for from in steps::<S>() {
+        let exceed = load(simd, lanes, from).simd_ge(one(simd, limit));
+        bits |= (exceed.to_bitmask() as u32) << from;
+    }
+    bits
+}
+
+/// As many numbers as a vector of the level holds, two to eight. On levels with shorter vectors, vectors of eight took
+/// minutes to compile.
+type Wide<S> = <S as Simd>::f64s;
+
+/// As many vectors.
+#[derive(Clone, Copy)]
+struct Vector<S: Simd>([Wide<S>; 3]);
+
+/// The first lanes of the vectors that make up a row.
+#[inline(always)]
+fn steps<S: Simd>() -> impl Iterator<Item = usize> {
+    (0..LEAF_SIZE).step_by(width::<S>())
+}
+
+#[inline(always)]
+const fn width<S: Simd>() -> usize {
+    <Wide<S> as SimdBase<S>>::LEN
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, lanes: &Lanes, from: usize) -> Wide<S> {
+    Wide::<S>::from_slice(simd, &lanes[from..from + width::<S>()])
+}
+
+#[inline(always)]
+fn store<S: Simd>(_: S, v: Wide<S>, lanes: &mut Lanes, from: usize) {
+    v.store_slice(&mut lanes[from..from + width::<S>()]);
+}
+
+/// The same number in all lanes.
+#[inline(always)]
+fn one<S: Simd>(simd: S, x: f64) -> Wide<S> {
+    Wide::<S>::splat(simd, x)
+}
+
+/// The same vector in all lanes.
+#[inline(always)]
+fn splat<S: Simd>(simd: S, v: DVec3) -> Vector<S> {
+    Vector([one(simd, v.x), one(simd, v.y), one(simd, v.z)])
+}
+
+#[inline(always)]
+fn minus<S: Simd>(Vector(a): Vector<S>, Vector(b): Vector<S>) -> Vector<S> {
+    Vector([a[0] - b[0], a[1] - b[1], a[2] - b[2]])
+}
+
+/// `a + b * t`.
+#[inline(always)]
+fn along<S: Simd>(Vector(a): Vector<S>, Vector(b): Vector<S>, t: Wide<S>) -> Vector<S> {
+    Vector([a[0] + b[0] * t, a[1] + b[1] * t, a[2] + b[2] * t])
+}
+
+#[inline(always)]
+fn times<S: Simd>(Vector(a): Vector<S>, t: Wide<S>) -> Vector<S> {
+    Vector([a[0] * t, a[1] * t, a[2] * t])
+}
+
+/// The same triangle in all lanes.
+#[inline(always)]
+fn splat_triangle<S: Simd>(simd: S, t: &Triangle) -> [Vector<S>; 3] {
+    [splat(simd, t[0]), splat(simd, t[1]), splat(simd, t[2])]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(Vector(a): Vector<S>, Vector(b): Vector<S>) -> Wide<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross<S: Simd>(Vector(a): Vector<S>, Vector(b): Vector<S>) -> Vector<S> {
+    Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ComplexShapeBuilder;
+    use crate::shape::Class;
+    use rand::Rng;
+    use rand::rngs::StdRng;
+    use solid_convex::simd::dispatch;
+    use solid_convex::simd::levels;
+    use solid_oracle::generate::seeded;
+
+    fn point(rng: &mut StdRng) -> DVec3 {
+        DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)))
+    }
+
+    /// Eight triangles as a leaf.
+    pub fn row_of(triangles: &[Triangle; 8]) -> Row {
+        let vertices = triangles.as_flattened().to_vec();
+        let indices: Vec<[u32; 3]> = (0..8).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let complex = Complex::mesh(vertices, indices).unwrap();
+        let mut row = Row::default();
+        let leaf = [0, 1, 2, 3, 4, 5, 6, 7];
+        dispatch!(levels()[0], simd => row.place(simd, &complex, &leaf, &DAffine3::IDENTITY));
+        row
+    }
+
+    /// Corners, boxes and the lanes that are near: as each primitive placed by itself.
+    #[test]
+    fn a_row_is_its_primitives_one_by_one() {
+        let seed = 60;
+        println!("seed {seed}");
+        let mut rng = seeded(seed);
+        let (mut overlaps, mut lanes) = (0, 0);
+        for round in 0..600 {
+            let vertices: Vec<DVec3> = (0..12).map(|_| point(&mut rng)).collect();
+            let mut builder = ComplexShapeBuilder::new(vertices.clone());
+            let count = rng.random_range(1..=8);
+            let primitives: Vec<Vec<u32>> = (0..count)
+                .map(|_| (0..rng.random_range(1..=5)).map(|_| rng.random_range(0..12)).collect())
+                .collect();
+            for primitive in &primitives {
+                builder = builder.polyhedron(primitive);
+            }
+            let shape = builder.build().unwrap();
+            let Class::Complex(complex) = shape.class() else { unreachable!() };
+            let map = DAffine3::from_cols(point(&mut rng), point(&mut rng), point(&mut rng), point(&mut rng));
+            let placed = |i: usize| primitives[i].iter().map(|&v| map.transform_point3(vertices[v as usize]));
+            let leaf: Vec<u32> = (0..count as u32).collect();
+            let center = 0.5 * point(&mut rng);
+            let query = Aabb::new(center - 0.6, center + 0.6);
+            let axis = point(&mut rng);
+            for level in levels() {
+                let mut row = Row::default();
+                dispatch!(level, simd => row.place(simd, complex, &leaf, &map));
+                let (overlapping, nearer, least) = dispatch!(level, simd => {
+                    (row.overlapping(simd, &query), row.nearer(simd, &query, 0.01), row.least_along(simd, axis))
+                });
+                for i in 0..count {
+                    let bounds = Aabb::of_points(placed(i));
+                    assert_eq!(row.bounds(i), bounds, "round {round}");
+                    assert_eq!(row.primitive(i), i as u32);
+                    assert_eq!(overlapping >> i & 1 == 1, bounds.overlaps(&query));
+                    assert_eq!(nearer >> i & 1 == 1, bounds.gap(&query).length_squared() < 0.01);
+                    let exact = placed(i).map(|p| p.dot(axis)).fold(f64::INFINITY, f64::min);
+                    let is_triangle = primitives[i].len() <= 3;
+                    assert_eq!(row.triangles() >> i & 1 == 1, is_triangle);
+                    if is_triangle {
+                        assert_eq!(least[i], exact);
+                        let corners: Vec<DVec3> = placed(i).collect();
+                        assert!(row.triangle(i).iter().all(|corner| corners.contains(corner)));
+                    } else {
+                        assert!(least[i] <= exact + 1e-15);
+                    }
+                    overlaps += u32::from(bounds.overlaps(&query));
+                    lanes += 1;
+                }
+                assert_eq!((overlapping | nearer) >> count, 0, "unused lanes");
+            }
+        }
+        println!("{overlaps} of {lanes} overlap");
+        assert!(10 * overlaps > 3 * lanes && 10 * overlaps < 7 * lanes);
+    }
+}
