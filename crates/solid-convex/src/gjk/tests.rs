@@ -3,7 +3,7 @@
 use glam::{DAffine3, DQuat, DVec3};
 
 use super::descent::{End, Goal, ITERATIONS_MAX, descend_within};
-use super::{Coherent, Outcome, closest_points, intersection, separates};
+use super::{Coherent, Outcome, TOUCHING_ERROR, closest_points, intersection, separates};
 use crate::difference::Difference;
 use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
 
@@ -96,6 +96,29 @@ fn plates_are_decided_at_a_trillionth() {
         assert!(matches!(apart, Outcome::Separated { .. }), "{k}: {apart:?}");
         let deep = intersection(&plate, &DAffine3::IDENTITY, &cube, &at(-1e-9));
         assert!(!matches!(deep, Outcome::Separated { .. }), "{k}");
+    }
+}
+
+/// A point under the base of a cone or of a cylinder: the descent's first two support points and the point lie in one plane with
+/// the axis, so that the base passes the origin as closely as the edge between the two.
+#[test]
+fn points_just_under_a_round_base_are_separate() {
+    let under = crate::Points::new(&[DVec3::ZERO]).unwrap();
+    for k in 0..4_000 {
+        let height = 0.5 + 0.01 * f64::from(k % 300);
+        let (cone, cylinder) = (Cone::new(1.0, height).unwrap(), Cylinder::new(1.0, height).unwrap());
+        let at = placement(k);
+        let aside = placement(3 * k).translation * 0.8;
+        for gap in [2.0, 10.0, 100.0].map(|times| times * TOUCHING_ERROR * (2.0 + height)) {
+            let here = at.transform_point3(DVec3::new(aside.x, -0.5 * height - gap, aside.z));
+            let here = DAffine3::from_translation(here);
+            for shape in [&cone as &dyn Support, &cylinder] {
+                let outcome = intersection(shape, &at, &under, &here);
+                assert!(matches!(outcome, Outcome::Separated { .. }), "{k}, {gap:e}: {outcome:?}");
+                let distance = closest_points(shape, &at, &under, &here).distance;
+                assert!((distance - gap).abs() < 1e-14, "{k}: {distance:e}, not {gap:e}");
+            }
+        }
     }
 }
 
