@@ -2,8 +2,10 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::descent::{End, Goal, ITERATIONS_MAX, descend_within};
-use super::{Coherent, Outcome, TOUCHING_ERROR, closest_points, intersection, separates};
+use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_within};
+use super::{
+    Closest, Coherent, DISTANCE_TOLERANCE, Outcome, TOUCHING_ERROR, closest_points, intersection, separates,
+};
 use crate::difference::Difference;
 use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
 
@@ -120,6 +122,44 @@ fn points_just_under_a_round_base_are_separate() {
             }
         }
     }
+}
+
+/// Balls and capsules, whose distance is that of their cores: the slow twin is a descent on the round surfaces.
+#[test]
+fn distances_of_round_objects_are_those_of_their_surfaces() {
+    let (mut hits, mut cases) = (0, 0);
+    let rounds: [&dyn Support; 2] = [&Sphere::new(0.5).unwrap(), &Capsule::new(0.3, 0.9).unwrap()];
+    for (i, other) in shapes().iter().enumerate() {
+        for (round, scale, k) in rounds.iter().flat_map(|&round| (0..150).map(move |k| (round, k % 3, k))) {
+            let turned = placement(k + 11 * i as u32);
+            // Also scaled alike, and so that the round is none.
+            let scale = [DVec3::ONE, DVec3::splat(0.7), DVec3::new(1.0, 0.6, 1.2)][scale as usize];
+            let (at, at_other) = (turned * DAffine3::from_scale(scale), placement(5 * k + 1));
+            let difference = Difference::new(round, &at, &**other, &at_other);
+            let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
+            let slow = Closest::of(&descent, &difference);
+            let found = closest_points(round, &at, &**other, &at_other);
+            assert!((found.distance - slow.distance).abs() < 1e-11, "{i} {k}: {found:?}, {slow:?}");
+            let (on_a, on_b) = (found.points.on_a, found.points.on_b);
+            let between = at.transform_point3(on_a).distance(at_other.transform_point3(on_b));
+            assert!((between - found.distance).abs() < 1e-11, "{i} {k}: {between}, {found:?}");
+            for (shape, point) in [(round, on_a), (&**other, on_b)] {
+                let dot = [point];
+                let out = intersection(
+                    shape,
+                    &DAffine3::IDENTITY,
+                    &crate::Points::new(&dot).unwrap(),
+                    &DAffine3::from_translation(-1e-11 * point),
+                );
+                assert!(out.witness().is_some(), "{i} {k}: {point} is outside");
+            }
+            let mirrored = closest_points(&**other, &at_other, round, &at);
+            assert!((mirrored.distance - found.distance).abs() < 1e-11, "{i} {k}: {mirrored:?}");
+            hits += usize::from(found.distance == 0.0);
+            cases += 1;
+        }
+    }
+    assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
 }
 
 #[test]
