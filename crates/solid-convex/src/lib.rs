@@ -25,6 +25,7 @@ mod difference;
 pub mod epa;
 pub mod gjk;
 mod kinds;
+mod rounded;
 pub mod simd;
 mod simplex;
 mod size;

@@ -26,10 +26,10 @@ use glam::{DAffine3, DVec3};
 
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::gjk::{End, Goal, descend};
+use crate::rounded::Core;
 use crate::simplex::{Reduced, Simplex};
 use crate::{Support, Witness};
 use polytope::Polytope;
-use rounded::Core;
 use start::start;
 
 /// The depth of curved objects is searched until its bounds are this near, relative to it: they need some five support points for

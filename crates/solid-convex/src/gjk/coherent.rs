@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::descent::{End, Goal, descend, descend_from};
 use super::distance::DISTANCE_TOLERANCE;
-use super::{Closest, Witness, separates};
+use super::{Closest, Witness, closest_points, separates};
 use crate::Support;
 use crate::difference::Difference;
 use crate::simplex::{Reduced, Simplex};
@@ -92,6 +92,10 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
         let difference = Difference::new(self.a, placement_a, self.b, placement_b);
         if let Some(simplex) = (self.memory.len == 4).then(|| self.tetrahedron(&difference)).flatten() {
             return Closest { distance: 0.0, points: Witness::of(&simplex) };
+        }
+        if self.a.core_radius() + self.b.core_radius() > 0.0 {
+            // The cores, which are not what is kept, are as fast from scratch.
+            return closest_points(self.a, placement_a, self.b, placement_b);
         }
         let mut simplex = Simplex::new();
         let mut v = None;

@@ -118,8 +118,13 @@ where
             }
         }
         if stalled {
-            match refined(difference, &simplex) {
-                Some(normal) if refinements < REFINEMENTS_MAX => v = normal,
+            // Where the simplex says nothing new, with the point that it was closer without: of a plane that passes the origin as
+            // closely as one of its edges.
+            let anew = refined(difference, simplex.points())
+                .filter(|&normal| normal != v_before)
+                .or_else(|| refined(difference, simplex.points().chain([&p])));
+            match anew {
+                Some(normal) if normal != v_before && refinements < REFINEMENTS_MAX => v = normal,
                 _ => break,
             }
             refinements += 1;
@@ -156,16 +161,18 @@ pub(super) fn certifies(v: DVec3, w: DVec3) -> bool {
     v.dot(w) > SUPPORT_ERROR * v.abs().element_sum()
 }
 
-/// The point closest to the origin on the line or plane of the simplex, computed from the objects' edges; `None` where
-/// that says nothing new.
-fn refined<A, B>(difference: &Difference<A, B>, simplex: &Simplex) -> Option<DVec3>
+/// The point closest to the origin on the line or plane of a simplex, computed from the objects' edges; `None` where
+/// that says nothing.
+fn refined<'p, A, B>(
+    difference: &Difference<A, B>,
+    mut points: impl Iterator<Item = &'p SupportPoint> + Clone,
+) -> Option<DVec3>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
     let nearer = |x: &&SupportPoint, y: &&SupportPoint| x.w.length_squared().total_cmp(&y.w.length_squared());
-    let nearest = simplex.points().min_by(nearer)?;
-    let mut points = simplex.points();
+    let nearest = points.clone().min_by(nearer)?;
     let v = match [points.next(), points.next(), points.next(), points.next()] {
         [Some(p), Some(q), None, None] => perpendicular(nearest.w, difference.edge(p, q)),
         [Some(p), Some(q), Some(r), None] => {

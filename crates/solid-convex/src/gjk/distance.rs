@@ -6,6 +6,7 @@ use super::Witness;
 use super::descent::{Descent, End, Goal, descend};
 use crate::Support;
 use crate::difference::Difference;
+use crate::rounded::Core;
 
 /// The closest points of two placed convex objects.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +41,10 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
+    let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
+    if core_a.radius() + core_b.radius() > 0.0 {
+        return of_rounded((&core_a, placement_a), (&core_b, placement_b));
+    }
     let difference = Difference::new(a, placement_a, b, placement_b);
     let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
     Closest::of(&descent, &difference)
@@ -58,4 +63,28 @@ impl Closest {
         };
         Closest { distance, points: Witness::of(&descent.simplex) }
     }
+}
+
+/// The closest points of objects of which at least one is rounded: by those of their cores, which a few steps find exactly, where a
+/// curved surface takes four for each digit.
+fn of_rounded<A, B>(
+    (core_a, placement_a): (&Core<A>, &DAffine3),
+    (core_b, placement_b): (&Core<B>, &DAffine3),
+) -> Closest
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let difference = Difference::new(core_a, placement_a, core_b, placement_b);
+    let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
+    let Closest { distance: between, mut points } = Closest::of(&descent, &difference);
+    let radii = core_a.radius() + core_b.radius();
+    if between > 0.0 {
+        let axis = descent.v.normalize();
+        // All the way to the surfaces, or to where they meet before.
+        let part = (between / radii).min(1.0);
+        points.on_a -= part * core_a.to_surface(placement_a, axis);
+        points.on_b += part * core_b.to_surface(placement_b, axis);
+    }
+    Closest { distance: (between - radii).max(0.0), points }
 }

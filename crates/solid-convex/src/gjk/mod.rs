@@ -31,5 +31,6 @@ pub use intersection::{Outcome, Witness, intersection, separates};
 ///
 /// The rounding of positions alone accounts for 1e-14 of it. The rest is for thin slivers of facets, as a cone's surface
 /// makes them near its tip: of 10^5 random pairs, 70 % of them near-touching, sliver-shaped or of very different size, the
-/// largest gap that was not recognised was 6e-13.
+/// largest gap that was not recognised was 6e-13. Harder is a gap opened along the normal of the least depth: of 45,798 of 2, 10 and
+/// 100 times this, one was not recognised, of twice this, between a cone's base and a hull of a millionth of its size.
 pub const TOUCHING_ERROR: f64 = 1e-12;

@@ -2,8 +2,10 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::descent::{End, Goal, ITERATIONS_MAX, descend_within};
-use super::{Coherent, Outcome, closest_points, intersection, separates};
+use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_within};
+use super::{
+    Closest, Coherent, DISTANCE_TOLERANCE, Outcome, TOUCHING_ERROR, closest_points, intersection, separates,
+};
 use crate::difference::Difference;
 use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
 
@@ -97,6 +99,67 @@ fn plates_are_decided_at_a_trillionth() {
         let deep = intersection(&plate, &DAffine3::IDENTITY, &cube, &at(-1e-9));
         assert!(!matches!(deep, Outcome::Separated { .. }), "{k}");
     }
+}
+
+/// A point under the base of a cone or of a cylinder: the descent's first two support points and the point lie in one plane with
+/// the axis, so that the base passes the origin as closely as the edge between the two.
+#[test]
+fn points_just_under_a_round_base_are_separate() {
+    let under = crate::Points::new(&[DVec3::ZERO]).unwrap();
+    for k in 0..4_000 {
+        let height = 0.5 + 0.01 * f64::from(k % 300);
+        let (cone, cylinder) = (Cone::new(1.0, height).unwrap(), Cylinder::new(1.0, height).unwrap());
+        let at = placement(k);
+        let aside = placement(3 * k).translation * 0.8;
+        for gap in [2.0, 10.0, 100.0].map(|times| times * TOUCHING_ERROR * (2.0 + height)) {
+            let here = at.transform_point3(DVec3::new(aside.x, -0.5 * height - gap, aside.z));
+            let here = DAffine3::from_translation(here);
+            for shape in [&cone as &dyn Support, &cylinder] {
+                let outcome = intersection(shape, &at, &under, &here);
+                assert!(matches!(outcome, Outcome::Separated { .. }), "{k}, {gap:e}: {outcome:?}");
+                let distance = closest_points(shape, &at, &under, &here).distance;
+                assert!((distance - gap).abs() < 1e-14, "{k}: {distance:e}, not {gap:e}");
+            }
+        }
+    }
+}
+
+/// Balls and capsules, whose distance is that of their cores: the slow twin is a descent on the round surfaces.
+#[test]
+fn distances_of_round_objects_are_those_of_their_surfaces() {
+    let (mut hits, mut cases) = (0, 0);
+    let rounds: [&dyn Support; 2] = [&Sphere::new(0.5).unwrap(), &Capsule::new(0.3, 0.9).unwrap()];
+    for (i, other) in shapes().iter().enumerate() {
+        for (round, scale, k) in rounds.iter().flat_map(|&round| (0..150).map(move |k| (round, k % 3, k))) {
+            let turned = placement(k + 11 * i as u32);
+            // Also scaled alike, and so that the round is none.
+            let scale = [DVec3::ONE, DVec3::splat(0.7), DVec3::new(1.0, 0.6, 1.2)][scale as usize];
+            let (at, at_other) = (turned * DAffine3::from_scale(scale), placement(5 * k + 1));
+            let difference = Difference::new(round, &at, &**other, &at_other);
+            let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
+            let slow = Closest::of(&descent, &difference);
+            let found = closest_points(round, &at, &**other, &at_other);
+            assert!((found.distance - slow.distance).abs() < 1e-11, "{i} {k}: {found:?}, {slow:?}");
+            let (on_a, on_b) = (found.points.on_a, found.points.on_b);
+            let between = at.transform_point3(on_a).distance(at_other.transform_point3(on_b));
+            assert!((between - found.distance).abs() < 1e-11, "{i} {k}: {between}, {found:?}");
+            for (shape, point) in [(round, on_a), (&**other, on_b)] {
+                let dot = [point];
+                let out = intersection(
+                    shape,
+                    &DAffine3::IDENTITY,
+                    &crate::Points::new(&dot).unwrap(),
+                    &DAffine3::from_translation(-1e-11 * point),
+                );
+                assert!(out.witness().is_some(), "{i} {k}: {point} is outside");
+            }
+            let mirrored = closest_points(&**other, &at_other, round, &at);
+            assert!((mirrored.distance - found.distance).abs() < 1e-11, "{i} {k}: {mirrored:?}");
+            hits += usize::from(found.distance == 0.0);
+            cases += 1;
+        }
+    }
+    assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
 }
 
 #[test]
