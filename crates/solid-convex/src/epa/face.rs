@@ -60,8 +60,8 @@ const NORMAL_ROUNDINGS: f64 = 16.0 / (1u64 << 53) as f64;
 /// No two points of the difference, whose coordinates are below 2, are further apart.
 const DIAMETER: f64 = 8.0;
 
-/// The square of how wide a triangle is, in the difference's unit, beyond which the rounding of its corners does not tilt it by
-/// more than some 1e-14.
+/// The square of the width of a triangle over its longest edge, in the difference's unit, beyond which the rounding of its corners does
+/// not tilt it by more than some 1e-14.
 const WIDE_SQUARED: f64 = 1.0 / 1024.0;
 
 impl Face {
@@ -78,66 +78,56 @@ impl Face {
         B: Support + ?Sized,
     {
         let [p, q, r] = points.map(|point| point.w);
-        let (pq, qr, rp) = (q - p, r - q, p - r);
-        let squares = [pq.length_squared(), qr.length_squared(), rp.length_squared()];
+        let (pq, pr) = (q - p, r - p);
+        let normal = pq.cross(pr);
+        let area_squared = normal.length_squared();
+        let longest_squared = pq.length_squared().max(pr.length_squared()).max((r - q).length_squared());
+        if area_squared <= WIDE_SQUARED * longest_squared {
+            return Face::narrow(difference, corners, points, twins);
+        }
+        let inverse = 1.0 / area_squared.sqrt();
+        let normal = normal * inverse;
+        // The corners are what they are: only the computation rounds.
+        let tilt = NORMAL_ROUNDINGS * (1.0 + longest_squared * inverse);
+        let (slack, blur) = (tilt * p.abs().element_sum(), tilt * DIAMETER);
+        Face { corners, twins, normal, offset: normal.dot(p), slack, blur, seen: false, open: true }
+    }
+
+    /// The face of three points that are nearly in line, or near to each other. Its normal comes from the edges of the two objects, which
+    /// are precise where the points are large and the face is small.
+    #[inline(never)]
+    fn narrow<A, B>(
+        difference: &Difference<A, B>,
+        corners: [u32; 3],
+        points: [&SupportPoint; 3],
+        twins: [HalfEdge; 3],
+    ) -> Self
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let [p, q, r] = points;
+        let sides = [(p, q), (q, r), (r, p)];
+        let squares = sides.map(|(x, y)| x.w.distance_squared(y.w));
         // The two shortest: see `simplex::normal`.
         let longest = (1..3).fold(0, |i, j| if squares[j] > squares[i] { j } else { i });
-        let [(x, x_squared), (y, y_squared)] = match longest {
-            0 => [(qr, squares[1]), (rp, squares[2])],
-            1 => [(rp, squares[2]), (pq, squares[0])],
-            _ => [(pq, squares[0]), (qr, squares[1])],
-        };
-        let near = |x: DVec3, y: DVec3| if y.length_squared() < x.length_squared() { y } else { x };
-        let nearest = near(near(p, q), r);
+        let edge = |i: usize| difference.edge_with_size(sides[i % 3].0, sides[i % 3].1);
+        let [(x, size_x), (y, size_y)] = [edge(longest + 1), edge(longest + 2)];
         let normal = x.cross(y);
-        let length_squared = normal.length_squared();
-        let plane = if length_squared > WIDE_SQUARED * x_squared.max(y_squared) {
-            let length = length_squared.sqrt();
-            // The corners are what they are: only the computation rounds.
-            let tilt = NORMAL_ROUNDINGS * (1.0 + (x_squared * y_squared).sqrt() / length);
-            Plane { normal: normal / length, tilt, error: 0.0 }
-        } else {
-            Plane::of_edges(difference, points, longest)
-        };
-        if plane.tilt == f64::INFINITY {
+        let near = |x: DVec3, y: DVec3| if y.length_squared() < x.length_squared() { y } else { x };
+        let nearest = near(near(p.w, q.w), r.w);
+        let length = normal.length();
+        let unit = normal / length;
+        if !unit.is_finite() {
             // So thin that its normal is lost: looked across once, along its nearest corner, and of no use as a bound.
             let normal = nearest.try_normalize().unwrap_or(DVec3::X);
             let (slack, blur) = (f64::INFINITY, f64::INFINITY);
             return Face { corners, twins, normal, offset: 0.0, slack, blur, seen: false, open: true };
         }
-        let Plane { normal, tilt, error } = plane;
-        let (slack, blur) = (tilt.min(2.0) * nearest.length() + error, tilt * DIAMETER + error);
-        Face { corners, twins, normal, offset: normal.dot(nearest), slack, blur, seen: false, open: true }
-    }
-}
-
-/// A normal, and how well it is known.
-struct Plane {
-    normal: DVec3,
-    /// How much it may be off; infinite when nothing is known.
-    tilt: f64,
-    /// How far the corners may be from the plane.
-    error: f64,
-}
-
-impl Plane {
-    /// From the edges of the two objects, which are precise where the points are large and the face is small.
-    #[inline(never)]
-    fn of_edges<A, B>(difference: &Difference<A, B>, [p, q, r]: [&SupportPoint; 3], longest: usize) -> Plane
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
-        let edges = [(p, q), (q, r), (r, p)];
-        let edge = |i: usize| difference.edge_with_size(edges[i].0, edges[i].1);
-        let [(x, size_x), (y, size_y)] = [edge((longest + 1) % 3), edge((longest + 2) % 3)];
-        let normal = x.cross(y);
-        let length = normal.length();
-        let unit = normal / length;
-        if !unit.is_finite() {
-            return Plane { normal: DVec3::X, tilt: f64::INFINITY, error: 0.0 };
-        }
         let tilt = NORMAL_ROUNDINGS * (1.0 + (size_x * y.length() + size_y * x.length()) / length);
-        Plane { normal: unit, tilt, error: HEIGHT_ERROR }
+        // The vertices are the rounded ones.
+        let slack = tilt.min(2.0) * nearest.length() + HEIGHT_ERROR;
+        let blur = tilt * DIAMETER + HEIGHT_ERROR;
+        Face { corners, twins, normal: unit, offset: unit.dot(nearest), slack, blur, seen: false, open: true }
     }
 }

@@ -28,6 +28,7 @@ use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::gjk::{End, Goal, descend};
 use crate::simplex::{Reduced, SLIVER_SINE_SQUARED, Simplex};
 use crate::{Support, Witness};
+use face::Face;
 use polytope::Polytope;
 use rounded::Core;
 use start::start;
@@ -161,18 +162,18 @@ where
     let (mut height, mut normal) = (f64::INFINITY, DVec3::X);
     for _ in 0..EXPANSIONS_MAX {
         let Some(index) = polytope.take_nearest() else { break };
-        let face = *polytope.face(index);
-        if face.offset >= height - tolerance(height) {
+        let Face { normal: across, offset, .. } = *polytope.face(index);
+        if offset >= height - tolerance(height) {
             break;
         }
-        let p = difference.support_against(-face.normal);
-        let beyond = face.normal.dot(p.w);
+        let p = difference.support_against(-across);
+        let beyond = across.dot(p.w);
         if beyond < height {
-            (height, normal) = (beyond, face.normal);
+            (height, normal) = (beyond, across);
             polytope.limit(height - tolerance(height));
         }
         // A point that is a vertex already is beyond the face by the rounding error only.
-        let grows = beyond - face.offset > tolerance(beyond)
+        let grows = beyond - offset > tolerance(beyond)
             && polytope.vertex_count() < VERTICES_MAX
             && !polytope.has_vertex(&p);
         if grows {
