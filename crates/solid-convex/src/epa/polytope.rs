@@ -8,7 +8,7 @@ use glam::DVec3;
 use robust::orient3d;
 
 use super::HEIGHT_ERROR;
-use super::face::{Face, HalfEdge};
+use super::face::{Face, HalfEdge, Wide};
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::coord;
@@ -29,6 +29,7 @@ pub(super) struct Polytope {
     open: BinaryHeap<Reverse<(u64, u32)>>,
     /// Faces that are at least this far from the origin are not to be looked across.
     limit: f64,
+    wide: Wide,
     horizon: Horizon,
 }
 
@@ -101,6 +102,7 @@ impl Polytope {
         };
         let mut polytope = SPARE.take().unwrap_or_default();
         polytope.clear();
+        polytope.wide = Wide::of(difference.is_polytope());
         polytope.vertices.extend(vertices);
         for (place, (corners, twins)) in (0..).zip(TETRAHEDRON) {
             polytope.put(difference, place, corners, twins);
@@ -310,7 +312,8 @@ impl Polytope {
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let face = Face::new(difference, corners, corners.map(|i| &self.vertices[i as usize]), twins);
+        let points = corners.map(|i| &self.vertices[i as usize]);
+        let face = Face::new(difference, corners, points, twins, self.wide);
         if face.offset < self.limit {
             self.open.push(Reverse((order(face.offset), place)));
         }
