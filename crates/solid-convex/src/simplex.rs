@@ -66,7 +66,7 @@ const VOLUME_ERROR: f64 = 24.0 * 64.0 * 12.0 / (1u64 << 53) as f64;
 
 /// The square of the sine of the angle between two edges, beyond which their product is as good a normal as that of the two
 /// shortest edges: none of the three edges is then less than a quarter of the shorter of the two.
-const SLIVER_SINE_SQUARED: f64 = 1.0 / 16.0;
+pub(crate) const SLIVER_SINE_SQUARED: f64 = 1.0 / 16.0;
 
 impl Simplex {
     #[inline]

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::HEIGHT_ERROR;
 use crate::Support;
 use crate::difference::{Difference, SupportPoint};
 
@@ -10,40 +11,122 @@ use crate::difference::{Difference, SupportPoint};
 pub(super) struct Face {
     /// Its vertices.
     pub corners: [u32; 3],
-    /// The face across the edge from each corner to the next.
-    pub neighbours: [u32; 3],
+    /// For the edge from each corner to the next, the same edge of the face across it.
+    pub twins: [HalfEdge; 3],
     /// Outward, of unit length.
     pub normal: DVec3,
     /// How far the plane is from the origin along the normal; infinite for a face that was replaced.
     pub offset: f64,
     /// How much less it may be.
     pub slack: f64,
+    /// How much higher above the plane, or lower, a vertex may be than its computed height says.
+    pub blur: f64,
     /// Whether the point being inserted sees it.
     pub seen: bool,
+    /// Whether it is still to be looked across.
+    pub open: bool,
+}
+
+/// An edge of a face: four times its number, plus that of the corner which the edge starts at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct HalfEdge(u32);
+
+impl HalfEdge {
+    pub const fn new(face: u32, corner: u32) -> Self {
+        HalfEdge(4 * face + corner)
+    }
+
+    /// The face that it is an edge of.
+    pub fn face(self) -> usize {
+        (self.0 / 4) as usize
+    }
+
+    /// Which of the face's corners it starts at.
+    pub fn corner(self) -> usize {
+        (self.0 % 4) as usize
+    }
+
+    /// The edges of the same face that follow, in their order.
+    pub fn others(self) -> [HalfEdge; 2] {
+        const NEXT: [[u32; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
+        NEXT[self.corner()].map(|corner| HalfEdge(self.0 / 4 * 4 + corner))
+    }
 }
 
 /// Roundings of 2^-53 of the normal of two edges, each relative to the parts that the edge is computed from: two products with
 /// matrices and their difference for each edge, the cross product, the root and the scalar product with a corner.
 const NORMAL_ROUNDINGS: f64 = 16.0 / (1u64 << 53) as f64;
 
+/// No two points of the difference, whose coordinates are below 2, are further apart.
+const DIAMETER: f64 = 8.0;
+
+/// From which width on, over their longest edge and in the difference's unit, faces are wide: squared. The rounding of the corners, some
+/// 1e-16, tilts a wide face by no more than its part of the width.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wide {
+    width_squared: f64,
+}
+
+impl Wide {
+    /// Of objects whose depth is searched to the rounding error, or only to [`DEPTH_TOLERANCE`](super::DEPTH_TOLERANCE): tilts of some
+    /// 1e-14, and some 1e-13.
+    pub fn of(is_polytope: bool) -> Self {
+        Wide {
+            width_squared: if is_polytope { 1.0 / (1u64 << 10) as f64 } else { 1.0 / (1u64 << 18) as f64 },
+        }
+    }
+}
+
 impl Face {
-    /// The face of three points. Its normal comes from the edges of the two objects, which are precise where the points are large
-    /// and the face is small.
+    /// The face of three points.
+    #[inline]
     pub fn new<A, B>(
         difference: &Difference<A, B>,
         corners: [u32; 3],
-        [p, q, r]: [&SupportPoint; 3],
-        neighbours: [u32; 3],
+        points: [&SupportPoint; 3],
+        twins: [HalfEdge; 3],
+        wide: Wide,
     ) -> Self
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let edges = [(p, q), (q, r), (r, p)].map(|(x, y)| difference.edge_with_size(x, y));
-        let squares = edges.map(|(edge, _)| edge.length_squared());
+        let [p, q, r] = points.map(|point| point.w);
+        let (pq, pr) = (q - p, r - p);
+        let normal = pq.cross(pr);
+        let area_squared = normal.length_squared();
+        let longest_squared = pq.length_squared().max(pr.length_squared()).max((r - q).length_squared());
+        if area_squared <= wide.width_squared * longest_squared {
+            return Face::narrow(difference, corners, points, twins);
+        }
+        let inverse = 1.0 / area_squared.sqrt();
+        let normal = normal * inverse;
+        // The corners are what they are: only the computation rounds.
+        let tilt = NORMAL_ROUNDINGS * (1.0 + longest_squared * inverse);
+        let (slack, blur) = (tilt * p.abs().element_sum(), tilt * DIAMETER);
+        Face { corners, twins, normal, offset: normal.dot(p), slack, blur, seen: false, open: true }
+    }
+
+    /// The face of three points that are nearly in line, or near to each other. Its normal comes from the edges of the two objects, which
+    /// are precise where the points are large and the face is small.
+    #[inline(never)]
+    fn narrow<A, B>(
+        difference: &Difference<A, B>,
+        corners: [u32; 3],
+        points: [&SupportPoint; 3],
+        twins: [HalfEdge; 3],
+    ) -> Self
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let [p, q, r] = points;
+        let sides = [(p, q), (q, r), (r, p)];
+        let squares = sides.map(|(x, y)| x.w.distance_squared(y.w));
         // The two shortest: see `simplex::normal`.
         let longest = (1..3).fold(0, |i, j| if squares[j] > squares[i] { j } else { i });
-        let [(x, size_x), (y, size_y)] = [edges[(longest + 1) % 3], edges[(longest + 2) % 3]];
+        let edge = |i: usize| difference.edge_with_size(sides[i % 3].0, sides[i % 3].1);
+        let [(x, size_x), (y, size_y)] = [edge(longest + 1), edge(longest + 2)];
         let normal = x.cross(y);
         let near = |x: DVec3, y: DVec3| if y.length_squared() < x.length_squared() { y } else { x };
         let nearest = near(near(p.w, q.w), r.w);
@@ -52,10 +135,13 @@ impl Face {
         if !unit.is_finite() {
             // So thin that its normal is lost: looked across once, along its nearest corner, and of no use as a bound.
             let normal = nearest.try_normalize().unwrap_or(DVec3::X);
-            return Face { corners, neighbours, normal, offset: 0.0, slack: f64::INFINITY, seen: false };
+            let (slack, blur) = (f64::INFINITY, f64::INFINITY);
+            return Face { corners, twins, normal, offset: 0.0, slack, blur, seen: false, open: true };
         }
         let tilt = NORMAL_ROUNDINGS * (1.0 + (size_x * y.length() + size_y * x.length()) / length);
-        let slack = tilt.min(2.0) * nearest.length();
-        Face { corners, neighbours, normal: unit, offset: unit.dot(nearest), slack, seen: false }
+        // The vertices are the rounded ones.
+        let slack = tilt.min(2.0) * nearest.length() + HEIGHT_ERROR;
+        let blur = tilt * DIAMETER + HEIGHT_ERROR;
+        Face { corners, twins, normal: unit, offset: unit.dot(nearest), slack, blur, seen: false, open: true }
     }
 }

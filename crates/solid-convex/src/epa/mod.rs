@@ -5,8 +5,8 @@
 //! a support point along the normal of the face nearest to the origin, until that face is known to lie on the boundary of `A - B`.
 //! What differs, and why:
 //!
-//! - Which faces a new point sees is decided exactly, so that the polytope is always convex and closed. Where rounding decides,
-//!   the seen faces can be several patches, or none.
+//! - The lower bound rests on the polytope being closed, and on every face having the origin inside, not on its being convex: which
+//!   faces a new point sees may then be decided up to the rounding error, and only of slivers it is decided exactly.
 //! - It starts from GJK's tetrahedron when there is one. When GJK ended with less, as it does for shapes that touch or have
 //!   their middles in one place, the start is spanned by support points along the axes and then across what these span; a
 //!   difference without thickness is recognised there, and its depth is 0 along its normal.
@@ -27,8 +27,9 @@ use glam::{DAffine3, DVec3};
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::gjk::{End, Goal, descend};
 use crate::rounded::Core;
-use crate::simplex::{Reduced, Simplex};
+use crate::simplex::{Reduced, SLIVER_SINE_SQUARED, Simplex};
 use crate::{Support, Witness};
+use face::Face;
 use polytope::Polytope;
 use start::start;
 
@@ -96,12 +97,31 @@ where
     if core_a.radius() > 0.0 || core_b.radius() > 0.0 {
         return Some(rounded::penetration(&core_a, placement_a, &core_b, placement_b));
     }
-    let ended: &[SupportPoint] = &descent.simplex.points().copied().collect::<Vec<_>>();
-    let found = match start(&difference, ended) {
-        Ok(mut polytope) => expand(&difference, &mut polytope),
-        Err(normal) => flat(&difference, normal, ended),
-    };
-    Some(found.penetration(difference.scale(), 0.0))
+    Some(deepen(&difference, &descent.simplex).penetration(difference.scale(), 0.0))
+}
+
+/// The depth of the origin in a difference, from the simplex around it that a descent ended with.
+fn deepen<A, B>(difference: &Difference<A, B>, simplex: &Simplex) -> Nearest
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let mut points = simplex.points().copied();
+    let first = points.next().unwrap_or_else(|| difference.support_against(DVec3::X));
+    let (mut ended, mut count) = ([first; 4], 1);
+    for (place, p) in ended[1..].iter_mut().zip(points) {
+        *place = p;
+        count += 1;
+    }
+    let ended = &ended[..count];
+    match start(difference, ended) {
+        Ok(mut polytope) => {
+            let found = expand(difference, &mut polytope);
+            polytope.recycle();
+            found
+        }
+        Err(normal) => flat(difference, normal, ended),
+    }
 }
 
 /// The point of the boundary of `A - B` nearest to the origin.
@@ -141,27 +161,55 @@ where
     let tolerance = |height: f64| tolerance(height, relative);
     let (mut height, mut normal) = (f64::INFINITY, DVec3::X);
     for _ in 0..EXPANSIONS_MAX {
-        let Some(index) = polytope.nearest_open() else { break };
-        let face = *polytope.face(index);
-        if face.offset >= height - tolerance(height) {
+        let Some(index) = polytope.take_nearest() else { break };
+        let Face { normal: across, offset, .. } = *polytope.face(index);
+        if offset >= height - tolerance(height) {
             break;
         }
-        let p = difference.support_against(-face.normal);
-        let beyond = face.normal.dot(p.w);
+        let p = difference.support_against(-across);
+        let beyond = across.dot(p.w);
         if beyond < height {
-            (height, normal) = (beyond, face.normal);
+            (height, normal) = (beyond, across);
+            polytope.limit(height - tolerance(height));
         }
-        let grows = beyond - face.offset > tolerance(beyond)
+        // A point that is a vertex already is beyond the face by the rounding error only.
+        let grows = beyond - offset > tolerance(beyond)
             && polytope.vertex_count() < VERTICES_MAX
-            && polytope.insert(difference, p, index);
-        if !grows {
-            polytope.finish(index);
+            && !polytope.has_vertex(&p);
+        if grows {
+            polytope.insert_beyond(difference, p, index);
         }
     }
-    let near = polytope.faces_across(normal, tolerance(height));
-    let points = near.map(|corners| closest(&corners, normal * height)).min_by(|x, y| x.0.total_cmp(&y.0));
-    let (_, points) = points.expect("a polytope has faces");
+    let points = witness(polytope, normal, height, tolerance(height));
     Nearest { height, lower: polytope.radius(height - tolerance(height)), normal, points }
+}
+
+/// The point where the ray along a normal leaves the polytope, which is at a height up to a margin.
+fn witness(polytope: &Polytope, normal: DVec3, height: f64, margin: f64) -> Witness {
+    let target = normal * height;
+    let within = polytope.faces_across(normal, margin).find_map(|corners| over(&corners, target));
+    let nearest = || {
+        let near = polytope.faces_across(normal, margin).map(|corners| closest(&corners, target));
+        let (_, points) = near.min_by(|x, y| x.0.total_cmp(&y.0)).expect("a polytope has faces");
+        points
+    };
+    within.unwrap_or_else(nearest)
+}
+
+/// The point of a triangle at the foot of a point, by the areas; `None` when that is not well inside, or the triangle too thin for these.
+fn over([p, q, r]: &[SupportPoint; 3], target: DVec3) -> Option<Witness> {
+    let (pq, pr) = (q.w - p.w, r.w - p.w);
+    let n = pq.cross(pr);
+    let n_squared = n.length_squared();
+    if n_squared < SLIVER_SINE_SQUARED * pq.length_squared() * pr.length_squared() {
+        return None;
+    }
+    let across = (p.w - target).cross(n) / n_squared;
+    let (of_q, of_r) = (pr.dot(across), -pq.dot(across));
+    let of_p = 1.0 - of_q - of_r;
+    let blend = |p: DVec3, q: DVec3, r: DVec3| p * of_p + q * of_q + r * of_r;
+    let inside = of_p > 0.0 && of_q > 0.0 && of_r > 0.0;
+    inside.then(|| Witness { on_a: blend(p.a, q.a, r.a), on_b: blend(p.b, q.b, r.b) })
 }
 
 /// The side of a difference without thickness on which less of it is; `ended` has the origin between its points.

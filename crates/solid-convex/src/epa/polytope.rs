@@ -1,21 +1,35 @@
 //! The polytope: vertices, faces, and how it grows.
 
+use std::cell::Cell;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use glam::DVec3;
 use robust::orient3d;
 
-use super::face::Face;
+use super::HEIGHT_ERROR;
+use super::face::{Face, HalfEdge, Wide};
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::coord;
 
-/// The hull of some points of `A - B`, with an inside. Invariant: exactly convex and closed, for the vertices as they were rounded;
-/// faces may be coplanar.
-#[derive(Debug)]
+/// A closed surface of triangles with their vertices in `A - B`.
+///
+/// It is the hull of its vertices, up to rounding: a point that is within [`Face::blur`] of the plane of a face does not see it. That is
+/// the choice that makes few slivers, and nothing certain rests on it. A ball around the origin is in the hull of the vertices as soon as
+/// no face comes into it and all have the origin on their inner side: for then the solid angles that they take up, which sum
+/// to a multiple of the full one because the surface is closed, are none of them negative and not all zero. The surface goes around the
+/// origin, at least once, and so around all of the ball; and no closed surface goes around a point that a plane separates from
+/// its vertices.
+#[derive(Debug, Default)]
 pub(super) struct Polytope {
     vertices: Vec<SupportPoint>,
     faces: Vec<Face>,
-    /// For each face its offset while it is open: neither finished nor replaced. Infinite for the others.
-    open: Vec<f64>,
+    /// The open faces, by [`order`] of their offsets and then by number; and some that no longer are.
+    open: BinaryHeap<Reverse<(u64, u32)>>,
+    /// Faces that are at least this far from the origin are not to be looked across.
+    limit: f64,
+    wide: Wide,
     horizon: Horizon,
 }
 
@@ -24,11 +38,10 @@ pub(super) struct Polytope {
 struct Horizon {
     /// The faces that see it.
     seen: Vec<u32>,
-    /// The edges around them, in any order, then counterclockwise from outside.
-    edges: Vec<HorizonEdge>,
+    /// The edges of these that are still to be looked across, the next one last.
+    pending: Vec<HalfEdge>,
+    /// The edges around them, counterclockwise from outside.
     ring: Vec<HorizonEdge>,
-    /// The edge that starts at a vertex; [`NONE`] for most.
-    from: Vec<u32>,
 }
 
 /// An edge of a face that is seen, whose other face is not.
@@ -36,20 +49,42 @@ struct Horizon {
 struct HorizonEdge {
     start: u32,
     end: u32,
-    /// The face beyond.
-    beyond: u32,
+    /// The same edge of the face beyond.
+    beyond: HalfEdge,
 }
 
-const NONE: u32 = u32::MAX;
+/// The corners of the faces of a tetrahedron whose fourth vertex is below the first three, and the same edges of the faces across.
+const TETRAHEDRON: [([u32; 3], [HalfEdge; 3]); 4] = {
+    const fn edge(face: u32, corner: u32) -> HalfEdge {
+        HalfEdge::new(face, corner)
+    }
+    [
+        ([0, 1, 2], [edge(1, 0), edge(2, 0), edge(3, 0)]),
+        ([1, 0, 3], [edge(0, 0), edge(3, 2), edge(2, 1)]),
+        ([2, 1, 3], [edge(0, 1), edge(1, 2), edge(3, 1)]),
+        ([0, 2, 3], [edge(0, 2), edge(2, 2), edge(1, 1)]),
+    ]
+};
 
-/// The faces of a tetrahedron whose fourth vertex is below the first three, and the face across each edge.
-const TETRAHEDRON: [([u32; 3], [u32; 3]); 4] =
-    [([0, 1, 2], [1, 2, 3]), ([1, 0, 3], [0, 3, 2]), ([2, 1, 3], [0, 1, 3]), ([0, 2, 3], [0, 2, 1])];
+/// A blur up to this is the rounding error: the height of a point that is within it of a plane is nothing. Of faces with a greater
+/// one the exact sign is taken.
+const BLUR_MAX: f64 = 64.0 * HEIGHT_ERROR;
+
+thread_local! {
+    /// A polytope whose memory the next one on this thread takes over: no more than the [`VERTICES_MAX`](super::VERTICES_MAX) ask for.
+    static SPARE: Cell<Option<Polytope>> = const { Cell::new(None) };
+}
 
 /// Where a point is to a plane, as [`orient3d`] says it for counterclockwise corners seen from outside: negative when the plane
 /// has it outside, exactly.
 pub(super) fn side([p, q, r]: [DVec3; 3], s: DVec3) -> f64 {
     orient3d(coord(p), coord(q), coord(r), coord(s))
+}
+
+/// A number that is ordered as an offset is.
+fn order(offset: f64) -> u64 {
+    let bits = offset.to_bits();
+    if offset.is_sign_negative() { !bits } else { bits | 1 << 63 }
 }
 
 impl Polytope {
@@ -60,24 +95,40 @@ impl Polytope {
         B: Support + ?Sized,
     {
         let [p, q, r, s] = points;
-        let side = side([p.w, q.w, r.w], s.w);
-        let vertices = match side {
-            below if below > 0.0 => vec![p, q, r, s],
-            above if above < 0.0 => vec![p, r, q, s],
+        let vertices = match side([p.w, q.w, r.w], s.w) {
+            below if below > 0.0 => [p, q, r, s],
+            above if above < 0.0 => [p, r, q, s],
             _ => return None,
         };
-        let mut polytope =
-            Polytope { vertices, faces: Vec::new(), open: Vec::new(), horizon: Horizon::default() };
-        for (corners, neighbours) in TETRAHEDRON {
-            let face = polytope.new_face(difference, corners, neighbours);
-            polytope.open.push(face.offset);
-            polytope.faces.push(face);
+        let mut polytope = SPARE.take().unwrap_or_default();
+        polytope.clear();
+        polytope.wide = Wide::of(difference.is_polytope());
+        polytope.vertices.extend(vertices);
+        for (place, (corners, twins)) in (0..).zip(TETRAHEDRON) {
+            polytope.put(difference, place, corners, twins);
         }
         Some(polytope)
     }
 
+    fn clear(&mut self) {
+        self.vertices.clear();
+        self.faces.clear();
+        self.open.clear();
+        self.limit = f64::INFINITY;
+    }
+
+    /// Leaves the memory to the next one.
+    pub fn recycle(self) {
+        SPARE.set(Some(self));
+    }
+
     pub fn vertex_count(&self) -> usize {
         self.vertices.len()
+    }
+
+    /// Whether a support point is a vertex already.
+    pub fn has_vertex(&self, p: &SupportPoint) -> bool {
+        self.vertices.iter().any(|q| q.w == p.w)
     }
 
     pub fn face(&self, index: usize) -> &Face {
@@ -89,24 +140,25 @@ impl Polytope {
         self.faces[index].corners.map(|i| self.vertices[i as usize])
     }
 
-    /// The open face nearest to the origin, the first of equals; `None` when all are finished.
-    pub fn nearest_open(&self) -> Option<usize> {
-        let (mut nearest, mut least) = (None, f64::INFINITY);
-        for (i, &offset) in self.open.iter().enumerate() {
-            if offset < least {
-                (nearest, least) = (Some(i), offset);
+    /// Notes that only faces nearer to the origin than this are of interest.
+    pub fn limit(&mut self, offset: f64) {
+        self.limit = offset;
+    }
+
+    /// The open face nearest to the origin, the first of equals, which is then no longer open; `None` when all are finished.
+    pub fn take_nearest(&mut self) -> Option<usize> {
+        while let Some(Reverse((key, index))) = self.open.pop() {
+            let face = &mut self.faces[index as usize];
+            if face.open && order(face.offset) == key {
+                face.open = false;
+                return Some(index as usize);
             }
         }
-        nearest
+        None
     }
 
-    /// Notes that the polytope does not grow beyond a face.
-    pub fn finish(&mut self, index: usize) {
-        self.open[index] = f64::INFINITY;
-    }
-
-    /// A ball of this radius around the origin is in the polytope; negative when that cannot be said. Beyond `enough` it need not
-    /// be precise.
+    /// A ball of this radius around the origin is in the hull of the vertices; negative when that cannot be said. Beyond `enough` it
+    /// need not be precise.
     pub fn radius(&self, enough: f64) -> f64 {
         let bound = |(index, face): (usize, &Face)| {
             let of_plane = face.offset - face.slack;
@@ -116,8 +168,12 @@ impl Polytope {
     }
 
     /// A lower bound of the distance of a face that needs no plane, which a sliver hardly has: that of its longest edge, less how wide it is.
+    /// Negative when the origin is not on its inner side.
     fn sliver_distance(&self, index: usize) -> f64 {
         let [p, q, r] = self.corners(index).map(|corner| corner.w);
+        if side([p, q, r], DVec3::ZERO) < 0.0 {
+            return f64::NEG_INFINITY;
+        }
         let edges = [(p, q, r), (q, r, p), (r, p, q)];
         let length_squared = |(p, q, _): &(DVec3, DVec3, DVec3)| p.distance_squared(*q);
         let longer = |x, y| if length_squared(&y) > length_squared(&x) { y } else { x };
@@ -143,145 +199,155 @@ impl Polytope {
         near.map(|i| self.corners(i))
     }
 
-    /// Takes a point in, which should be beyond a face; false, and nothing changes, when it is in the polytope.
-    pub fn insert<A, B>(&mut self, difference: &Difference<A, B>, p: SupportPoint, face: usize) -> bool
+    /// Takes a point in, which is beyond a face; false, and nothing changes, when what it sees of the polytope is not in one piece without
+    /// holes, which only rounding can do.
+    pub fn insert_beyond<A, B>(&mut self, difference: &Difference<A, B>, p: SupportPoint, face: usize) -> bool
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let candidates = std::iter::once(face).chain(0..self.faces.len());
-        let Some(first) = candidates.into_iter().find(|&i| self.is_live(i) && self.sees(i, p.w)) else {
-            return false;
-        };
-        self.find_horizon(first, p.w);
-        if !self.horizon.close(self.vertices.len()) {
-            // Only where a product of coordinates is too small for a number is a sign not exact.
-            self.horizon.seen.iter().for_each(|&i| self.faces[i as usize].seen = false);
-            return false;
+        let mut horizon = std::mem::take(&mut self.horizon);
+        let found = self.find_horizon(&mut horizon, face, p.w);
+        if found {
+            self.replace_seen(difference, p, &horizon);
+        } else {
+            horizon.seen.iter().for_each(|&i| self.faces[i as usize].seen = false);
         }
-        self.replace_seen(difference, p);
-        true
+        self.horizon = horizon;
+        found
+    }
+
+    /// Takes a point in; false, and nothing changes, when it is in the polytope.
+    pub fn insert<A, B>(&mut self, difference: &Difference<A, B>, p: SupportPoint) -> bool
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let first = (0..self.faces.len()).find(|&i| self.is_live(i) && self.sees(i, p.w));
+        first.is_some_and(|first| self.insert_beyond(difference, p, first))
     }
 
     fn is_live(&self, index: usize) -> bool {
         self.faces[index].offset < f64::INFINITY
     }
 
+    /// Whether a point is beyond a face, further than the rounding error.
+    #[inline]
     fn sees(&self, index: usize, p: DVec3) -> bool {
-        side(self.faces[index].corners.map(|i| self.vertices[i as usize].w), p) < 0.0
+        let face = &self.faces[index];
+        let height = face.normal.dot(p) - face.offset;
+        if height.abs() > face.blur || face.blur <= BLUR_MAX {
+            return height > face.blur;
+        }
+        side(face.corners.map(|i| self.vertices[i as usize].w), p) < 0.0
     }
 
-    /// Marks the faces that see a point, from one of them on, and finds the edges around them.
-    fn find_horizon(&mut self, first: usize, p: DVec3) {
-        let mut horizon = std::mem::take(&mut self.horizon);
-        horizon.seen.clear();
-        horizon.edges.clear();
-        horizon.seen.push(first as u32);
+    /// Marks the faces that see a point, from one of them on, and finds the edges around them; false when these are not one closed walk.
+    ///
+    /// The walk goes through the edges of each face counterclockwise, from that on which it came in, and into each further face that sees the
+    /// point before the next edge: so it comes to the edges of the horizon in their order.
+    fn find_horizon(&mut self, horizon: &mut Horizon, first: usize, p: DVec3) -> bool {
+        let Horizon { seen, pending, ring } = horizon;
+        seen.clear();
+        ring.clear();
+        pending.clear();
+        pending.extend((0..3).rev().map(|corner| HalfEdge::new(first as u32, corner)));
+        seen.push(first as u32);
         self.faces[first].seen = true;
-        let mut next = 0;
-        while let Some(&index) = horizon.seen.get(next) {
-            let Face { corners, neighbours, .. } = self.faces[index as usize];
-            for (i, beyond) in neighbours.into_iter().enumerate() {
-                if self.faces[beyond as usize].seen {
-                    continue;
-                }
-                if self.sees(beyond as usize, p) {
-                    self.faces[beyond as usize].seen = true;
-                    horizon.seen.push(beyond);
-                } else {
-                    horizon.edges.push(HorizonEdge { start: corners[i], end: corners[(i + 1) % 3], beyond });
-                }
+        while let Some(edge) = pending.pop() {
+            let beyond = self.faces[edge.face()].twins[edge.corner()];
+            if self.faces[beyond.face()].seen {
+                continue;
             }
-            next += 1;
+            if self.sees(beyond.face(), p) {
+                self.faces[beyond.face()].seen = true;
+                seen.push(beyond.face() as u32);
+                let [next, last] = beyond.others();
+                pending.extend([last, next]);
+            } else {
+                let corners = &self.faces[edge.face()].corners;
+                let [next, _] = edge.others();
+                ring.push(HorizonEdge { start: corners[edge.corner()], end: corners[next.corner()], beyond });
+            }
         }
-        self.horizon = horizon;
+        let follow = ring.windows(2).all(|pair| pair[0].end == pair[1].start);
+        let closed = ring.first().zip(ring.last()).is_some_and(|(first, last)| first.start == last.end);
+        follow && closed && ring.len() > 2
     }
 
     /// Replaces the faces that see a point by the cone from the horizon to it.
-    fn replace_seen<A, B>(&mut self, difference: &Difference<A, B>, p: SupportPoint)
+    fn replace_seen<A, B>(&mut self, difference: &Difference<A, B>, p: SupportPoint, horizon: &Horizon)
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let horizon = std::mem::take(&mut self.horizon);
-        let Horizon { seen, ring, .. } = &horizon;
+        let Horizon { seen, ring, .. } = horizon;
         let apex = self.vertices.len() as u32;
         self.vertices.push(p);
         // The new faces take the places of the old ones, then new places.
         let (places, count) = (self.faces.len(), ring.len());
         let place = |i: usize| seen.get(i).copied().unwrap_or((places + i).wrapping_sub(seen.len()) as u32);
+        let mut before = place(count - 1);
         for (i, edge) in ring.iter().enumerate() {
-            let neighbours = [edge.beyond, place((i + 1) % count), place((i + count - 1) % count)];
-            let face = self.new_face(difference, [edge.start, edge.end, apex], neighbours);
-            let beyond = &mut self.faces[edge.beyond as usize];
-            let shared =
-                (0..3).find(|&j| beyond.corners[j] == edge.end && beyond.corners[(j + 1) % 3] == edge.start);
-            beyond.neighbours[shared.expect("neighbours share an edge")] = place(i);
-            if let Some(&old) = seen.get(i) {
-                (self.faces[old as usize], self.open[old as usize]) = (face, face.offset);
-            } else {
-                self.faces.push(face);
-                self.open.push(face.offset);
-            }
+            let (here, after) = (place(i), place(if i + 1 < count { i + 1 } else { 0 }));
+            let twins = [edge.beyond, HalfEdge::new(after, 2), HalfEdge::new(before, 1)];
+            self.faces[edge.beyond.face()].twins[edge.beyond.corner()] = HalfEdge::new(here, 0);
+            self.put(difference, here, [edge.start, edge.end, apex], twins);
+            before = here;
         }
         for &left in seen.iter().skip(count) {
-            self.faces[left as usize].offset = f64::INFINITY;
-            self.open[left as usize] = f64::INFINITY;
+            let face = &mut self.faces[left as usize];
+            (face.offset, face.open, face.seen) = (f64::INFINITY, false, false);
         }
-        self.horizon = horizon;
     }
 
-    fn new_face<A, B>(&self, difference: &Difference<A, B>, corners: [u32; 3], neighbours: [u32; 3]) -> Face
-    where
+    /// Puts a new face in the place of another, or in the next.
+    fn put<A, B>(
+        &mut self,
+        difference: &Difference<A, B>,
+        place: u32,
+        corners: [u32; 3],
+        twins: [HalfEdge; 3],
+    ) where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        Face::new(difference, corners, corners.map(|i| &self.vertices[i as usize]), neighbours)
-    }
-}
-
-impl Horizon {
-    /// Puts the edges in order; false when they are not one closed walk.
-    fn close(&mut self, vertices: usize) -> bool {
-        let Horizon { edges, ring, from, .. } = self;
-        from.clear();
-        from.resize(vertices, NONE);
-        ring.clear();
-        for (i, edge) in (0u32..).zip(&*edges) {
-            if std::mem::replace(&mut from[edge.start as usize], i) != NONE {
-                return false;
-            }
+        let points = corners.map(|i| &self.vertices[i as usize]);
+        let face = Face::new(difference, corners, points, twins, self.wide);
+        if face.offset < self.limit {
+            self.open.push(Reverse((order(face.offset), place)));
         }
-        let mut at = 0;
-        for _ in 0..edges.len() {
-            let Some(&edge) = edges.get(at as usize) else { return false };
-            ring.push(edge);
-            at = from[edge.end as usize];
-            if at == 0 {
-                break;
-            }
+        match self.faces.get_mut(place as usize) {
+            Some(old) => *old = face,
+            None => self.faces.push(face),
         }
-        at == 0 && ring.len() == edges.len()
     }
 }
 
 #[cfg(test)]
 impl Polytope {
-    /// Whether it is closed and exactly convex, as its invariant says.
-    pub fn assert_well_formed(&self) {
+    /// Whether it is closed, and convex up to a height.
+    pub fn assert_well_formed(&self, height: f64) {
         let mut live = 0;
         for (index, face) in self.faces.iter().enumerate().filter(|&(i, _)| self.is_live(i)) {
             live += 1;
             assert!(!face.seen);
-            for i in 0..3 {
-                let neighbour = &self.faces[face.neighbours[i] as usize];
-                let shared = (0..3).find(|&j| {
-                    neighbour.corners[j] == face.corners[(i + 1) % 3]
-                        && neighbour.corners[(j + 1) % 3] == face.corners[i]
-                });
-                assert_eq!(neighbour.neighbours[shared.unwrap()], index as u32);
+            for corner in 0..3 {
+                let twin = face.twins[corner as usize];
+                let edge = HalfEdge::new(index as u32, corner);
+                let neighbour = &self.faces[twin.face()];
+                assert_eq!(neighbour.twins[twin.corner()], edge);
+                let ends = |face: &Face, edge: HalfEdge| {
+                    [face.corners[edge.corner()], face.corners[edge.others()[0].corner()]]
+                };
+                let [start, end] = ends(face, edge);
+                assert_eq!(ends(neighbour, twin), [end, start]);
             }
-            assert!(self.vertices.iter().all(|p| !self.sees(index, p.w)), "face {index} is not of the hull");
+            if face.blur <= BLUR_MAX {
+                let above = |p: &SupportPoint| face.normal.dot(p.w) - face.offset;
+                let highest = self.vertices.iter().map(above).fold(0.0, f64::max);
+                assert!(highest <= height, "face {index} has a vertex {highest:e} above it");
+            }
         }
         let corners =
             self.faces.iter().filter(|face| face.offset < f64::INFINITY).flat_map(|face| face.corners);

@@ -2,12 +2,11 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::start::start;
-use super::{Nearest, Penetration, closest, expand, flat};
-use crate::Support;
-use crate::difference::{Difference, SupportPoint};
+use super::{Nearest, Penetration, deepen};
+use crate::difference::Difference;
 use crate::gjk::{DISTANCE_TOLERANCE, End, Goal, descend};
 use crate::rounded::Core;
+use crate::{Support, Witness};
 
 /// How deep two objects are in each other, of which at least one has a core with a radius: by the distance of the cores, or by their
 /// depth.
@@ -23,13 +22,9 @@ where
 {
     let difference = Difference::new(a, placement_a, b, placement_b);
     let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
-    let ended: &[SupportPoint] = &descent.simplex.points().copied().collect::<Vec<_>>();
     let nearest = match descent.end {
-        End::Separated => apart(&difference, descent.v, ended),
-        End::Undecided | End::Inside => match start(&difference, ended) {
-            Ok(mut polytope) => expand(&difference, &mut polytope),
-            Err(normal) => flat(&difference, normal, ended),
-        },
+        End::Separated => apart(&difference, descent.v, Witness::of(&descent.simplex)),
+        End::Undecided | End::Inside => deepen(&difference, &descent.simplex),
     };
     let radius = (a.radius() + b.radius()) * difference.scale();
     let mut found = nearest.penetration(difference.scale(), radius);
@@ -39,12 +34,12 @@ where
 }
 
 /// Of cores that are apart, `v` is the difference of their closest points.
-fn apart<A, B>(difference: &Difference<Core<A>, Core<B>>, v: DVec3, ended: &[SupportPoint]) -> Nearest
+fn apart<A, B>(difference: &Difference<Core<A>, Core<B>>, v: DVec3, points: Witness) -> Nearest
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
     let normal = -v.normalize();
     let height = normal.dot(difference.support_against(-normal).w);
-    Nearest { height, lower: -v.length(), normal, points: closest(ended, v).1 }
+    Nearest { height, lower: -v.length(), normal, points }
 }

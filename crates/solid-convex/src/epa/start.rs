@@ -26,7 +26,7 @@ where
         unreachable!("a corner with a height off the others is not in their plane")
     };
     for p in points {
-        polytope.insert(difference, p, 0);
+        polytope.insert(difference, p);
     }
     Ok(polytope)
 }

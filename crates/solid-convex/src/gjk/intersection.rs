@@ -34,7 +34,7 @@ pub struct Witness {
 
 impl Witness {
     /// The points that the closest point of a simplex comes from.
-    pub(super) fn of(simplex: &Simplex) -> Witness {
+    pub(crate) fn of(simplex: &Simplex) -> Witness {
         let (on_a, on_b) = simplex.witness();
         Witness { on_a, on_b }
     }
