@@ -19,6 +19,7 @@ mod dynamic_tree;
 #[cfg(test)]
 mod measure;
 mod pair_lists;
+pub(crate) mod room;
 mod sweep_and_prune;
 #[cfg(test)]
 mod tests;

@@ -16,6 +16,7 @@ mod node;
 mod tree;
 
 use super::pair_lists::PairLists;
+use super::room::{push, resize};
 use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid};
 use crate::bounds::Aabb;
 use build::Builder;
@@ -95,7 +96,7 @@ impl DynamicTree {
     fn enqueue(&mut self, proxy: Proxy) {
         let status = &mut self.status[proxy as usize];
         if !std::mem::replace(&mut status.queued, true) {
-            self.queue.push(proxy);
+            push(&mut self.queue, proxy);
         }
     }
 
@@ -107,6 +108,10 @@ impl DynamicTree {
         }
         let living = (0..).zip(status.iter()).filter_map(|(proxy, s)| s.alive.then_some(proxy));
         builder.build(tree, living, fat);
+        // Boxes that are near one another find the same nodes, and those are then at hand: at 100,000 boxes that all leave,
+        // this order takes half as long as that of the queue.
+        self.queue.clear();
+        self.queue.extend(builder.leaves().filter(|&proxy| status[proxy as usize].queued));
         self.changes = 0;
         self.counters.rebuilds += 1;
     }
@@ -187,12 +192,12 @@ impl BroadPhase for DynamicTree {
         assert_valid(proxy, &bounds);
         let slot = proxy as usize;
         if slot >= self.tight.len() {
-            self.tight.resize(slot + 1, Aabb::EMPTY);
-            self.fat.resize(slot + 1, FatBox { min: [0.0; 3], max: [0.0; 3] });
-            self.status.resize(slot + 1, Status::default());
+            resize(&mut self.tight, slot + 1, Aabb::EMPTY);
+            resize(&mut self.fat, slot + 1, FatBox { min: [0.0; 3], max: [0.0; 3] });
+            resize(&mut self.status, slot + 1, Status::default());
             self.tree.grow(slot + 1);
             self.pairs.grow(slot + 1);
-            self.known.resize(slot + 1, 0);
+            resize(&mut self.known, slot + 1, 0);
         }
         assert!(!self.status[slot].alive, "proxy {proxy} is already in use");
         self.status[slot].alive = true;
@@ -212,7 +217,7 @@ impl BroadPhase for DynamicTree {
         }
         self.dirty = true;
         if !std::mem::replace(&mut self.status[proxy as usize].moved, true) {
-            self.moved.push(proxy);
+            push(&mut self.moved, proxy);
         }
         if !self.fat[proxy as usize].contains(&bounds) {
             self.fat[proxy as usize] = FatBox::with_room(proxy, &was, &bounds);
