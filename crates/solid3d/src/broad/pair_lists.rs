@@ -125,6 +125,17 @@ impl PairLists {
         }
     }
 
+    /// Takes out the pairs for which `stays` is false. They must not overlap, nor be shown to.
+    pub fn retain(&mut self, stays: impl Fn(Proxy, Proxy) -> bool) {
+        for id in 0..self.pairs.len() as PairId {
+            let Pair { proxies: [a, b], overlaps, shown, .. } = self.pairs[id as usize];
+            if a != END && !stays(a, b) {
+                debug_assert!(!overlaps && !shown);
+                self.remove(id);
+            }
+        }
+    }
+
     /// Says whether the boxes of a pair overlap.
     pub fn set_overlaps(&mut self, id: PairId, overlaps: bool) {
         let pair = &mut self.pairs[id as usize];

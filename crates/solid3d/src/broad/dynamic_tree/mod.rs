@@ -140,6 +140,12 @@ impl DynamicTree {
         }
     }
 
+    /// The same where many are queued: one pass over the pairs in place of walks along their lists.
+    fn part_all(&mut self) {
+        let Self { fat, pairs, .. } = self;
+        pairs.retain(|a, b| fat[a as usize].overlaps(&fat[b as usize]));
+    }
+
     /// Places the queued boxes in the tree, one by one.
     fn place_queued(&mut self) {
         let mut too_deep = false;
@@ -252,10 +258,11 @@ impl BroadPhase for DynamicTree {
             status[proxy as usize].alive
         });
         if !self.queue.is_empty() {
-            self.part_queued();
             if self.queue.len() > REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN) {
+                self.part_all();
                 self.rebuild();
             } else {
+                self.part_queued();
                 self.place_queued();
             }
             self.pair_queued();
