@@ -1,10 +1,12 @@
-//! A frame like those before it allocates nothing. One test in a process of its own: what is counted is all that the process
-//! does.
+//! A frame like those before it allocates nothing, and what an object takes is bounded. One test in a process of its own: what
+//! is counted is all that the process does.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::alloc::System;
 
 use glam::{DAffine3, DQuat, DVec3};
+use rand::Rng;
+use solid_oracle::generate::seeded;
 use solid3d::{
     Boxes, BroadPhaseKind, Collision, Motion, Response, Shape, TestProgress, World, WorldOptions, glam,
 };
@@ -36,15 +38,59 @@ fn place(i: usize, frame: usize) -> DAffine3 {
 }
 
 #[test]
-fn a_frame_like_those_before_allocates_nothing() {
+fn memory() {
+    let laws = || {
+        a_frame_like_those_before_allocates_nothing();
+        an_object_takes_little_beyond_its_shape();
+    };
     // A pool's own queue of work from outside it allocates now and then.
     #[cfg(feature = "rayon")]
-    rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap().install(check);
+    rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap().install(laws);
     #[cfg(not(feature = "rayon"))]
-    check();
+    laws();
 }
 
-fn check() {
+/// The bytes that are in use.
+fn in_use(region: &Region<System>) -> isize {
+    let change = region.change();
+    change.bytes_allocated as isize - change.bytes_deallocated as isize
+}
+
+/// Law: what an object takes of a world of 100,000, beyond the shape that all share, with half as many pairs of overlapping boxes as
+/// objects.
+fn an_object_takes_little_beyond_its_shape() {
+    const OBJECTS: usize = 100_000;
+    /// Of an object that never moved, and of one that did: its previous placement, of 96 bytes, and wider boxes.
+    const BYTES_MAX: [isize; 2] = [1, 1];
+    let ball = Shape::sphere(0.5).unwrap();
+    let side = (8.0 * OBJECTS as f64).cbrt();
+    let mut rng = seeded(830);
+    let mut anywhere = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(0.0..side)));
+    let places: Vec<DVec3> = (0..OBJECTS).map(|_| anywhere()).collect();
+    let place = |i: usize, shift: f64| DAffine3::from_translation(places[i] + shift);
+    let region = Region::new(ALLOCATOR);
+    let mut world = World::new();
+    let ids: Vec<_> = (0..OBJECTS).map(|i| world.add(&ball, place(i, 0.0)).unwrap()).collect();
+    let own = (OBJECTS * size_of_val(&ids[0])) as isize;
+    let mut collisions = Vec::new();
+    let mut bytes = [0; 2];
+    for (frame, bytes) in bytes.iter_mut().enumerate() {
+        if frame > 0 {
+            for (i, &id) in ids.iter().enumerate() {
+                world.set_placement(id, place(i, 0.05)).unwrap();
+            }
+        }
+        world.test_into(&mut collisions);
+        let candidates = world.statistics().candidates as usize / (frame + 1);
+        assert!((OBJECTS / 4..OBJECTS).contains(&candidates), "{candidates} candidates");
+        world.proceed();
+        let results = collisions.capacity() * size_of::<Collision>();
+        *bytes = (in_use(&region) - own - results as isize) / OBJECTS as isize;
+    }
+    assert!(bytes.iter().zip(BYTES_MAX).all(|(&bytes, max)| bytes <= max), "{bytes:?} bytes an object");
+}
+
+fn a_frame_like_those_before_allocates_nothing() {
     let (vertices, triangles) = band();
     let shapes = [
         Shape::sphere(0.5).unwrap(),

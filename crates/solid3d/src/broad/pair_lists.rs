@@ -1,5 +1,6 @@
 //! Pairs of proxies, with each proxy's own list of them, and what changed about them.
 
+use super::room::{push, resize};
 use super::{PairChange, PairId, Proxy};
 
 const END: u32 = u32::MAX;
@@ -49,7 +50,7 @@ impl Default for PairLists {
 impl PairLists {
     /// Makes room for proxies below `proxies`.
     pub fn grow(&mut self, proxies: usize) {
-        self.heads.resize(proxies, END);
+        resize(&mut self.heads, proxies, END);
     }
 
     /// Adds a pair that is not there yet.
@@ -78,7 +79,7 @@ impl PairLists {
                 id
             }
             None => {
-                self.pairs.push(UNUSED);
+                push(&mut self.pairs, UNUSED);
                 self.pairs.len() as PairId - 1
             }
         }
@@ -124,12 +125,23 @@ impl PairLists {
         }
     }
 
+    /// Takes out the pairs for which `stays` is false. They must not overlap, nor be shown to.
+    pub fn retain(&mut self, stays: impl Fn(Proxy, Proxy) -> bool) {
+        for id in 0..self.pairs.len() as PairId {
+            let Pair { proxies: [a, b], overlaps, shown, .. } = self.pairs[id as usize];
+            if a != END && !stays(a, b) {
+                debug_assert!(!overlaps && !shown);
+                self.remove(id);
+            }
+        }
+    }
+
     /// Says whether the boxes of a pair overlap.
     pub fn set_overlaps(&mut self, id: PairId, overlaps: bool) {
         let pair = &mut self.pairs[id as usize];
         if pair.overlaps != overlaps {
             pair.overlaps = overlaps;
-            self.touched.push(id);
+            push(&mut self.touched, id);
         }
     }
 
@@ -141,7 +153,7 @@ impl PairLists {
                 let overlaps = overlaps(a, b);
                 if pair.overlaps != overlaps {
                     pair.overlaps = overlaps;
-                    self.touched.push(id);
+                    push(&mut self.touched, id);
                 }
             }
         }
@@ -155,7 +167,7 @@ impl PairLists {
             let overlaps = overlaps(pair.proxies[1 - side]);
             if pair.overlaps != overlaps {
                 pair.overlaps = overlaps;
-                self.touched.push(link / 2);
+                push(&mut self.touched, link / 2);
             }
             link = pair.next[side];
         }
@@ -178,7 +190,7 @@ impl PairLists {
                 continue;
             }
             if std::mem::replace(&mut pair.shown, overlaps) != overlaps {
-                self.changes.push(PairChange { pair: id, proxies, overlaps });
+                push(&mut self.changes, PairChange { pair: id, proxies, overlaps });
             }
             if !overlaps && !stays(proxies) {
                 self.remove(id);

@@ -13,6 +13,7 @@ use super::object::Staleness;
 #[cfg(feature = "rayon")]
 use super::threads::{BATCH, Workers};
 use super::{Contact, ObjectId, World};
+use crate::broad::room::{push, resize};
 use crate::broad::{PairChange, PairId};
 
 /// What the box of an object costs that moved, at least, in units of [`Workers::share`].
@@ -54,11 +55,11 @@ impl Candidates {
     fn begin(&mut self, pair: PairId, a: ObjectId, b: ObjectId) {
         let slot = pair as usize;
         if slot >= self.slots.len() {
-            self.slots.resize(slot + 1, None);
+            resize(&mut self.slots, slot + 1, None);
         }
         let candidate = Candidate { a, b, axis: None, found: None, matters: false, queued: true };
         self.slots[slot] = Some(candidate);
-        self.queue.push(pair);
+        push(&mut self.queue, pair);
     }
 
     /// Forgets a candidate and its collision.

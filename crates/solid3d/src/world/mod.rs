@@ -30,6 +30,7 @@ pub use response::Response;
 pub use statistics::Statistics;
 pub use test::TestProgress;
 
+use crate::broad::room::resize;
 use crate::broad::{BroadPhase, PROXY_MAX, PairId, Proxy};
 use crate::error::{Error, Result};
 use crate::placement;
@@ -173,7 +174,7 @@ impl World {
         self.stale = true;
         let proxy = proxy(id);
         if self.by_proxy.len() <= proxy as usize {
-            self.by_proxy.resize(proxy as usize + 1, ObjectId::default());
+            resize(&mut self.by_proxy, proxy as usize + 1, ObjectId::default());
         }
         self.by_proxy[proxy as usize] = id;
         self.broad.insert(proxy, bounds);

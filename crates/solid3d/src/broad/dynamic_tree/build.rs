@@ -1,7 +1,7 @@
 //! Builds a tree at once, along a Morton curve.
 //!
 //! The centres are quantised to 10 bits an axis, interleaved and sorted; a range of the order is split where the highest
-//! differing bit changes, the largest piece first, until there are eight. (Lauterbach et al., *Fast BVH construction on
+//! differing bit changes, the largest piece first, until there are eight or none is larger than a node. (Lauterbach et al., *Fast BVH construction on
 //! GPUs*, 2009, for the splits.)
 //!
 //! One box far away would squeeze all others into one cell. So a range that shares one code, yet not one centre, is
@@ -11,6 +11,7 @@ use super::fat_box::FatBox;
 use super::node::{Child, Node, Place, WIDTH};
 use super::tree::{ROOT, Tree};
 use crate::broad::Proxy;
+use crate::broad::room::{push, room};
 
 /// From this depth on ranges are halved by order instead of by code: with 2^28 leaves at most 28 more levels follow,
 /// fewer than `DEPTH_MAX` in all.
@@ -33,12 +34,18 @@ impl Builder {
         tree.free.clear();
         tree.nodes.push(Node::empty(Place::NONE));
         self.order.clear();
+        room(&mut self.order, boxes.len());
         self.order.extend(leaves.map(u64::from));
         if self.order.is_empty() {
             return;
         }
         encode(&mut self.order, boxes);
         fill(tree, ROOT, &mut self.order, boxes, 1);
+    }
+
+    /// The leaves of the tree that was built last, in its order: those that follow one another are near one another.
+    pub fn leaves(&self) -> impl Iterator<Item = Proxy> {
+        self.order.iter().map(|&entry| proxy(entry))
     }
 }
 
@@ -102,7 +109,7 @@ fn fill(tree: &mut Tree, at: u32, range: &mut [u64], boxes: &[FatBox], depth: us
         } else {
             let below = tree.nodes.len() as u32;
             let lane = tree.nodes[at as usize].count();
-            tree.nodes.push(Node::empty(Place::new(at, lane)));
+            push(&mut tree.nodes, Node::empty(Place::new(at, lane)));
             let bounds = fill(tree, below, piece, boxes, depth + 1);
             tree.nodes[at as usize].push(Child::node(below), &bounds);
         }
@@ -129,6 +136,10 @@ fn split(range: &mut [u64], boxes: &[FatBox], depth: usize, ends: &mut [usize; W
                 (largest, largest_start) = (i, start);
             }
             start = end;
+        }
+        if ends[largest] - largest_start <= WIDTH {
+            // Each piece is one node of leaves. To cut further would leave nodes of two or three.
+            return pieces;
         }
         let piece = &range[largest_start..ends[largest]];
         let middle = largest_start + middle(piece, depth);

@@ -4,7 +4,9 @@
 //! one comparison. A box that has left gets a new fat box, is placed anew in the tree, and its overlaps with other fat
 //! boxes are found again. The pairs of fat boxes are kept; the pairs shown are those whose tight boxes overlap too, which is
 //! decided again for the pairs of the boxes that moved. (Deciding it for all pairs whenever they are visited took most of
-//! the frame where little moves: 0.75 instead of 0.35 ms for 100,000 boxes of which 1 % move.)
+//! the frame where little moves: 0.75 instead of 0.35 ms for 100,000 boxes of which 1 % move. To keep of each pair how far all
+//! boxes together must come before it has to be decided again took twice the frame where all move: what has to be known of the
+//! moves, and the branches that nobody can foretell, cost more than the comparisons that they spare.)
 //!
 //! When more than one in [`REBUILD_AT_ONE_IN`] boxes leave in one frame, the whole tree is built anew: that is cheaper than to
 //! place them one by one, and a tree that was just built answers faster. Either path gives the same pairs.
@@ -16,6 +18,7 @@ mod node;
 mod tree;
 
 use super::pair_lists::PairLists;
+use super::room::{push, resize};
 use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid};
 use crate::bounds::Aabb;
 use build::Builder;
@@ -95,7 +98,7 @@ impl DynamicTree {
     fn enqueue(&mut self, proxy: Proxy) {
         let status = &mut self.status[proxy as usize];
         if !std::mem::replace(&mut status.queued, true) {
-            self.queue.push(proxy);
+            push(&mut self.queue, proxy);
         }
     }
 
@@ -107,6 +110,10 @@ impl DynamicTree {
         }
         let living = (0..).zip(status.iter()).filter_map(|(proxy, s)| s.alive.then_some(proxy));
         builder.build(tree, living, fat);
+        // Boxes that are near one another find the same nodes, and those are then at hand: where 100,000 boxes leave again and again,
+        // this order has a third fewer cache misses than that of the queue, and takes a quarter less time.
+        self.queue.clear();
+        self.queue.extend(builder.leaves().filter(|&proxy| status[proxy as usize].queued));
         self.changes = 0;
         self.counters.rebuilds += 1;
     }
@@ -131,6 +138,12 @@ impl DynamicTree {
             let b = fat[proxy as usize];
             pairs.retain_of(proxy, |partner| fat[partner as usize].overlaps(&b));
         }
+    }
+
+    /// The same where many are queued: one pass over the pairs in place of walks along their lists.
+    fn part_all(&mut self) {
+        let Self { fat, pairs, .. } = self;
+        pairs.retain(|a, b| fat[a as usize].overlaps(&fat[b as usize]));
     }
 
     /// Places the queued boxes in the tree, one by one.
@@ -187,12 +200,12 @@ impl BroadPhase for DynamicTree {
         assert_valid(proxy, &bounds);
         let slot = proxy as usize;
         if slot >= self.tight.len() {
-            self.tight.resize(slot + 1, Aabb::EMPTY);
-            self.fat.resize(slot + 1, FatBox { min: [0.0; 3], max: [0.0; 3] });
-            self.status.resize(slot + 1, Status::default());
+            resize(&mut self.tight, slot + 1, Aabb::EMPTY);
+            resize(&mut self.fat, slot + 1, FatBox { min: [0.0; 3], max: [0.0; 3] });
+            resize(&mut self.status, slot + 1, Status::default());
             self.tree.grow(slot + 1);
             self.pairs.grow(slot + 1);
-            self.known.resize(slot + 1, 0);
+            resize(&mut self.known, slot + 1, 0);
         }
         assert!(!self.status[slot].alive, "proxy {proxy} is already in use");
         self.status[slot].alive = true;
@@ -212,7 +225,7 @@ impl BroadPhase for DynamicTree {
         }
         self.dirty = true;
         if !std::mem::replace(&mut self.status[proxy as usize].moved, true) {
-            self.moved.push(proxy);
+            push(&mut self.moved, proxy);
         }
         if !self.fat[proxy as usize].contains(&bounds) {
             self.fat[proxy as usize] = FatBox::with_room(proxy, &was, &bounds);
@@ -245,10 +258,11 @@ impl BroadPhase for DynamicTree {
             status[proxy as usize].alive
         });
         if !self.queue.is_empty() {
-            self.part_queued();
             if self.queue.len() > REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN) {
+                self.part_all();
                 self.rebuild();
             } else {
+                self.part_queued();
                 self.place_queued();
             }
             self.pair_queued();

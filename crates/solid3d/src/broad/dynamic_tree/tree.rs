@@ -11,6 +11,7 @@ use solid_convex::simd::{dispatch, level};
 use super::fat_box::FatBox;
 use super::node::{Child, Kind, Node, Place, WIDTH, lanes};
 use crate::broad::Proxy;
+use crate::broad::room::{push, resize};
 
 /// No node stays deeper than this after a flush; recursion and stacks are bounded by it.
 pub(super) const DEPTH_MAX: usize = 64;
@@ -37,7 +38,7 @@ impl Default for Tree {
 impl Tree {
     /// Makes room for proxies below `proxies`.
     pub fn grow(&mut self, proxies: usize) {
-        self.places.resize(proxies, Place::NONE);
+        resize(&mut self.places, proxies, Place::NONE);
     }
 
     /// Adds a leaf; gives its depth.
@@ -84,7 +85,7 @@ impl Tree {
                 index
             }
             None => {
-                self.nodes.push(Node::empty(parent));
+                push(&mut self.nodes, Node::empty(parent));
                 self.nodes.len() as u32 - 1
             }
         }
