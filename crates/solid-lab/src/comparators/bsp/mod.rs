@@ -5,10 +5,10 @@
 //! - [`Merge`]: whether two of them intersect.
 //!
 //! # What is thin counts as nothing
-//! Planes and cells are rounded. Everything is relative to the greatest coordinate of the objects, [`FLAT`] times which is the *tolerance*:
-//! a point that near to a plane lies on it, so facets that coplanar have one plane, and a cell thinner than that on one side of a plane is not
-//! cut by it. Solids that merely touch, or whose common part is thinner than the tolerance, are apart. No cell is ever thinner, so there
-//! are no slivers to be cut again.
+//! Planes and cells are rounded. Everything is relative to the greatest coordinate of the objects, [`FLAT`] times which is the
+//! *tolerance*: a point that near to a plane lies on it, so coplanar facets have one plane, and a cell that reaches no farther than that
+//! beyond a plane is not cut by it. So cuts make no slivers along their plane; and solids that merely touch, or whose common part is
+//! thinner than the tolerance, are apart.
 
 mod build;
 mod cell;

@@ -53,9 +53,9 @@ fn merging_finds_what_the_oracle_finds_either_way_round() {
     let (mut hits, mut within) = (0, 0);
     for round in 0..ROUNDS {
         let (a, b) = (solid(&mut rng, round), solid(&mut rng, round / 2));
-        // One in ten so small that it may lie within the other.
-        let scale: f64 = if round.is_multiple_of(10) { 0.1 } else { 1.0 };
-        let b_to_a = placement(&mut rng, 2.0 * scale.max(0.5)) * DAffine3::from_scale(DVec3::splat(scale));
+        // One in ten so small, and so near to the middle, that it may lie within the other.
+        let (scale, reach) = if round.is_multiple_of(10) { (0.1, 0.5) } else { (1.0, 2.0) };
+        let b_to_a = placement(&mut rng, reach) * DAffine3::from_scale(DVec3::splat(scale));
         let b_in_a = moved(&b, &b_to_a);
         let expected = solids_intersect(&a, &b_in_a);
         hits += usize::from(expected);
