@@ -68,7 +68,8 @@ fn main() -> Result<()> {
             Ok(())
         }
         Command::Run { name, quick, seed, out, document } => {
-            run(&name, &Settings { quick, seed, out_dir: out }, document.as_deref())
+            let effort = if quick { experiments::Effort::Quick } else { experiments::Effort::Full };
+            run(&name, &Settings { effort, seed, out_dir: out }, document.as_deref())
         }
         Command::Peers(args) => compare(&args),
     }
@@ -82,7 +83,11 @@ fn run(name: &str, settings: &Settings, document: Option<&Path>) -> Result<()> {
     }
     let out = &settings.out_dir;
     fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
-    println!("seed {}{}", settings.seed, if settings.quick { ", small samples" } else { "" });
+    println!(
+        "seed {}{}",
+        settings.seed,
+        if settings.effort == experiments::Effort::Full { "" } else { ", small samples" }
+    );
     let start = Instant::now();
     let mut found = Vec::new();
     for experiment in chosen {

@@ -4,9 +4,11 @@
 //! - [`convex`]: two convex polytopes. [`ConvexTest`](convex::ConvexTest).
 //! - [`tree`]: two triangle meshes under hierarchies of bounding volumes. [`Volume`](tree::Volume).
 //! - [`polygon`]: two polygons, as the thesis tests them.
+//! - [`bsp`]: two solids as trees of planes.
 //! - [`broad`]: many moving boxes. [`BroadTest`](broad::BroadTest).
 
 pub mod broad;
+pub mod bsp;
 pub mod convex;
 pub mod polygon;
 pub mod tree;

@@ -15,6 +15,7 @@ mod output;
 mod polygons;
 mod random;
 mod report;
+mod solids;
 mod summary;
 mod termination;
 #[cfg(test)]
@@ -30,11 +31,22 @@ pub(crate) use polygons::star;
 pub use report::{Claim, Kind, Report};
 pub use summary::write_summary;
 
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// The samples of the thesis.
+    Full,
+    /// Small samples: a minute for everything.
+    Quick,
+    /// A tenth of that, for tests: what is found means nothing, but the same is found each time.
+    Least,
+}
+
 /// How to run.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Small samples.
-    pub quick: bool,
+    /// How much is measured.
+    pub effort: Effort,
     /// Of all random numbers.
     pub seed: u64,
     /// Where files go.
@@ -44,7 +56,11 @@ pub struct Settings {
 impl Settings {
     /// The size of a sample: that of the thesis, or a small one.
     fn sample(&self, full: usize, quick: usize) -> usize {
-        if self.quick { quick } else { full }
+        match self.effort {
+            Effort::Full => full,
+            Effort::Quick => quick,
+            Effort::Least => quick.div_ceil(10),
+        }
     }
 }
 
@@ -68,6 +84,11 @@ pub fn all() -> &'static [Experiment] {
             name: "termination",
             reproduces: "the termination experiment of 4.4.4",
             run: termination::run,
+        },
+        Experiment {
+            name: "solids",
+            reproduces: "the linear program of 4.1 and the BSP trees of 5.1.3",
+            run: solids::run,
         },
         Experiment { name: "operations", reproduces: "Table 5.1", run: operations::run },
         Experiment { name: "bounding-volumes", reproduces: "Tables 5.2 and 5.3", run: bounding_volumes::run },

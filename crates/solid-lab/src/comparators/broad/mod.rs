@@ -1,6 +1,7 @@
 //! Many moving boxes: which overlap? (Thesis, sections 5.1 and 5.2.2.)
 
 mod baraff;
+mod field_tree;
 mod linked_sweep;
 mod order;
 mod space_tree;
@@ -9,6 +10,7 @@ mod tests;
 mod voxel_grid;
 
 pub use baraff::Baraff;
+pub use field_tree::FieldTree;
 pub use linked_sweep::LinkedSweep;
 use solid3d::Aabb;
 pub use space_tree::{Cut, SpaceTree};
@@ -30,4 +32,9 @@ pub trait BroadTest {
 
     /// The work done so far: swaps of neighbours for the sweeps, visits of cells for the others.
     fn steps(&self) -> u64;
+
+    /// Tests of two boxes so far, where pairs are looked for anew in each frame; none for the sweeps.
+    fn box_tests(&self) -> u64 {
+        0
+    }
 }

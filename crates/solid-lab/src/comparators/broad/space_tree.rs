@@ -24,6 +24,7 @@ pub struct SpaceTree {
     /// Where each box is.
     cell_of: Vec<u32>,
     visits: Cell<u64>,
+    box_tests: Cell<u64>,
 }
 
 #[derive(Clone, Debug)]
@@ -47,6 +48,7 @@ impl SpaceTree {
             cells: vec![SpaceCell::new(space, cut)],
             cell_of: vec![0; boxes.len()],
             visits: Cell::new(0),
+            box_tests: Cell::new(0),
         };
         for index in 0..boxes.len() as u32 {
             tree.enter(index);
@@ -88,6 +90,7 @@ impl SpaceTree {
         while let Some(cell) = open.pop() {
             self.visits.set(self.visits.get() + 1);
             let cell = &self.cells[cell as usize];
+            self.box_tests.set(self.box_tests.get() + cell.members.len() as u64);
             let overlapping = |&&i: &&u32| i < index && self.boxes[i as usize].overlaps(&bounds);
             partners.extend(cell.members.iter().filter(overlapping));
             let children = cell.children.iter().flatten();
@@ -153,5 +156,9 @@ impl BroadTest for SpaceTree {
 
     fn steps(&self) -> u64 {
         self.visits.get()
+    }
+
+    fn box_tests(&self) -> u64 {
+        self.box_tests.get()
     }
 }

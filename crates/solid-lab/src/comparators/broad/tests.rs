@@ -74,3 +74,8 @@ fn octrees_and_k_d_trees_keep_what_brute_force_finds() {
         keeps_what_brute_force_finds(|boxes| Box::new(SpaceTree::new(boxes, cut)));
     }
 }
+
+#[test]
+fn the_fieldtree_keeps_what_brute_force_finds() {
+    keeps_what_brute_force_finds(|boxes| Box::new(FieldTree::new(boxes)));
+}

@@ -1,3 +1,4 @@
+use std::cell::Cell;
 use std::collections::{BTreeSet, HashMap};
 
 use solid3d::Aabb;
@@ -14,6 +15,7 @@ pub struct VoxelGrid {
     cell: f64,
     cells: HashMap<IVec3, Vec<u32>>,
     visits: u64,
+    box_tests: Cell<u64>,
 }
 
 /// A box that spans more cells than this on a side is cut short: cells are as large as the largest box, so none does.
@@ -24,7 +26,13 @@ impl VoxelGrid {
     pub fn new(boxes: &[Aabb]) -> Self {
         let largest = boxes.iter().map(|b| (b.max - b.min).max_element()).fold(0.0, f64::max);
         let cell = if largest > 0.0 { largest } else { 1.0 };
-        let mut grid = VoxelGrid { boxes: boxes.to_vec(), cell, cells: HashMap::new(), visits: 0 };
+        let mut grid = VoxelGrid {
+            boxes: boxes.to_vec(),
+            cell,
+            cells: HashMap::new(),
+            visits: 0,
+            box_tests: Cell::new(0),
+        };
         for index in 0..boxes.len() as u32 {
             grid.enter(index);
         }
@@ -77,6 +85,7 @@ impl BroadTest for VoxelGrid {
         let mut pairs = BTreeSet::new();
         for list in self.cells.values() {
             for (k, &i) in list.iter().enumerate() {
+                self.box_tests.set(self.box_tests.get() + k as u64);
                 let overlapping = |j: &&u32| self.boxes[i as usize].overlaps(&self.boxes[**j as usize]);
                 pairs.extend(list[..k].iter().filter(overlapping).map(|&j| ordered(i, j)));
             }
@@ -86,5 +95,9 @@ impl BroadTest for VoxelGrid {
 
     fn steps(&self) -> u64 {
         self.visits
+    }
+
+    fn box_tests(&self) -> u64 {
+        self.box_tests.get()
     }
 }

@@ -4,6 +4,7 @@
 //! A-B against it. A positive `v . w` separates.
 
 mod body;
+mod bsp_trees;
 mod chung_wang;
 mod cone;
 mod counters;
@@ -22,6 +23,7 @@ mod signed_volumes;
 #[cfg(test)]
 mod tests;
 
+pub use bsp_trees::BspTrees;
 pub use chung_wang::ChungWang;
 pub use counters::Counters;
 pub use enhanced_gjk::EnhancedGjk;

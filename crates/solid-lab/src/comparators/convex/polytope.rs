@@ -5,6 +5,7 @@ use solid3d::glam::DVec3;
 use solid3d::hull::Hull;
 
 use super::edges::Edges;
+use crate::comparators::bsp::BspTree;
 
 /// A convex polyhedron: vertices, the edges at each, and the surface. Space: its own.
 #[derive(Clone, Debug)]
@@ -15,6 +16,8 @@ pub struct Polytope {
     triangles: Vec<[u32; 3]>,
     /// Made when first asked for: only solid polytopes have them.
     edges: OnceLock<Edges>,
+    /// Made when first asked for.
+    bsp_tree: OnceLock<BspTree>,
 }
 
 impl Polytope {
@@ -33,6 +36,7 @@ impl Polytope {
             neighbours,
             triangles: hull.triangles().iter().map(|t| t.map(slot)).collect(),
             edges: OnceLock::new(),
+            bsp_tree: OnceLock::new(),
         })
     }
 
@@ -52,6 +56,12 @@ impl Polytope {
     /// When the polytope is not solid.
     pub(super) fn edges(&self) -> &Edges {
         self.edges.get_or_init(|| Edges::of(self))
+    }
+
+    /// The planes of the facets as a tree.
+    pub(super) fn bsp_tree(&self) -> &BspTree {
+        let corners = |t: &[u32; 3]| t.map(|v| self.vertices[v as usize]);
+        self.bsp_tree.get_or_init(|| BspTree::of_triangles(self.triangles.iter().map(corners)))
     }
 
     /// The vertices joined to one by an edge.

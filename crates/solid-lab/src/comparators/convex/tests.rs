@@ -73,6 +73,11 @@ fn the_linear_program_agrees_with_the_oracle() {
 }
 
 #[test]
+fn bsp_trees_agree_with_the_oracle() {
+    agrees_with_the_oracle(BspTrees::default());
+}
+
+#[test]
 fn enhanced_gjk_agrees_with_the_oracle() {
     agrees_with_the_oracle(EnhancedGjk::default());
 }

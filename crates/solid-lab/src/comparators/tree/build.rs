@@ -26,6 +26,11 @@ pub enum Child {
 }
 
 impl<V: Volume> Tree<V> {
+    /// The memory of the nodes and the triangles.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.triangles.as_slice())
+    }
+
     /// Splits from the top until each set has one triangle (thesis, section 5.2.4).
     ///
     /// # Panics
