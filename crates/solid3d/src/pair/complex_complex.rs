@@ -64,15 +64,22 @@ fn contained(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Optio
     Some(Witness { on_a, on_b: relative.a_to_b.transform_point3(on_a) })
 }
 
-pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Closest {
+pub(super) fn closest_within(
+    a: PlacedComplex,
+    b: PlacedComplex,
+    bound: f64,
+    scratch: &mut Scratch,
+) -> Option<Closest> {
     // Whether they intersect is decided as everywhere else; the distance is 0 then.
     if let Relation::Common(points) = intersection(a, b, scratch) {
-        return Closest { distance: 0.0, points };
+        return Some(Closest { distance: 0.0, points });
     }
-    let Frame { relative, common: [from_a, from_b], scale, stretch: [of_a, of_b] } = frame(a, b);
+    let frame = frame(a, b);
+    let beyond = frame.beyond(bound);
+    let Frame { relative, common: [from_a, from_b], scale, stretch: [of_a, of_b] } = frame;
     let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
     // The best distance so far is kept in the common frame, as the bounds are.
-    let (mut best, mut answer) = (f64::INFINITY, None);
+    let (mut best, mut answer) = (beyond, None);
     let metric = metric(&of_a, &of_b);
     // From the closest point of B to that of A so far: what is further apart along it is no nearer.
     let mut axis = DVec3::ZERO;
@@ -98,7 +105,7 @@ pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch)
         }
     };
     nearest_pairs(a.0.tree(), b.0.tree(), &relative, &metric, &mut best, traversal, visit);
-    answer.expect("a complex shape has a primitive, and every distance is finite")
+    answer.filter(|closest| closest.distance <= bound)
 }
 
 fn frame(a: PlacedComplex, b: PlacedComplex) -> Frame {

@@ -62,22 +62,23 @@ fn meetings_in<B>(
     })
 }
 
-pub(super) fn closest(
+pub(super) fn closest_within(
     (complex, at_complex): PlacedComplex,
     (convex, at_convex): PlacedConvex,
+    bound: f64,
     scratch: &mut Scratch,
-) -> Closest {
+) -> Option<Closest> {
     let (query, frame) = convex_in_complex((complex, at_complex), (convex, at_convex));
     if let Some(points) = contained(complex, convex, &frame, scratch) {
-        return Closest { distance: 0.0, points };
+        return Some(Closest { distance: 0.0, points });
     }
-    let bound = |node: &Aabb| frame.stretch[0].at_least(node.gap(&query));
+    let gap = |node: &Aabb| frame.stretch[0].at_least(node.gap(&query));
     let Scratch { traversal, primitive_tests, .. } = scratch;
     // The best distance so far is kept in the common frame, as the bounds are.
-    let (mut best, mut answer) = (f64::INFINITY, None);
-    complex.tree().nearest(bound, &mut best, traversal, |leaf, best| {
+    let (mut best, mut answer) = (frame.beyond(bound), None);
+    complex.tree().nearest(gap, &mut best, traversal, |leaf, best| {
         for &primitive in leaf {
-            if bound(&complex.primitive_bounds(primitive)) < *best {
+            if gap(&complex.primitive_bounds(primitive)) < *best {
                 *primitive_tests += 1;
                 let points = complex.primitive_hull(primitive);
                 let closest = gjk::closest_points(&points, at_complex, convex, at_convex);
@@ -89,7 +90,7 @@ pub(super) fn closest(
             }
         }
     });
-    answer.expect("a complex shape has a primitive, and every distance is finite")
+    answer.filter(|closest| closest.distance <= bound)
 }
 
 /// The centre of the convex shape, when it is in a solid. (A part of the solid inside the convex shape meets it.)
