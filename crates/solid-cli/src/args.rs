@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use solid3d::Response;
+use solid3d::convex::MAGNITUDE_MAX;
 
 /// Frames per second when nothing else is asked for.
 pub const FPS_DEFAULT: f64 = 30.0;
@@ -11,7 +12,7 @@ pub const FPS_DEFAULT: f64 = 30.0;
 const EXIT_STATUS: &str = "\
 Exit status:
   0  no collisions
-  1  collisions
+  1  collisions, or objects nearer than --clearance
   2  bad input or usage; one message on standard error says what and where";
 
 const CHECK_NOTES: &str = "\
@@ -21,8 +22,9 @@ Objects:
   unless --solid declares the mesh solid.
 
 Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any characters, `?` for one.
-    default = \"witness\"             # ignore, simple, witness, smart or curve
+    default = \"witness\"             # ignore, simple, witness, smart, curve or depth
     solid = [\"tank*\"]               # as --solid
+    clearance = 0.05                # as --clearance
 
     [[object]]                      # all pairs with the object
     name = \"mine*\"
@@ -32,9 +34,22 @@ Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any char
     a = \"ship*\"
     b = \"sweeper\"
     response = \"smart\"
+    clearance = 0.2                 # optional: of this pair alone
   A rule for the pair overrides one for an object, which overrides the default; of two objects with rules the first
   in the scene decides. Of the rules of one level the last that matches holds. A rule for a pair also holds on a root
-  path. --response overrides the default.
+  path. --response overrides the default, --clearance the clearance that is not of a pair.
+
+Clearance (--clearance DISTANCE):
+  Reports every pair that comes nearer than DISTANCE, in units of length of the scene (metres in glTF and VRML97), in each
+  frame: the distance, and the closest points. Pairs that collide count, too; their distance is less the depth of the
+  one in the other, and the points are the deepest. What is at just the distance is not nearer. Pairs that are ignored
+  are not looked at. The table tells of each pair where it is nearest, and when. The JSON of a frame then also has
+  \"near\", and of CSV the rows with a distance are these; a pair that collides has a row of each.
+
+Depth (--response depth):
+  How deep two objects are in each other: the shortest translation that leaves them touching. The normal says where the
+  first is to go; the points are those of each that are deepest in the other. The JSON of such a collision has \"depth\",
+  \"point_a\" and \"point_b\"; the table tells the greatest. Of surfaces it is that of the deepest pair of triangles; a solid counts as its convex hull.
 
 Curves (--response curve):
   Where the surfaces of two objects meet: meshes, complex shapes, boxes and convex hulls. The JSON of such a collision
@@ -118,6 +133,10 @@ pub struct CheckArgs {
     #[arg(long, value_name = "PATTERN")]
     pub solid: Vec<String>,
 
+    /// Report pairs that come nearer than this, in units of length of the scene, with their closest points
+    #[arg(long, value_name = "DISTANCE", value_parser = clearance, allow_negative_numbers = true)]
+    pub clearance: Option<f64>,
+
     /// What to find out about colliding pairs [default: witness]
     #[arg(long, value_name = "RESPONSE")]
     pub response: Option<ResponseArg>,
@@ -146,6 +165,8 @@ pub enum ResponseArg {
     Smart,
     /// The lines in which the surfaces meet (in JSON), and their first point
     Curve,
+    /// How deep they are in each other, the shortest way out, and the deepest points
+    Depth,
 }
 
 impl From<ResponseArg> for Response {
@@ -155,12 +176,17 @@ impl From<ResponseArg> for Response {
             ResponseArg::Witness => Response::Witness,
             ResponseArg::Smart => Response::Smart,
             ResponseArg::Curve => Response::Curve,
+            ResponseArg::Depth => Response::Depth,
         }
     }
 }
 
 fn fps(text: &str) -> Result<f64, String> {
     number(text, |x| x > 0.0, "a finite number above 0")
+}
+
+fn clearance(text: &str) -> Result<f64, String> {
+    number(text, |x| (0.0..=MAGNITUDE_MAX).contains(&x), "a length from 0 to 1e100")
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -195,5 +221,9 @@ mod tests {
             assert!(seconds(text).is_err(), "{text}");
         }
         assert_eq!(seconds("0"), Ok(0.0));
+        for text in ["-0.1", "nan", "inf", "1e101", "5cm"] {
+            assert!(clearance(text).is_err(), "{text}");
+        }
+        assert_eq!(clearance("5e-2"), Ok(0.05));
     }
 }

@@ -58,7 +58,7 @@ fn mistakes_name_file_and_line() {
     run("default = \"loud\"", "").assert_fails(&[
         "r.toml:1: ",
         "`loud`",
-        "`ignore`, `simple`, `witness`, `smart`, `curve`",
+        "`ignore`, `simple`, `witness`, `smart`, `curve`, `depth`",
     ]);
     run("\n\n[[objects]]\n", "").assert_fails(&["r.toml:3: ", "`objects`", "`object`"]);
     run("[[object]]\nname = \"a\"\nresponse = \"simple\"\ncolour = 1\n", "")

@@ -160,6 +160,12 @@ pub enum Error {
         /// Its value.
         value: f64,
     },
+    /// A clearance is negative, not a number, or too large.
+    #[error("clearance is {value:?}; it must be from 0 to {MAGNITUDE_MAX:e}")]
+    Clearance {
+        /// Its value.
+        value: f64,
+    },
     /// A placement has an entry that is not finite, or too large.
     #[error(
         "placement has the entry {value:?}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"

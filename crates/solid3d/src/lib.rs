@@ -22,7 +22,7 @@ pub use glam;
 pub use shape::{ComplexShapeBuilder, OpenEdge, Shape, ShapeKind};
 pub use solid_convex as convex;
 pub use world::{
-    Boxes, Collision, Contact, Event, EventKind, Motion, ObjectHit, ObjectId, Response, Statistics,
+    Boxes, Collision, Contact, Event, EventKind, Motion, Near, ObjectHit, ObjectId, Response, Statistics,
     TestProgress, When, World, WorldOptions,
 };
 

@@ -126,6 +126,17 @@ impl Model {
                     assert!(off.distance <= 1e-9 * size, "the point is off by {}", off.distance);
                 }
             }
+            Contact::Depth { depth, normal, point_on_a, point_on_b } => {
+                let expected = query::penetration(&a.shape, &a.placement, &b.shape, &b.placement).unwrap();
+                match expected {
+                    Some(found) => {
+                        assert_eq!((depth, normal), (found.depth, found.normal));
+                        assert_eq!((point_on_a, point_on_b), (found.point_on_a, found.point_on_b));
+                    }
+                    None => assert_eq!(depth, 0.0),
+                }
+            }
+            _ => panic!("{collision:?}"),
         }
     }
 }
@@ -147,6 +158,10 @@ fn bits(collision: &Collision) -> Bits {
             let points = curve.polylines.iter().flat_map(|polyline| polyline.path());
             (3, of(&std::iter::once(point).chain(points).collect::<Vec<_>>()))
         }
+        Contact::Depth { depth, normal, point_on_a, point_on_b } => {
+            (3, of(&[DVec3::splat(depth), normal, point_on_a, point_on_b]))
+        }
+        _ => panic!("{collision:?}"),
     };
     (collision.a, collision.b, kind, numbers)
 }
@@ -170,8 +185,14 @@ struct Stage {
     room: f64,
 }
 
-const RESPONSES: [Response; 5] =
-    [Response::Ignore, Response::Simple, Response::Witness, Response::Smart, Response::Curve];
+const RESPONSES: [Response; 6] = [
+    Response::Ignore,
+    Response::Simple,
+    Response::Witness,
+    Response::Smart,
+    Response::Depth,
+    Response::Curve,
+];
 
 fn world(broad_phase: BroadPhaseKind, caching: bool) -> World {
     World::with_options(&WorldOptions { broad_phase, caching, ..WorldOptions::default() })
@@ -296,7 +317,7 @@ impl Stage {
     }
 
     fn change_responses(&mut self) {
-        let response = RESPONSES[self.rng.random_range(0..4)];
+        let response = RESPONSES[self.rng.random_range(0..5)];
         let (i, j) = (self.any(), self.any());
         let (a, b) = (self.model.things[i].id, self.model.things[j].id);
         let pair = (a.min(b), a.max(b));
@@ -650,7 +671,7 @@ fn disturb(rng: &mut StdRng, world: &mut World, model: &mut Model, collision: &C
             model.things.push(Thing { id, shape, placement: at, before, soup: None, size: stretch(&at) });
         }
         (5, Some(_)) => {
-            let response = RESPONSES[rng.random_range(1..4)];
+            let response = RESPONSES[rng.random_range(1..5)];
             world.set_object_response(id, response).unwrap();
             model.objects.insert(id, response);
         }

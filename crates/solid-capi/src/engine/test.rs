@@ -112,8 +112,6 @@ impl Engine {
 
 fn points(contact: &Contact) -> Option<Points> {
     match *contact {
-        // Curves are never asked for.
-        Contact::Simple | Contact::Curve { .. } => None,
         Contact::Witness { local_a, local_b, .. } => {
             Some(Points { point1: local_a, point2: local_b, normal: DVec3::ZERO })
         }
@@ -122,5 +120,7 @@ fn points(contact: &Contact) -> Option<Points> {
             let normal = if distance > 0.0 { normal * distance } else { normal };
             Some(Points { point1: local_a, point2: local_b, normal })
         }
+        // Of the rest, only the simple one is ever asked for.
+        _ => None,
     }
 }

@@ -19,7 +19,7 @@ use solid3d::Response;
 use crate::args::CheckArgs;
 use crate::output::{self, is_stdout};
 use crate::placements::Placements;
-use crate::record::{CsvRecorder, JsonRecorder, Recorder};
+use crate::record::{CsvColumns, CsvRecorder, JsonRecorder, Recorder};
 use crate::rules::{self, Objects, Rules};
 use crate::table::Style;
 use crate::{Verdict, complain, scene};
@@ -48,15 +48,19 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     warnings.iter().for_each(|warning| complain("warning", warning));
     let shapes = solids::shapes(&scene, &solid)?;
     let mut stage = Stage::new(&scene, &shapes, motion, timeline.time(0))?;
-    set_responses(&rules, args.response.map(Response::from), &scene, &mut stage)?;
-    let recorders = recorders(args, &scene)?;
+    let has_clearance = set_rules(&rules, args, &scene, &mut stage)?;
+    let tells_distances = has_clearance || rules.tell_depth(args.response.map(Response::from));
+    let columns = if tells_distances { CsvColumns::Distances } else { CsvColumns::Basic };
+    let recorders = recorders(args, columns, &scene)?;
     clock.lap(&mut times.load);
 
-    let mut player = Player { scene: &scene, stage, recorders, clock, times };
-    let pairs = player.play(&timeline)?;
+    let mut player = Player { scene: &scene, stage, has_clearance, recorders, clock, times };
+    let findings = player.play(&timeline)?;
     let statistics = player.stage.statistics();
-    print(args, &Report { scene: &scene, pairs: &pairs, statistics, times: player.times })?;
-    Ok(if pairs.summary().collisions > 0 { Verdict::Collisions } else { Verdict::Clean })
+    print(args, &Report { scene: &scene, findings: &findings, statistics, times: player.times })?;
+    let summary = findings.summary();
+    let near = summary.near.is_some_and(|near| near.near_pairs > 0);
+    Ok(if near || summary.collisions > 0 { Verdict::Collisions } else { Verdict::Clean })
 }
 
 fn placements(args: &CheckArgs, scene: &Scene) -> Result<Option<Placements>> {
@@ -82,24 +86,25 @@ fn names(scene: &Scene) -> Vec<&str> {
     scene.objects().iter().map(|object| object.name()).collect()
 }
 
-fn set_responses(rules: &Rules, default: Option<Response>, scene: &Scene, stage: &mut Stage) -> Result<()> {
+/// Brings responses and clearances into the world. Returns whether there is any clearance.
+fn set_rules(rules: &Rules, args: &CheckArgs, scene: &Scene, stage: &mut Stage) -> Result<bool> {
     let exempt = root_paths::pairs(scene.objects());
     let names = names(scene);
     let (world, ids) = stage.world();
     let objects = Objects { names: &names, ids, exempt: &exempt };
-    let warnings = rules::apply(rules, default, &objects, world)?;
+    let warnings = rules::apply(rules, args.response.map(Response::from), &objects, world)?;
     warnings.iter().for_each(|warning| complain("warning", warning));
-    Ok(())
+    rules::set_clearances(rules, args.clearance, &objects, world)
 }
 
 /// The recorders that write files.
-fn recorders(args: &CheckArgs, scene: &Scene) -> Result<Vec<Box<dyn Recorder>>> {
+fn recorders(args: &CheckArgs, columns: CsvColumns, scene: &Scene) -> Result<Vec<Box<dyn Recorder>>> {
     let mut recorders: Vec<Box<dyn Recorder>> = Vec::new();
     if let Some(path) = &args.json {
         recorders.push(Box::new(JsonRecorder::new(output::open(path)?, scene)?));
     }
     if let Some(path) = &args.csv {
-        recorders.push(Box::new(CsvRecorder::new(output::open(path)?)?));
+        recorders.push(Box::new(CsvRecorder::new(output::open(path)?, columns)?));
     }
     Ok(recorders)
 }

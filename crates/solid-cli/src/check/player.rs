@@ -7,40 +7,64 @@ use super::clock::{Clock, Times};
 use super::stage::Stage;
 use super::timeline::Timeline;
 use crate::progress::Progress;
-use crate::record::{Frame, PairRecorder, Recorder};
+use crate::record::{Frame, NearRecorder, PairRecorder, Recorder, Summary};
 
 /// What it takes to play a scene.
 pub struct Player<'a> {
     pub scene: &'a Scene,
     pub stage: Stage<'a>,
+    /// Whether some pair has a clearance.
+    pub has_clearance: bool,
     /// What else records the frames than the pairs.
     pub recorders: Vec<Box<dyn Recorder>>,
     pub clock: Clock,
     pub times: Times,
 }
 
+/// What was found in all frames.
+#[derive(Debug, Default)]
+pub struct Findings {
+    pub pairs: PairRecorder,
+    /// What came nearer than its clearance, if there was any clearance.
+    pub near: Option<NearRecorder>,
+}
+
+impl Findings {
+    /// All of it in numbers.
+    pub fn summary(&self) -> Summary {
+        Summary { near: self.near.as_ref().map(NearRecorder::summary), ..self.pairs.summary() }
+    }
+}
+
 impl Player<'_> {
-    /// Plays all frames. Returns the pairs that collide.
-    pub fn play(&mut self, timeline: &Timeline) -> Result<PairRecorder> {
-        let Player { scene, stage, recorders, clock, times } = self;
-        let mut pairs = PairRecorder::default();
+    /// Plays all frames.
+    pub fn play(&mut self, timeline: &Timeline) -> Result<Findings> {
+        let Player { scene, stage, has_clearance, recorders, clock, times } = self;
+        let near = has_clearance.then(NearRecorder::default);
+        let mut findings = Findings { near, ..Findings::default() };
+        let mut passes = Vec::new();
         let mut progress = Progress::new(timeline.frames());
         let mut hits = Vec::new();
         for number in 0..timeline.frames() {
             let time = timeline.time(number);
             stage.show(number, time)?;
             clock.lap(&mut times.moving);
+            if *has_clearance {
+                stage.near(&mut passes);
+            }
             stage.test(&mut hits);
             clock.lap(&mut times.testing);
-            let frame = Frame { number, time, hits: &hits };
-            pairs.frame(scene, &frame)?;
+            let near = has_clearance.then_some(passes.as_slice());
+            let frame = Frame { number, time, hits: &hits, near };
+            findings.pairs.frame(scene, &frame)?;
+            findings.near.iter_mut().try_for_each(|near| near.frame(scene, &frame))?;
             recorders.iter_mut().try_for_each(|recorder| recorder.frame(scene, &frame))?;
             progress.done(number + 1);
             clock.lap(&mut times.writing);
         }
-        let summary = pairs.summary();
+        let summary = findings.summary();
         recorders.iter_mut().try_for_each(|recorder| recorder.finish(&summary))?;
         clock.lap(&mut times.writing);
-        Ok(pairs)
+        Ok(findings)
     }
 }

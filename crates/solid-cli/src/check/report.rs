@@ -4,14 +4,15 @@ use solid_scene::Scene;
 use solid3d::Statistics;
 
 use super::clock::Times;
-use crate::record::PairRecorder;
+use super::player::Findings;
+use crate::record::NearSummary;
 use crate::table::Style;
 use crate::{scene, words};
 
 /// A finished check.
 pub struct Report<'a> {
     pub scene: &'a Scene,
-    pub pairs: &'a PairRecorder,
+    pub findings: &'a Findings,
     pub statistics: Statistics,
     pub times: Times,
 }
@@ -19,7 +20,7 @@ pub struct Report<'a> {
 impl Report<'_> {
     /// The table of pairs, and a summary.
     pub fn text(&self, style: Style) -> String {
-        let summary = self.pairs.summary();
+        let summary = self.findings.summary();
         let frames = words::count(summary.frames, "frame");
         let verdict = match summary.pairs {
             0 => "no collisions".to_owned(),
@@ -29,16 +30,22 @@ impl Report<'_> {
         let amount = scene::amount(self.scene);
         let tests = words::count(self.statistics.candidates, "test");
         let rate = words::figure(self.times.frames_per_second(summary.frames));
-        let table = self.pairs.table(self.scene, style);
-        format!("{table}{verdict}\n{amount}, {frames}, {tests}, {rate} frames/s\n")
+        let mut tables = self.findings.pairs.table(self.scene, style);
+        let mut verdicts = verdict;
+        if let Some(near) = &self.findings.near {
+            tables += &near.table(self.scene, style);
+            verdicts = format!("{verdicts}\n{}", nearness(&near.summary(), &frames));
+        }
+        format!("{tables}{verdicts}\n{amount}, {frames}, {tests}, {rate} frames/s\n")
     }
 
     /// The work in counts, which repeat exactly, and in time, which does not.
     pub fn statistics(&self) -> String {
-        let Statistics { candidates, cache_hits, box_tests, primitive_tests, collisions, .. } =
+        let Statistics { candidates, examined, cache_hits, box_tests, primitive_tests, collisions, .. } =
             self.statistics;
         let counts = [
             ("candidates", candidates),
+            ("examined", examined),
             ("cache hits", cache_hits),
             ("box tests", box_tests),
             ("primitive tests", primitive_tests),
@@ -52,4 +59,18 @@ impl Report<'_> {
             .map(|(name, time)| format!("{:<16}{:>12.3} s\n", format!("{name} time"), time.as_secs_f64()));
         counts.chain(times).collect()
     }
+}
+
+/// What is nearer than its clearance, in words.
+fn nearness(summary: &NearSummary, frames: &str) -> String {
+    let NearSummary { near_frames, near_pairs, least_distance } = summary;
+    let Some(least) = least_distance else {
+        return "nothing is nearer than its clearance".to_owned();
+    };
+    let are = if *near_pairs == 1 { "is" } else { "are" };
+    let pairs = words::count(*near_pairs, "pair");
+    let least = words::figure(*least);
+    format!(
+        "{pairs} {are} nearer than the clearance, in {near_frames} of {frames}; the least distance is {least}"
+    )
 }

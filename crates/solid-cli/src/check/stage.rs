@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use anyhow::{Result, anyhow};
 use solid_scene::{ObjectPose, Pose, Scene};
-use solid3d::{Collision, ObjectId, Shape, Statistics, World};
+use solid3d::{Collision, Contact, Near, ObjectId, Shape, Statistics, World};
 
 use super::motion::Motion;
-use crate::record::Hit;
+use crate::record::{Depth, Hit, Pass};
 use crate::words;
 
 /// A world with the objects of a scene.
@@ -63,6 +63,13 @@ impl<'a> Stage<'a> {
         Ok(())
     }
 
+    /// What is nearer than its clearance in the frame, in the scene's order.
+    pub fn near(&mut self, passes: &mut Vec<Pass>) {
+        let near = self.world.near();
+        passes.clear();
+        passes.extend(near.iter().map(|near| self.pass(near)));
+    }
+
     /// The collisions of the frame, in the scene's order. Ends the frame.
     pub fn test(&mut self, hits: &mut Vec<Hit>) {
         let collisions = self.world.test();
@@ -102,8 +109,20 @@ impl<'a> Stage<'a> {
 
     fn hit(&self, collision: &Collision) -> Hit {
         let [a, b] = [collision.a, collision.b].map(|id| self.places[&id]);
+        let depth = match collision.contact {
+            Contact::Depth { depth, point_on_a, point_on_b, .. } => {
+                Some(Depth { depth, points: [point_on_a, point_on_b] })
+            }
+            _ => None,
+        };
         let curve = collision.curve().cloned();
-        Hit { a, b, point: collision.point(), normal: collision.normal(), curve }
+        Hit { a, b, point: collision.point(), normal: collision.normal(), curve, depth }
+    }
+
+    fn pass(&self, near: &Near) -> Pass {
+        let [a, b] = [near.a, near.b].map(|id| self.places[&id]);
+        let &Near { distance, point_on_a, point_on_b, normal, .. } = near;
+        Pass { a, b, distance, points: [point_on_a, point_on_b], normal }
     }
 
     /// In words, that an object can't be as it is wanted.

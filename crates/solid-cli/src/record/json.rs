@@ -7,6 +7,11 @@
 //!  "summary":{"frames":1,"colliding_frames":1,"collisions":1,"pairs":1}}
 //! ```
 //!
+//! Of the response `depth` a collision also has `"depth":0.25,"point_a":[0,0,0],"point_b":[0,0.25,0]`: the points of each that are
+//! deepest in the other. With a clearance a frame also has `"near"`, a list of
+//! `{"a":"ship","b":"mine","distance":0.1,"point_a":[0,0,0],"point_b":[0,0.1,0],"normal":[0,-1,0]}`, and the summary `near_frames`,
+//! `near_pairs` and `least_distance`; a negative distance is less the depth.
+//!
 //! Of the response `curve` a collision also has `"curve":[[[0,0,0],[1,0,0]]]`: polylines of points; a closed one ends with its
 //! first point.
 
@@ -15,9 +20,10 @@ use std::io::Write;
 use anyhow::Result;
 use serde::Serialize;
 use solid_scene::Scene;
+use solid3d::glam::DVec3;
 use solid3d::query::IntersectionCurve;
 
-use super::{Frame, Hit, Recorder, Summary};
+use super::{Depth, Frame, Hit, Pass, Recorder, Summary};
 
 /// Writes one JSON object, frame by frame.
 pub struct JsonRecorder<W: Write> {
@@ -38,6 +44,32 @@ struct FrameEntry<'a> {
     frame: u64,
     time: f64,
     collisions: Vec<CollisionEntry<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    near: Option<Vec<PassEntry<'a>>>,
+}
+
+#[derive(Serialize)]
+struct PassEntry<'a> {
+    a: &'a str,
+    b: &'a str,
+    distance: f64,
+    #[serde(flatten)]
+    points: PointsEntry,
+    normal: [f64; 3],
+}
+
+/// The closest or deepest points.
+#[derive(Serialize)]
+struct PointsEntry {
+    point_a: [f64; 3],
+    point_b: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct DepthEntry {
+    depth: f64,
+    #[serde(flatten)]
+    points: PointsEntry,
 }
 
 #[derive(Serialize)]
@@ -48,6 +80,8 @@ struct CollisionEntry<'a> {
     normal: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     curve: Option<Vec<Vec<[f64; 3]>>>,
+    #[serde(flatten)]
+    depth: Option<DepthEntry>,
 }
 
 impl<W: Write> JsonRecorder<W> {
@@ -72,7 +106,8 @@ impl<W: Write> Recorder for JsonRecorder<W> {
         let collisions = frame.hits.iter().map(|hit| collision(scene, hit)).collect();
         self.writer.write_all(separator(self.frames == 0))?;
         self.frames += 1;
-        let entry = FrameEntry { frame: frame.number, time: frame.time, collisions };
+        let near = frame.near.map(|near| near.iter().map(|pass| self::pass(scene, pass)).collect());
+        let entry = FrameEntry { frame: frame.number, time: frame.time, collisions, near };
         Ok(serde_json::to_writer(&mut self.writer, &entry)?)
     }
 
@@ -87,7 +122,18 @@ impl<W: Write> Recorder for JsonRecorder<W> {
 fn collision<'a>(scene: &'a Scene, hit: &Hit) -> CollisionEntry<'a> {
     let [a, b] = [hit.a, hit.b].map(|object| scene.objects()[object].name());
     let [point, normal] = [hit.point, hit.normal].map(|v| v.map(|v| v.to_array()));
-    CollisionEntry { a, b, point, normal, curve: hit.curve.as_deref().map(paths) }
+    let depth = hit.depth.map(|Depth { depth, points: p }| DepthEntry { depth, points: points(p) });
+    CollisionEntry { a, b, point, normal, curve: hit.curve.as_deref().map(paths), depth }
+}
+
+fn pass<'a>(scene: &'a Scene, pass: &Pass) -> PassEntry<'a> {
+    let [a, b] = [pass.a, pass.b].map(|object| scene.objects()[object].name());
+    let normal = pass.normal.to_array();
+    PassEntry { a, b, distance: pass.distance, points: points(pass.points), normal }
+}
+
+fn points([on_a, on_b]: [DVec3; 2]) -> PointsEntry {
+    PointsEntry { point_a: on_a.to_array(), point_b: on_b.to_array() }
 }
 
 fn paths(curve: &IntersectionCurve) -> Vec<Vec<[f64; 3]>> {

@@ -2,6 +2,7 @@
 
 mod csv;
 mod json;
+mod near;
 mod pairs;
 
 use std::sync::Arc;
@@ -11,8 +12,9 @@ use solid_scene::Scene;
 use solid3d::glam::DVec3;
 use solid3d::query::IntersectionCurve;
 
-pub use self::csv::CsvRecorder;
+pub use self::csv::{CsvColumns, CsvRecorder};
 pub use json::JsonRecorder;
+pub use near::NearRecorder;
 pub use pairs::PairRecorder;
 
 /// A collision, of objects by their place in the scene; `a` comes before `b`.
@@ -26,6 +28,30 @@ pub struct Hit {
     pub normal: Option<DVec3>,
     /// Where the surfaces meet, if the response tells. Space: world.
     pub curve: Option<Arc<IntersectionCurve>>,
+    /// How deep they are in each other, if the response tells, with the deepest points.
+    pub depth: Option<Depth>,
+}
+
+/// How deep two objects are in each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depth {
+    /// World units.
+    pub depth: f64,
+    /// The deepest point of each. Space: world.
+    pub points: [DVec3; 2],
+}
+
+/// Two objects that are nearer than their clearance, by their place in the scene; `a` comes before `b`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pass {
+    pub a: usize,
+    pub b: usize,
+    /// Their distance; less the depth where they intersect. World units.
+    pub distance: f64,
+    /// The closest, or deepest, point of each. Space: world.
+    pub points: [DVec3; 2],
+    /// From `b` to `a`. Space: world.
+    pub normal: DVec3,
 }
 
 /// A tested frame.
@@ -36,16 +62,31 @@ pub struct Frame<'a> {
     pub time: f64,
     /// In the order of the scene, by the first object, then by the second.
     pub hits: &'a [Hit],
+    /// What is nearer than its clearance, in the same order; `None` when no clearance is asked for.
+    pub near: Option<&'a [Pass]>,
 }
 
 /// The whole, in numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Summary {
     pub frames: u64,
     pub colliding_frames: u64,
     pub collisions: u64,
     /// Different pairs that collide at some time.
     pub pairs: u64,
+    /// What is nearer than its clearance, if one is asked for.
+    #[serde(flatten)]
+    pub near: Option<NearSummary>,
+}
+
+/// What is nearer than its clearance, in numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct NearSummary {
+    pub near_frames: u64,
+    /// Different pairs that are near at some time.
+    pub near_pairs: u64,
+    /// The least distance of any; none without a pair. World units.
+    pub least_distance: Option<f64>,
 }
 
 /// Makes something of the frames.

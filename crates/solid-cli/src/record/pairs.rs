@@ -11,14 +11,16 @@ use super::{Frame, Hit, Recorder, Summary};
 use crate::table::{self, Column, Style};
 use crate::words;
 
-const COLUMNS: [Column; 6] = [
+const COLUMNS: [Column; 5] = [
     Column::Left("a"),
     Column::Left("b"),
     Column::Right("first [s]"),
     Column::Right("last [s]"),
     Column::Right("frames"),
-    Column::Left("where"),
 ];
+/// When some response tells it.
+const DEPTH: Column = Column::Right("deepest");
+const PLACE: Column = Column::Left("where");
 
 /// Keeps one entry per colliding pair, and counts.
 #[derive(Debug, Default)]
@@ -40,6 +42,8 @@ struct Pair {
     frames: u64,
     /// The point at the first time.
     point: Option<DVec3>,
+    /// The greatest depth.
+    depth: Option<f64>,
 }
 
 impl PairRecorder {
@@ -53,7 +57,10 @@ impl PairRecorder {
         if self.pairs.is_empty() {
             return String::new();
         }
-        table::draw(style, &COLUMNS, self.pairs.iter().map(|pair| pair.row(scene))) + "\n"
+        let with_depth = self.pairs.iter().any(|pair| pair.depth.is_some());
+        let depth = with_depth.then_some(DEPTH);
+        let columns: Vec<Column> = COLUMNS.into_iter().chain(depth).chain([PLACE]).collect();
+        table::draw(style, &columns, self.pairs.iter().map(|pair| pair.row(scene, with_depth))) + "\n"
     }
 
     fn count(&mut self, frame: &Frame) {
@@ -62,7 +69,7 @@ impl PairRecorder {
         self.summary.collisions += words::size(frame.hits.len());
         for hit in frame.hits {
             match self.places.entry((hit.a, hit.b)) {
-                Entry::Occupied(place) => self.pairs[*place.get()].extend(frame.time),
+                Entry::Occupied(place) => self.pairs[*place.get()].extend(hit, frame.time),
                 Entry::Vacant(place) => {
                     place.insert(self.pairs.len());
                     self.pairs.push(Pair::new(hit, frame.time));
@@ -85,18 +92,22 @@ impl Recorder for PairRecorder {
 
 impl Pair {
     fn new(hit: &Hit, time: f64) -> Self {
-        Pair { a: hit.a, b: hit.b, first: time, last: time, frames: 1, point: hit.point }
+        let depth = hit.depth.map(|depth| depth.depth);
+        Pair { a: hit.a, b: hit.b, first: time, last: time, frames: 1, point: hit.point, depth }
     }
 
-    fn extend(&mut self, time: f64) {
+    fn extend(&mut self, hit: &Hit, time: f64) {
         self.last = time;
         self.frames += 1;
+        self.depth = self.depth.into_iter().chain(hit.depth.map(|depth| depth.depth)).reduce(f64::max);
     }
 
-    fn row(&self, scene: &Scene) -> Vec<String> {
+    fn row(&self, scene: &Scene, with_depth: bool) -> Vec<String> {
         let [a, b] = [self.a, self.b].map(|object| words::printable(scene.objects()[object].name()));
         let place = self.point.map_or("-".to_owned(), words::point);
-        vec![a, b, words::seconds(self.first), words::seconds(self.last), self.frames.to_string(), place]
+        let depth = with_depth.then(|| self.depth.map_or("-".to_owned(), words::figure));
+        let known = [a, b, words::seconds(self.first), words::seconds(self.last), self.frames.to_string()];
+        known.into_iter().chain(depth).chain([place]).collect()
     }
 }
 
@@ -105,7 +116,7 @@ mod tests {
     use super::*;
 
     fn hit(a: usize, b: usize) -> Hit {
-        Hit { a, b, point: Some(DVec3::X), normal: None, curve: None }
+        Hit { a, b, point: Some(DVec3::X), normal: None, curve: None, depth: None }
     }
 
     #[test]
@@ -113,9 +124,9 @@ mod tests {
         let mut recorder = PairRecorder::default();
         let frames: [&[Hit]; 4] = [&[], &[hit(0, 1), hit(1, 2)], &[], &[hit(0, 1), hit(0, 2)]];
         for (number, hits) in (0..).zip(frames) {
-            recorder.count(&Frame { number, time: number as f64, hits });
+            recorder.count(&Frame { number, time: number as f64, hits, near: None });
         }
-        let expected = Summary { frames: 4, colliding_frames: 2, collisions: 4, pairs: 3 };
+        let expected = Summary { frames: 4, colliding_frames: 2, collisions: 4, pairs: 3, near: None };
         assert_eq!(recorder.summary(), expected);
         let pairs: Vec<_> = recorder.pairs.iter().map(|p| (p.a, p.b, p.first, p.last, p.frames)).collect();
         assert_eq!(pairs, [(0, 1, 1.0, 3.0, 2), (1, 2, 1.0, 1.0, 1), (0, 2, 3.0, 3.0, 1)]);

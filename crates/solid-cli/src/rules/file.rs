@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow};
 use serde::Deserialize;
 use solid3d::Response;
+use solid3d::convex::MAGNITUDE_MAX;
 use toml::Spanned;
 
 use super::pattern::Pattern;
@@ -16,6 +17,7 @@ use crate::text;
 pub struct Rules {
     pub(super) default: Option<Response>,
     pub(super) solid: Vec<Names>,
+    pub(super) clearance: Option<f64>,
     pub(super) objects: Vec<ObjectRule>,
     pub(super) pairs: Vec<PairRule>,
 }
@@ -33,6 +35,7 @@ pub(super) struct PairRule {
     pub a: Names,
     pub b: Names,
     pub response: Response,
+    pub clearance: Option<f64>,
 }
 
 /// A pattern, with where it stands.
@@ -63,6 +66,13 @@ impl Rules {
         self.solid.extend(patterns.iter().map(names));
     }
 
+    /// Whether the response of some pair may be depth; `default` overrides that of the rules.
+    pub fn tell_depth(&self, default: Option<Response>) -> bool {
+        let of_objects = self.objects.iter().map(|rule| rule.response);
+        let of_pairs = self.pairs.iter().map(|rule| rule.response);
+        default.or(self.default).into_iter().chain(of_objects).chain(of_pairs).any(|r| r == Response::Depth)
+    }
+
     /// The rules of a text; `path` is where it is from, for messages.
     pub(super) fn parse(path: &Path, text: &str) -> Result<Rules> {
         let source = Source { path: path.to_owned(), text };
@@ -75,9 +85,16 @@ impl Rules {
             a: source.names(rule.a),
             b: source.names(rule.b),
             response: rule.response.into(),
+            clearance: rule.clearance.map(Spanned::into_inner),
         };
+        for clearance in
+            written.pair.iter().filter_map(|pair| pair.clearance.as_ref()).chain(&written.clearance)
+        {
+            source.check_clearance(clearance)?;
+        }
         Ok(Rules {
             default: written.default.map(Response::from),
+            clearance: written.clearance.map(Spanned::into_inner),
             solid: written.solid.into_iter().map(|text| source.names(text)).collect(),
             objects: written.object.into_iter().map(object).collect(),
             pairs: written.pair.into_iter().map(pair).collect(),
@@ -97,6 +114,15 @@ impl Source<'_> {
         Names::new(text.into_inner(), place)
     }
 
+    fn check_clearance(&self, clearance: &Spanned<f64>) -> Result<()> {
+        let value = *clearance.get_ref();
+        if (0.0..=MAGNITUDE_MAX).contains(&value) {
+            return Ok(());
+        }
+        let place = self.place(clearance.span());
+        Err(anyhow!("{place}: clearance is {value}; expected a length from 0 to {MAGNITUDE_MAX:e}"))
+    }
+
     fn fault(&self, error: &toml::de::Error) -> anyhow::Error {
         let place = error.span().map_or_else(|| self.path.display().to_string(), |span| self.place(span));
         anyhow!("{place}: {}", error.message().replace('\n', "; "))
@@ -113,6 +139,7 @@ impl Source<'_> {
 #[serde(deny_unknown_fields)]
 struct Written {
     default: Option<WrittenResponse>,
+    clearance: Option<Spanned<f64>>,
     #[serde(default)]
     solid: Vec<Spanned<String>>,
     #[serde(default)]
@@ -134,6 +161,7 @@ struct WrittenPair {
     a: Spanned<String>,
     b: Spanned<String>,
     response: WrittenResponse,
+    clearance: Option<Spanned<f64>>,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -144,6 +172,7 @@ enum WrittenResponse {
     Witness,
     Smart,
     Curve,
+    Depth,
 }
 
 impl From<WrittenResponse> for Response {
@@ -154,6 +183,7 @@ impl From<WrittenResponse> for Response {
             WrittenResponse::Witness => Response::Witness,
             WrittenResponse::Smart => Response::Smart,
             WrittenResponse::Curve => Response::Curve,
+            WrittenResponse::Depth => Response::Depth,
         }
     }
 }
@@ -190,11 +220,16 @@ mod tests {
             ),
             (
                 "\ncolour = 1",
-                "rules.toml:2: unknown field `colour`, expected one of `default`, `solid`, `object`, `pair`",
+                "rules.toml:2: unknown field `colour`, expected one of `default`, `clearance`, `solid`, `object`, `pair`",
             ),
             ("[[object]]\nname = \"x\"", "rules.toml:1: missing field `response`"),
             ("[[pair]]\na = \"x\"\nb = 3\nresponse = \"simple\"", "rules.toml:3: invalid type: integer"),
             ("[[pair]\n", "rules.toml:1: "),
+            ("\nclearance = -0.5", "rules.toml:2: clearance is -0.5; expected a length from 0 to 1e100"),
+            (
+                "[[pair]]\na = \"x\"\nb = \"y\"\nresponse = \"simple\"\nclearance = nan",
+                "rules.toml:5: clearance is NaN; expected a length",
+            ),
             ("object = 3", "rules.toml:1: invalid type: integer"),
         ] {
             let error = parse(text).expect_err(text).to_string();

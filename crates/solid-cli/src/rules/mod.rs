@@ -1,8 +1,9 @@
 //! The response table: which pairs matter, and what is wanted of them, by the names of the objects.
 //!
 //! ```toml
-//! default = "witness"        # ignore, simple, witness, smart or curve
+//! default = "witness"        # ignore, simple, witness, smart, curve or depth
 //! solid = ["ship*"]          # closed meshes that are to be solid
+//! clearance = 0.05           # pairs that come nearer are reported
 //!
 //! [[object]]                 # all pairs with the object
 //! name = "mine*"
@@ -12,6 +13,7 @@
 //! a = "ship*"
 //! b = "sweeper"
 //! response = "smart"
+//! clearance = 0.2            # of this pair alone
 //! ```
 //!
 //! `*` stands for any characters, `?` for one. As in the thesis (section 6.2), a rule for the pair overrides one for an
@@ -24,4 +26,4 @@ mod pattern;
 mod table;
 
 pub use file::Rules;
-pub use table::{Objects, apply, solids};
+pub use table::{Objects, apply, set_clearances, solids};

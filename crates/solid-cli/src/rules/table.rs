@@ -54,6 +54,29 @@ pub fn apply(
     Ok(index.into_warnings())
 }
 
+/// Sets the clearances of a world; `default` overrides that of the rules. Returns whether there is any. Of the rules for a pair the last
+/// that has a clearance holds. [`apply`] warns of patterns that match nothing.
+pub fn set_clearances(
+    rules: &Rules,
+    default: Option<f64>,
+    objects: &Objects,
+    world: &mut World,
+) -> Result<bool> {
+    let default = default.or(rules.clearance);
+    world.set_clearance(default.unwrap_or(0.0))?;
+    let mut index = NameIndex::new(objects.names);
+    let mut found = default.is_some();
+    let mut count = PairCount::default();
+    for rule in &rules.pairs {
+        let Some(clearance) = rule.clearance else { continue };
+        found = true;
+        for (a, b) in Paired::find(rule, &mut index).pairs(objects.ids, &mut count)? {
+            world.set_pair_clearance(a, b, clearance)?;
+        }
+    }
+    Ok(found)
+}
+
 fn is_universal(rule: &PairRule) -> bool {
     rule.a.pattern.is_universal() && rule.b.pattern.is_universal()
 }
@@ -68,6 +91,34 @@ struct Paired<'a> {
 impl<'a> Paired<'a> {
     fn find(rule: &'a PairRule, index: &mut NameIndex) -> Self {
         Paired { rule, these: index.matching(&rule.a), those: index.matching(&rule.b) }
+    }
+
+    /// The pairs of objects, unless they make too many.
+    fn pairs(
+        &self,
+        ids: &'a [ObjectId],
+        count: &mut PairCount,
+    ) -> Result<impl Iterator<Item = (ObjectId, ObjectId)> + use<'_, 'a>> {
+        count.add(self)?;
+        Ok(self.these.iter().flat_map(move |&a| {
+            let others = self.those.iter().filter(move |&&b| b != a);
+            others.map(move |&b| (ids[a], ids[b]))
+        }))
+    }
+}
+
+/// How many pairs of objects rules for pairs made.
+#[derive(Default)]
+struct PairCount(usize);
+
+impl PairCount {
+    fn add(&mut self, Paired { rule, these, those }: &Paired) -> Result<()> {
+        self.0 = self.0.saturating_add(these.len().saturating_mul(those.len()));
+        if self.0 > PAIRS_MAX {
+            let place = &rule.a.place;
+            bail!("{place}: the rules for pairs make {} pairs so far; the limit is {PAIRS_MAX}", self.0);
+        }
+        Ok(())
     }
 }
 
@@ -86,17 +137,10 @@ fn set_objects(named: &[(Vec<usize>, Response)], objects: &Objects, world: &mut 
 
 /// Sets the responses of pairs, later rules over earlier ones.
 fn set_pairs(paired: &[Paired], ids: &[ObjectId], world: &mut World) -> Result<()> {
-    let mut count = 0usize;
-    for Paired { rule, these, those } in paired {
-        count = count.saturating_add(these.len().saturating_mul(those.len()));
-        if count > PAIRS_MAX {
-            let place = &rule.a.place;
-            bail!("{place}: the rules for pairs make {count} pairs so far; the limit is {PAIRS_MAX}");
-        }
-        for &a in these {
-            for &b in those.iter().filter(|&&b| b != a) {
-                world.set_pair_response(ids[a], ids[b], rule.response)?;
-            }
+    let mut count = PairCount::default();
+    for paired in paired {
+        for (a, b) in paired.pairs(ids, &mut count)? {
+            world.set_pair_response(a, b, paired.rule.response)?;
         }
     }
     Ok(())

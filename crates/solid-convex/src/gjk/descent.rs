@@ -16,6 +16,13 @@ pub(crate) enum Goal {
         /// The relative error.
         tolerance: f64,
     },
+    /// The same, or as soon as the distance is known to be more than a bound.
+    DistanceWithin {
+        /// The relative error.
+        tolerance: f64,
+        /// The bound, in the difference's unit of length.
+        bound: f64,
+    },
 }
 
 /// How a descent ended.
@@ -36,6 +43,8 @@ pub(crate) struct Descent {
     pub v: DVec3,
     /// The simplex; may be empty when the search for an axis ends with the first.
     pub simplex: Simplex,
+    /// Whether the objects are further apart than the goal asked for; `v` is then not the closest point.
+    pub beyond: bool,
 }
 
 /// Iterations after which a descent gives up. Polytopes take fewer than 20; quadrics take some 4 for each digit of the
@@ -48,6 +57,10 @@ const PROGRESS_MIN: f64 = 4.0 * f64::EPSILON;
 /// No step lengthens `v`, but one on slivers may by the rounding error. Beyond this much, squared, rounding hid which part of
 /// the simplex is the closest, and the step is taken back.
 const GROWTH_MAX: f64 = 4.0;
+
+/// A lower bound of the distance must exceed the bound on it by this much to end a descent: what a descent to its end would call the
+/// distance may be below the lower bound by the rounding error. In the difference's unit of length.
+const BOUND_MARGIN: f64 = 2.0 * SUPPORT_ERROR;
 
 /// How often a descent may restart from a recomputed normal: each time it must find a new support point.
 const REFINEMENTS_MAX: usize = 8;
@@ -94,19 +107,21 @@ where
     for _ in 0..iterations_max {
         let p = difference.support_against(v);
         if goal.reached(v, &p, &mut mu, !simplex.is_empty()) {
-            return Descent { end: End::Separated, v, simplex };
+            return Descent { end: End::Separated, v, simplex, beyond: goal.is_exceeded(mu) };
         }
         let (members_before, v_before) = (simplex.members(), v);
         let mut stalled = simplex.contains(&p);
         if !stalled {
             simplex.push(p);
             match simplex.reduce() {
-                Reduced::ContainsOrigin => return Descent { end: End::Inside, v: DVec3::ZERO, simplex },
+                Reduced::ContainsOrigin => {
+                    return Descent { end: End::Inside, v: DVec3::ZERO, simplex, beyond: false };
+                }
                 Reduced::Closest(closest) => v = closest,
             }
             let length_squared = v.length_squared();
             if length_squared <= SUPPORT_ERROR * SUPPORT_ERROR {
-                return Descent { end: End::Undecided, v, simplex };
+                return Descent { end: End::Undecided, v, simplex, beyond: false };
             }
             if members_before.any() {
                 let before = v_before.length_squared();
@@ -137,22 +152,29 @@ where
         }
     }
     let end = if mu > 0.0 { End::Separated } else { End::Undecided };
-    Descent { end, v, simplex }
+    Descent { end, v, simplex, beyond: false }
 }
 
 impl Goal {
     /// Whether the support point `p` against `v` ends the search; keeps the lower bound of the distance.
     fn reached(self, v: DVec3, p: &SupportPoint, mu: &mut f64, v_in_difference: bool) -> bool {
+        let mut near_enough = |tolerance: f64| {
+            let length = v.length();
+            if certifies(v, p.w) {
+                *mu = mu.max(v.dot(p.w) / length);
+            }
+            v_in_difference && *mu > 0.0 && length - *mu <= tolerance * length
+        };
         match self {
             Goal::Separation => certifies(v, p.w),
-            Goal::Distance { tolerance } => {
-                let length = v.length();
-                if certifies(v, p.w) {
-                    *mu = mu.max(v.dot(p.w) / length);
-                }
-                v_in_difference && *mu > 0.0 && length - *mu <= tolerance * length
-            }
+            Goal::Distance { tolerance } => near_enough(tolerance),
+            Goal::DistanceWithin { tolerance, .. } => near_enough(tolerance) || self.is_exceeded(*mu),
         }
+    }
+
+    /// Whether a lower bound of the distance is more than was asked for.
+    fn is_exceeded(self, mu: f64) -> bool {
+        matches!(self, Goal::DistanceWithin { bound, .. } if mu > bound + BOUND_MARGIN)
     }
 }
 

@@ -50,6 +50,43 @@ where
     Closest::of(&descent, &difference)
 }
 
+/// The closest points of two placed convex objects, if they are at most `bound` apart, in world units; `None` if they are further.
+///
+/// The same as [`closest_points`], to the bit, of which only distances up to the bound are taken, but for less work: the search ends as
+/// soon as a lower bound of the distance exceeds the bound (the mu of Algorithm 4.1 of the thesis), which for objects that
+/// are far apart is after the first support point. A bound of infinity is none.
+///
+/// ```
+/// use solid_convex::{Cuboid, gjk};
+/// use glam::{DAffine3, DVec3};
+/// let block = Cuboid::new(DVec3::ONE)?;
+/// let right = DAffine3::from_translation(DVec3::new(3.0, 0.0, 0.0));
+/// let within = |bound: f64| gjk::closest_points_within(&block, &DAffine3::IDENTITY, &block, &right, bound);
+/// assert_eq!(within(2.0).map(|closest| closest.distance), Some(2.0));
+/// assert_eq!(within(1.999), None);
+/// # Ok::<(), solid_convex::SizeError>(())
+/// ```
+pub fn closest_points_within<A, B>(
+    a: &A,
+    placement_a: &DAffine3,
+    b: &B,
+    placement_b: &DAffine3,
+    bound: f64,
+) -> Option<Closest>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let difference = Difference::new(a, placement_a, b, placement_b);
+    let goal = Goal::DistanceWithin { tolerance: DISTANCE_TOLERANCE, bound: bound * difference.scale() };
+    let descent = descend(&difference, goal);
+    if descent.beyond {
+        return None;
+    }
+    let closest = Closest::of(&descent, &difference);
+    (closest.distance <= bound).then_some(closest)
+}
+
 impl Closest {
     /// What a descent for the distance found.
     pub(super) fn of<A, B>(descent: &Descent, difference: &Difference<A, B>) -> Closest

@@ -23,7 +23,7 @@ pub use cast::{CAST_ERROR, Impact, cast};
 pub use coherent::{Coherent, Memory};
 pub(crate) use descent::{End, Goal, descend};
 pub(crate) use distance::DISTANCE_TOLERANCE;
-pub use distance::{Closest, closest_points};
+pub use distance::{Closest, closest_points, closest_points_within};
 pub use intersection::{Outcome, Witness, intersection, separates};
 
 /// Objects nearer to each other than this, or overlapping less, relative to the size of the data, may be reported

@@ -8,7 +8,7 @@ use glam::DVec3;
 use solid_convex::{Closest, Penetration, Support, Witness, gjk, unit_scale};
 
 use super::depth::{Deepest, of_common};
-use super::table::{PlacedConvex, axis, closest, meetings, penetration};
+use super::table::{PlacedConvex, axis, closest, closest_within, meetings, penetration};
 use super::{Placed, Scratch};
 use crate::shape::Class;
 
@@ -39,8 +39,13 @@ pub(crate) fn approach(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scra
             pairs.iter().for_each(|&pair| deepest.take(pair, with_primitives(before, pair, of_common)));
             deep(deepest.found().expect("there is a pair"))
         }
-        _ => of_wholes(before, scratch),
+        _ => as_they_are(before, scratch),
     }
+}
+
+/// How near two shapes are to each other as they are, or how deep they are in each other; `None` when they are further apart than a bound.
+pub(crate) fn proximity(a: Placed, b: Placed, bound: f64, scratch: &mut Scratch) -> Option<Approach> {
+    closest_within(a, b, bound, scratch).map(|closest| of_closest([a, b], closest, scratch))
 }
 
 /// The pairs of primitives that meet now. None when the whole shapes are to be looked at: they are convex, one is another than in the
@@ -54,9 +59,22 @@ fn pairs_to_look_at(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch
     meetings(now[0], now[1], scratch).0
 }
 
-/// The closest points of the whole shapes, or the deepest.
-fn of_wholes([a, b]: [Placed; 2], scratch: &mut Scratch) -> Approach {
+/// The same without a bound.
+fn as_they_are([a, b]: [Placed; 2], scratch: &mut Scratch) -> Approach {
     let closest = closest(a, b, scratch);
+    of_closest([a, b], closest, scratch)
+}
+
+/// How deep two shapes are in each other; of shapes that are apart, or hardly touch, the closest points with distance 0.
+pub(crate) fn overlap(a: Placed, b: Placed, scratch: &mut Scratch) -> Approach {
+    match penetration(a, b, scratch) {
+        Some(found) => deep(found),
+        None => Approach { distance: 0.0, ..as_they_are([a, b], scratch) },
+    }
+}
+
+/// The closest points of the whole shapes, or the deepest.
+fn of_closest([a, b]: [Placed; 2], closest: Closest, scratch: &mut Scratch) -> Approach {
     if closest.distance > 0.0 {
         return apart([a, b], closest);
     }

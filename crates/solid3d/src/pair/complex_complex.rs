@@ -112,22 +112,29 @@ fn contained(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Optio
     Some(Witness { on_a, on_b: relative.a_to_b.transform_point3(on_a) })
 }
 
-pub(super) fn closest(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Closest {
+pub(super) fn closest_within(
+    a: PlacedComplex,
+    b: PlacedComplex,
+    bound: f64,
+    scratch: &mut Scratch,
+) -> Option<Closest> {
     // Whether they intersect is decided as everywhere else; the distance is 0 then.
     if let Relation::Common(points) = intersection(a, b, scratch) {
-        return Closest { distance: 0.0, points };
+        return Some(Closest { distance: 0.0, points });
     }
-    let (i, j) = closest_pair(a, b, scratch);
-    closest_of(a, i, b, j)
+    let (i, j) = closest_pair(a, b, bound, scratch)?;
+    Some(closest_of(a, i, b, j)).filter(|closest| closest.distance <= bound)
 }
 
-/// The primitives of two complex shapes that are closest to each other, up to [`CONFIRMED`].
-fn closest_pair(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> (u32, u32) {
-    let Frame { relative, common, scale, stretch: [of_a, of_b] } = frame(a, b);
+/// The primitives of two complex shapes that are closest to each other, up to [`CONFIRMED`]; of shapes that are farther apart
+/// than a bound, `None` or some pair.
+fn closest_pair(a: PlacedComplex, b: PlacedComplex, bound: f64, scratch: &mut Scratch) -> Option<(u32, u32)> {
+    let frame = frame(a, b);
+    // The best distance so far is kept in the common frame, as the bounds are.
+    let mut best = frame.beyond(bound);
+    let Frame { relative, common, scale, stretch: [of_a, of_b] } = frame;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     rows.iter_mut().for_each(Row::clear);
-    // The best distance so far is kept in the common frame, as the bounds are.
-    let mut best = f64::INFINITY;
     let metric = metric(&of_a, &of_b);
     let mut approach =
         Approach { a, b, common: &common, scale, rows, primitive_tests, axis: DVec3::ZERO, answer: None };
@@ -141,7 +148,7 @@ fn closest_pair(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> (u
         traversal,
         &mut approach,
     );
-    approach.answer.expect("a complex shape has a primitive, and every distance is finite")
+    approach.answer
 }
 
 /// A distance of triangles is taken for right when a lower bound comes as near, in the common frame, where the size of the

@@ -130,10 +130,15 @@ impl Leaves<()> for Meeting<'_> {
     }
 }
 
-pub(super) fn closest(complex: PlacedComplex, convex: PlacedConvex, scratch: &mut Scratch) -> Closest {
+pub(super) fn closest_within(
+    complex: PlacedComplex,
+    convex: PlacedConvex,
+    bound: f64,
+    scratch: &mut Scratch,
+) -> Option<Closest> {
     let (query, frame) = convex_in_complex(complex, convex);
     if let Some(points) = contained(complex.0, convex.0, &frame, scratch) {
-        return Closest { distance: 0.0, points };
+        return Some(Closest { distance: 0.0, points });
     }
     let Scratch { traversal, rows: [row, _], primitive_tests, .. } = scratch;
     row.clear();
@@ -145,12 +150,12 @@ pub(super) fn closest(complex: PlacedComplex, convex: PlacedConvex, scratch: &mu
         sigma_min_b: 0.0,
     };
     // The best distance so far is kept in the common frame, as the bounds are.
-    let mut best = f64::INFINITY;
+    let mut best = frame.beyond(bound);
     let shadow = Shadow::new(convex.0, &frame, ROUNDINGS);
     let mut approach =
         Approach { complex, convex, frame: &frame, shadow, row, primitive_tests, answer: None };
     complex.0.tree().nearest_on(level(), &query, &metric, &mut best, traversal, &mut approach);
-    approach.answer.expect("a complex shape has a primitive, and every distance is finite")
+    approach.answer.filter(|closest| closest.distance <= bound)
 }
 
 /// Looks for the primitive closest to the convex shape.

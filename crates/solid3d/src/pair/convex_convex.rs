@@ -14,9 +14,14 @@ pub(super) fn intersection(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scrat
     }
 }
 
-pub(super) fn closest(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Closest {
+pub(super) fn closest_within(
+    a: PlacedConvex,
+    b: PlacedConvex,
+    bound: f64,
+    scratch: &mut Scratch,
+) -> Option<Closest> {
     scratch.primitive_tests += 1;
-    gjk::closest_points(a.0, a.1, b.0, b.1)
+    gjk::closest_points_within(a.0, a.1, b.0, b.1, bound)
 }
 
 pub(super) fn axis(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Option<DVec3> {

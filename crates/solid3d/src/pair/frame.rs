@@ -1,7 +1,7 @@
 //! How two placed spaces lie to each other, with the error of it.
 
 use glam::{DAffine3, DMat3, DVec3};
-use solid_convex::unit_scale;
+use solid_convex::{gjk, unit_scale};
 
 use super::reach::image_reach;
 use crate::placement::{inverse_linear, row_norm};
@@ -60,6 +60,12 @@ impl Frame {
             scale,
             stretch: [Stretch::new(&inverse_a, scale), Stretch::new(&inverse_b, scale)],
         }
+    }
+
+    /// A length of the common frame beyond a world length and the error of what is computed there: a search for what is below it
+    /// finds all up to the world length. The size of the data is at most two there.
+    pub fn beyond(&self, length: f64) -> f64 {
+        length * self.scale * (1.0 + gjk::TOUCHING_ERROR) + 2.0 * gjk::TOUCHING_ERROR
     }
 }
 

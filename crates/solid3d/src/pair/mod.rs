@@ -32,7 +32,7 @@ use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
 
-pub(crate) use approach::{Approach, approach};
+pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
 pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
@@ -42,7 +42,7 @@ pub(crate) use ray::{Hits, Wanted, entry, ray_hits};
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};
-pub(crate) use table::{axis, closest, intersection, intersects, penetration};
+pub(crate) use table::{axis, closest, closest_within, intersection, intersects, penetration};
 
 use crate::placement::inverse_linear;
 use crate::shape::{Class, Shape};

@@ -63,16 +63,31 @@ pub(crate) fn intersection(a: Placed, b: Placed, scratch: &mut Scratch) -> Relat
 
 /// The closest points.
 pub(crate) fn closest(a: Placed, b: Placed, scratch: &mut Scratch) -> Closest {
+    let closest = closest_within(a, b, f64::INFINITY, scratch);
+    closest.expect("every shape has a primitive, and every distance is finite")
+}
+
+/// The closest points, if they are at most so far apart.
+pub(crate) fn closest_within(a: Placed, b: Placed, bound: f64, scratch: &mut Scratch) -> Option<Closest> {
     if let Some(closest) = closed_form::closest(a, b) {
         scratch.primitive_tests += 1;
-        return closest;
+        return (closest.distance <= bound).then_some(closest);
     }
-    const ROW: Row<Closest> = Row {
-        convex_convex: convex_convex::closest,
-        complex_convex: complex_convex::closest,
-        complex_complex: complex_complex::closest,
-    };
-    ROW.apply(a, b, scratch)
+    let (at_a, at_b) = (a.placement, b.placement);
+    match (a.shape.class(), b.shape.class()) {
+        (Class::Convex(a), Class::Convex(b)) => {
+            convex_convex::closest_within((a, at_a), (b, at_b), bound, scratch)
+        }
+        (Class::Complex(a), Class::Convex(b)) => {
+            complex_convex::closest_within((a, at_a), (b, at_b), bound, scratch)
+        }
+        (Class::Convex(a), Class::Complex(b)) => {
+            complex_convex::closest_within((b, at_b), (a, at_a), bound, scratch).mirrored()
+        }
+        (Class::Complex(a), Class::Complex(b)) => {
+            complex_complex::closest_within((a, at_a), (b, at_b), bound, scratch)
+        }
+    }
 }
 
 /// A separating axis of the shapes' convex hulls.

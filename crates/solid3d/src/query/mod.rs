@@ -11,6 +11,7 @@
 //! [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR).
 
 mod cast;
+mod distance;
 mod penetration;
 mod point;
 mod ray;
@@ -26,6 +27,7 @@ pub use crate::pair::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 use crate::placement;
 use crate::shape::Shape;
 pub use cast::{ShapeCast, cast_shape};
+pub use distance::distance_within;
 pub use penetration::{Penetration, penetration};
 pub use point::{ClosestPoint, closest_point, contains_point, winding_number};
 pub use ray::{cast_ray, cast_ray_all, ray_meets};

@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::findings::{FindingId, Findings};
+use super::near::{Near, Nearness};
 #[cfg(feature = "rayon")]
 use super::object::Object;
 use super::object::Staleness;
@@ -48,6 +49,8 @@ pub(super) struct Candidates {
     queue: Vec<PairId>,
     /// How many matter.
     pub count: u64,
+    /// What the last search for near pairs said, by the broad phase's pair; as long as that search needed.
+    nearness: Vec<Nearness>,
 }
 
 impl Candidates {
@@ -57,6 +60,7 @@ impl Candidates {
         if slot >= self.slots.len() {
             resize(&mut self.slots, slot + 1, None);
         }
+        self.stir_nearness(pair);
         let candidate = Candidate { a, b, axis: None, found: None, matters: false, queued: true };
         self.slots[slot] = Some(candidate);
         push(&mut self.queue, pair);
@@ -65,6 +69,7 @@ impl Candidates {
     /// Forgets a candidate and its collision.
     pub fn end(&mut self, pair: PairId, findings: &mut Findings) {
         if let Some(candidate) = self.slots[pair as usize].take() {
+            self.stir_nearness(pair);
             self.count -= u64::from(candidate.matters);
             if let Some(found) = candidate.found {
                 findings.remove(found);
@@ -74,6 +79,7 @@ impl Candidates {
 
     /// Has a candidate examined by the next test.
     pub fn enqueue(&mut self, pair: PairId) {
+        self.stir_nearness(pair);
         if let Some(candidate) = &mut self.slots[pair as usize]
             && !std::mem::replace(&mut candidate.queued, true)
         {
@@ -103,6 +109,41 @@ impl Candidates {
                 pairs.push(pair);
             }
         }
+    }
+
+    /// Notes that a candidate may be nearer or further than it was.
+    fn stir_nearness(&mut self, pair: PairId) {
+        if let Some(nearness) = self.nearness.get_mut(pair as usize) {
+            *nearness = Nearness::Unknown;
+        }
+    }
+
+    /// Forgets how near all candidates are.
+    pub fn forget_nearness(&mut self) {
+        self.nearness.clear();
+    }
+
+    /// Puts into `pairs` the candidates of which it is not known how near they are.
+    pub fn unknown(&mut self, pairs: &mut Vec<PairId>) {
+        pairs.clear();
+        self.nearness.resize(self.slots.len(), Nearness::Unknown);
+        for (pair, (slot, nearness)) in (0..).zip(self.slots.iter().zip(&self.nearness)) {
+            if let (Some(_), Nearness::Unknown) = (slot, nearness) {
+                pairs.push(pair);
+            }
+        }
+    }
+
+    pub fn set_nearness(&mut self, pair: PairId, nearness: Nearness) {
+        self.nearness[pair as usize] = nearness;
+    }
+
+    /// The candidates that are near, in any order.
+    pub fn near(&self) -> impl Iterator<Item = &Near> {
+        self.nearness.iter().filter_map(|nearness| match nearness {
+            Nearness::Near(near) => Some(near),
+            Nearness::Unknown | Nearness::Far => None,
+        })
     }
 
     pub fn get(&self, pair: PairId) -> &Candidate {
@@ -156,11 +197,11 @@ impl World {
             self.update_boxes_on_threads();
             return self.broad.flush();
         }
-        let Self { broad, objects, stirred, .. } = self;
+        let Self { broad, objects, stirred, clearances, .. } = self;
         for &id in stirred.iter() {
             if let Some(object) = objects.get_mut(id).filter(|object| object.staleness == Staleness::Bounds) {
                 let bounds = object.bounds();
-                broad.update(super::proxy(id), object.set_bounds(bounds));
+                broad.update(super::proxy(id), clearances.grown(object.set_bounds(bounds)));
             }
         }
         broad.flush();
@@ -168,7 +209,7 @@ impl World {
 
     #[cfg(feature = "rayon")]
     fn update_boxes_on_threads(&mut self) {
-        let Self { broad, objects, stirred, workers, new_bounds, .. } = self;
+        let Self { broad, objects, stirred, clearances, workers, new_bounds, .. } = self;
         for batch in stirred.chunks(BATCH) {
             workers.map(batch, new_bounds, |&id, _| {
                 let object = objects.get(id).filter(|object| object.staleness == Staleness::Bounds);
@@ -176,7 +217,8 @@ impl World {
             });
             for (&id, bounds) in batch.iter().zip(new_bounds.drain(..)) {
                 if let Some(bounds) = bounds {
-                    broad.update(super::proxy(id), objects[id].set_bounds(bounds));
+                    let bounds = objects[id].set_bounds(bounds);
+                    broad.update(super::proxy(id), clearances.grown(bounds));
                 }
             }
         }

@@ -23,6 +23,7 @@ pub struct Collision {
 
 /// What is known of a collision, by the response of the pair. Cheap to clone.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Contact {
     /// Nothing more ([`Response::Simple`]).
     Simple,
@@ -69,6 +70,20 @@ pub enum Contact {
         /// shapes is round (sphere, cone, cylinder, capsule), when a solid contains the other object, or on the way.
         curve: Arc<IntersectionCurve>,
     },
+    /// How deep the objects are in each other ([`Response::Depth`]), as [`query::penetration`](crate::query::penetration) gives it.
+    ///
+    /// Of objects that collided [on the way](When::OnTheWay) and are apart now, the depth is 0, the points are the closest now, and
+    /// the normal is the direction between these.
+    Depth {
+        /// The length of the shortest translation that leaves them touching, at least 0. World units.
+        depth: f64,
+        /// The unit vector along which `a` is to move by the depth, from `b` to `a`. Space: world.
+        normal: DVec3,
+        /// The point of `a` that is deepest in `b`. Space: world.
+        point_on_a: DVec3,
+        /// The point of `b` that is deepest in `a`. Space: world.
+        point_on_b: DVec3,
+    },
 }
 
 impl Contact {
@@ -98,6 +113,14 @@ impl Contact {
         }
     }
 
+    /// How deep two objects are in each other as they are.
+    pub(super) fn depth(a: Placed, b: Placed, scratch: &mut Scratch) -> Contact {
+        let Approach { points, distance, normal } = pair::overlap(a, b, scratch);
+        let point_on_a = a.placement.transform_point3(points.on_a);
+        let point_on_b = b.placement.transform_point3(points.on_b);
+        Contact::Depth { depth: distance.abs(), normal, point_on_a, point_on_b }
+    }
+
     /// Where the surfaces of two objects meet; a common point is known.
     pub(super) fn curve(a: Placed, b: Placed, witness: &Witness, scratch: &mut Scratch) -> Contact {
         // What has no facets has no curve.
@@ -108,21 +131,43 @@ impl Contact {
 }
 
 impl Collision {
-    /// Where: the common point of a witness, the middle of the closest points of smart response, the first point of a curve;
-    /// in the world.
+    /// Where: the common point of a witness, the middle of the closest points of smart response, or of the deepest points, the first
+    /// point of a curve; in the world.
     pub fn point(&self) -> Option<DVec3> {
         match self.contact {
             Contact::Simple => None,
             Contact::Witness { point, .. } | Contact::Curve { point, .. } => Some(point),
-            Contact::Smart { point_on_a, point_on_b, .. } => Some(0.5 * point_on_a + 0.5 * point_on_b),
+            Contact::Smart { point_on_a, point_on_b, .. } | Contact::Depth { point_on_a, point_on_b, .. } => {
+                Some(0.5 * point_on_a + 0.5 * point_on_b)
+            }
         }
     }
 
-    /// The approximate normal of the contact, a unit vector from `b` to `a`: of smart response.
+    /// The approximate normal of the contact, a unit vector from `b` to `a`: of smart response, and of depth.
     pub fn normal(&self) -> Option<DVec3> {
         match self.contact {
-            Contact::Smart { normal, .. } => Some(normal),
+            Contact::Smart { normal, .. } | Contact::Depth { normal, .. } => Some(normal),
             Contact::Simple | Contact::Witness { .. } | Contact::Curve { .. } => None,
+        }
+    }
+
+    /// How deep the objects are in each other, if the response asked for it ([`Response::Depth`]). World units.
+    ///
+    /// ```
+    /// use solid3d::{Response, Shape, World, glam::{DAffine3, DVec3}};
+    /// let mut world = World::new();
+    /// world.set_default_response(Response::Depth);
+    /// let block = Shape::cuboid([2.0, 2.0, 2.0])?;
+    /// world.add(&block, DAffine3::IDENTITY)?;
+    /// world.add(&block, DAffine3::from_translation(DVec3::Y * 1.75))?;
+    /// let collisions = world.test();
+    /// assert_eq!((collisions[0].depth(), collisions[0].normal()), (Some(0.25), Some(-DVec3::Y)));
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn depth(&self) -> Option<f64> {
+        match self.contact {
+            Contact::Depth { depth, .. } => Some(depth),
+            _ => None,
         }
     }
 
@@ -142,7 +187,7 @@ impl Collision {
     pub fn curve(&self) -> Option<&Arc<IntersectionCurve>> {
         match &self.contact {
             Contact::Curve { curve, .. } => Some(curve),
-            Contact::Simple | Contact::Witness { .. } | Contact::Smart { .. } => None,
+            _ => None,
         }
     }
 
@@ -153,6 +198,7 @@ impl Collision {
             Contact::Witness { .. } => Response::Witness,
             Contact::Smart { .. } => Response::Smart,
             Contact::Curve { .. } => Response::Curve,
+            Contact::Depth { .. } => Response::Depth,
         }
     }
 }

@@ -3,10 +3,12 @@
 //! It contains no geometry: what two shapes do is the algorithm table's business, which boxes overlap the broad phase's.
 
 mod candidates;
+mod clearance;
 mod collision;
 mod event;
 mod findings;
 mod motion;
+mod near;
 mod object;
 mod options;
 mod ordered;
@@ -23,6 +25,7 @@ use slotmap::{Key, SlotMap};
 pub use collision::{Collision, Contact};
 pub use event::{Event, EventKind};
 pub use motion::{Motion, When};
+pub use near::Near;
 pub use object::ObjectId;
 pub use options::{Boxes, WorldOptions};
 pub use rays::ObjectHit;
@@ -36,6 +39,7 @@ use crate::error::{Error, Result};
 use crate::placement;
 use crate::shape::Shape;
 use candidates::{Candidates, PairKey};
+use clearance::Clearances;
 use findings::Findings;
 use object::{Object, Staleness};
 use response::ResponseTable;
@@ -74,6 +78,7 @@ pub struct World {
     /// How many objects were ever added: the creation order.
     added: u64,
     responses: ResponseTable,
+    clearances: Clearances,
     broad: Box<dyn BroadPhase>,
     boxes: Boxes,
     /// Of objects that are added.
@@ -120,6 +125,7 @@ impl World {
             by_proxy: Vec::new(),
             added: 0,
             responses: ResponseTable::new(options.default_response),
+            clearances: Clearances::default(),
             broad: options.broad_phase.build(),
             boxes: options.boxes,
             motion: options.motion,
@@ -168,7 +174,7 @@ impl World {
         }
         let mut object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
         let bounds = object.bounds();
-        let bounds = object.set_bounds(bounds);
+        let bounds = self.clearances.grown(object.set_bounds(bounds));
         let id = self.objects.insert(object);
         self.added += 1;
         self.stale = true;

@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 
 /// What is wanted of the collisions of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Response {
     /// Nothing: the pair is not tested.
     Ignore,
@@ -24,6 +25,9 @@ pub enum Response {
     /// boxes and convex hulls. Other kinds give a common point. Costs more than the others: all pairs of primitives are
     /// examined, not only up to the first that meets.
     Curve,
+    /// How deep they are in each other as they are now, the shortest way out, and the deepest points
+    /// ([`query::penetration`](crate::query::penetration)).
+    Depth,
 }
 
 /// Responses by default, per object and per pair.
@@ -166,7 +170,7 @@ impl World {
     }
 
     /// Has a pair examined again, if its boxes overlap.
-    fn stir_pair(&mut self, a: ObjectId, b: ObjectId) {
+    pub(super) fn stir_pair(&mut self, a: ObjectId, b: ObjectId) {
         if let Some(pair) = self.broad.pair(super::proxy(a), super::proxy(b)) {
             self.candidates.enqueue(pair);
         }
@@ -189,7 +193,7 @@ impl World {
         }
     }
 
-    fn check_pair(&self, a: ObjectId, b: ObjectId) -> Result<()> {
+    pub(super) fn check_pair(&self, a: ObjectId, b: ObjectId) -> Result<()> {
         for (argument, id) in [("a", a), ("b", b)] {
             if !self.contains(id) {
                 return Err(Error::UnknownObject { argument, id });

@@ -260,6 +260,7 @@ impl World {
                     Response::Witness => Contact::witness(a.placed(), b.placed(), &witness),
                     Response::Smart => smart([a, b], scratch),
                     Response::Curve => Contact::curve(a.placed(), b.placed(), &witness, scratch),
+                    Response::Depth => Contact::depth(a.placed(), b.placed(), scratch),
                 };
                 (Some((When::Now, contact)), None)
             }
@@ -292,6 +293,7 @@ fn on_the_way(
         Response::Smart => smart([a, b], scratch),
         // As they are now, the surfaces do not meet.
         Response::Curve => Contact::Curve { point, curve: Arc::default() },
+        Response::Depth => Contact::depth(a.placed(), b.placed(), scratch),
     };
     (Some((When::OnTheWay, contact)), None)
 }

@@ -1,0 +1,154 @@
+//! Which pairs are nearer to each other than they should be.
+
+use glam::DVec3;
+
+#[cfg(feature = "rayon")]
+use super::threads::{BATCH, Workers};
+use super::{ObjectId, Response, Statistics, World};
+use crate::broad::PairId;
+use crate::pair::{self, Approach, Scratch};
+
+/// Two objects that are nearer to each other than their clearance, as they are now: see [`World::near`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    /// The object that was created first.
+    pub a: ObjectId,
+    /// The other.
+    pub b: ObjectId,
+    /// How far they are apart; of objects that intersect, less the depth: at most 0. World units.
+    pub distance: f64,
+    /// The point of `a` that is closest to `b`, or deepest in it. Space: world.
+    pub point_on_a: DVec3,
+    /// The point of `b` that is closest to `a`, or deepest in it. Space: world.
+    pub point_on_b: DVec3,
+    /// The unit vector from `b` to `a`: from `point_on_b` to `point_on_a`; of objects that intersect, the direction in which `a` leaves
+    /// `b` soonest. Space: world.
+    pub normal: DVec3,
+}
+
+/// What the last search for near pairs said of a candidate.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) enum Nearness {
+    /// Something changed since.
+    #[default]
+    Unknown,
+    Far,
+    Near(Near),
+}
+
+/// What looking at a candidate gave.
+#[derive(Debug)]
+pub(super) struct Looked {
+    nearness: Nearness,
+    work: Statistics,
+}
+
+impl World {
+    /// Every pair that is nearer than its [clearance](World::set_clearance), and every pair that intersects, where the objects are now, with
+    /// their closest or deepest points. In the order of the results of a [`test`](World::test); without pairs whose response is
+    /// [`Response::Ignore`].
+    ///
+    /// Exactly the pairs that [`query::intersects`](crate::query::intersects), or of which
+    /// [`query::distance`](crate::query::distance) is less than the clearance. The distance is that of `query::distance`, and where that is 0, less
+    /// the depth of [`query::penetration`](crate::query::penetration). This is apart from [`test`](World::test): what is near but
+    /// apart is no collision, has no event, and may be asked for before or after a test, or not at all.
+    ///
+    /// Cost: pairs are looked at when their boxes, grown for the clearance, overlap, and something about them changed since the
+    /// last time; the rest follows the number of such pairs. With the feature `rayon` on the threads of the current pool; the
+    /// results are the same bits for any number of threads, with and without caching, and for either broad phase.
+    ///
+    /// ```
+    /// use solid3d::{Shape, World, glam::{DAffine3, DVec3}};
+    /// let mut world = World::new();
+    /// world.set_clearance(0.05)?;
+    /// let block = Shape::cuboid([1.0, 1.0, 1.0])?;
+    /// let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+    /// let [a, b, c] = [0.0, 1.03125, 4.0].map(|x| world.add(&block, at(x)).unwrap());
+    /// let near = world.near();
+    /// assert_eq!((near.len(), near[0].a, near[0].b, near[0].distance), (1, a, b, 0.03125));
+    /// assert_eq!((near[0].point_on_a.x, near[0].point_on_b.x, near[0].normal), (0.5, 0.53125, -DVec3::X));
+    /// assert!(world.test().is_empty());
+    ///
+    /// world.set_placement(c, at(1.78125))?;
+    /// let near = world.near();
+    /// assert_eq!((near[1].a, near[1].b, near[1].distance), (b, c, -0.25));
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn near(&mut self) -> Vec<Near> {
+        self.refresh();
+        if !self.caching {
+            self.candidates.forget_nearness();
+        }
+        let mut pairs = std::mem::take(&mut self.to_examine);
+        self.candidates.unknown(&mut pairs);
+        self.look_at_all(&pairs);
+        self.to_examine = pairs;
+        let mut near: Vec<Near> = self.candidates.near().copied().collect();
+        near.sort_unstable_by_key(|near| self.key(near.a, near.b));
+        near
+    }
+
+    /// Looks at candidates, and keeps what that gave.
+    fn look_at_all(&mut self, pairs: &[PairId]) {
+        let mut workers = std::mem::take(&mut self.workers);
+        #[cfg(feature = "rayon")]
+        if Workers::share(self.statistics.units_for(pairs.len())) {
+            let mut looked = Vec::new();
+            for batch in pairs.chunks(BATCH) {
+                workers.map(batch, &mut looked, |&pair, scratch| self.look_at(pair, scratch));
+                for (&pair, looked) in batch.iter().zip(looked.drain(..)) {
+                    self.keep(pair, looked);
+                }
+            }
+            self.workers = workers;
+            return;
+        }
+        for &pair in pairs {
+            let looked = self.look_at(pair, workers.own());
+            self.keep(pair, looked);
+        }
+        self.workers = workers;
+    }
+
+    fn keep(&mut self, pair: PairId, looked: Looked) {
+        self.statistics += looked.work;
+        self.candidates.set_nearness(pair, looked.nearness);
+    }
+
+    /// How near the objects of a candidate are to each other; a function of the two, their response and their clearance alone.
+    fn look_at(&self, pair: PairId, scratch: &mut Scratch) -> Looked {
+        let candidate = self.candidates.get(pair);
+        let (a, b) = (candidate.a, candidate.b);
+        let mut work = Statistics::default();
+        if self.responses.of(a, b) == Response::Ignore {
+            return Looked { nearness: Nearness::Far, work };
+        }
+        let before = scratch.work();
+        let near = self.nearness(a, b, scratch);
+        let after = scratch.work();
+        work.examined = 1;
+        (work.box_tests, work.primitive_tests) = (after.0 - before.0, after.1 - before.1);
+        Looked { nearness: near.map_or(Nearness::Far, Nearness::Near), work }
+    }
+
+    fn nearness(&self, a: ObjectId, b: ObjectId, scratch: &mut Scratch) -> Option<Near> {
+        let clearance = self.clearances.of(a, b);
+        let [of_a, of_b] = [a, b].map(|id| self.objects[id].placed());
+        let found = match pair::proximity(of_a, of_b, clearance, scratch) {
+            Some(found) if found.distance < clearance => found,
+            // At a clearance below the error of the distance, or of none.
+            _ if pair::intersects(of_a, of_b, scratch) => pair::overlap(of_a, of_b, scratch),
+            _ => return None,
+        };
+        let Approach { points, distance, normal } = found;
+        Some(Near {
+            a,
+            b,
+            // No negative zero.
+            distance: distance + 0.0,
+            point_on_a: of_a.placement.transform_point3(points.on_a),
+            point_on_b: of_b.placement.transform_point3(points.on_b),
+            normal,
+        })
+    }
+}
