@@ -40,8 +40,8 @@ fn place(i: usize, frame: usize) -> DAffine3 {
 #[test]
 fn memory() {
     let laws = || {
-        a_frame_like_those_before_allocates_nothing();
         an_object_takes_little_beyond_its_shape();
+        a_frame_like_those_before_allocates_nothing();
     };
     // A pool's own queue of work from outside it allocates now and then.
     #[cfg(feature = "rayon")]
@@ -60,8 +60,9 @@ fn in_use(region: &Region<System>) -> isize {
 /// objects.
 fn an_object_takes_little_beyond_its_shape() {
     const OBJECTS: usize = 100_000;
-    /// Of an object that never moved, and of one that did: its previous placement, of 96 bytes, and wider boxes.
-    const BYTES_MAX: [isize; 2] = [1, 1];
+    /// Of an object that never moved, and of one that did: its previous placement, of 96 bytes, and the
+    /// memory for what is out of date. Measured: 548 and 682.
+    const BYTES_MAX: [isize; 2] = [560, 700];
     let ball = Shape::sphere(0.5).unwrap();
     let side = (8.0 * OBJECTS as f64).cbrt();
     let mut rng = seeded(830);
