@@ -4,6 +4,7 @@
 
 mod candidates;
 mod collision;
+mod contacts;
 mod event;
 mod findings;
 mod motion;
