@@ -59,8 +59,7 @@ pub fn contacts(
 impl ContactOptions {
     /// The options when they can be used.
     pub(crate) fn checked(&self) -> Result<&ContactOptions> {
-        // Also when it is no number.
-        if !(self.margin >= 0.0) {
+        if self.margin.is_nan() || self.margin < 0.0 {
             return Err(Error::Negative { argument: "margin", value: self.margin });
         }
         Ok(self)

@@ -126,15 +126,15 @@ fn side_by_side(a: [DVec2; 2], b: [DVec2; 2]) -> Vec<Clipped> {
     let ((low_a, high_a), (low_b, high_b)) = (range(a), range(b));
     let within = |p: DVec2, low: f64, high: f64| (low - ON_EDGE..=high + ON_EDGE).contains(&place(p));
     let mut corners: Vec<Clipped> = Vec::new();
-    for i in 0..2 {
-        if within(a[i], low_b, high_b) {
-            corners.push(Clipped { at: a[i], origin: Origin::OfA(i) });
+    for (i, at) in a.into_iter().enumerate() {
+        if within(at, low_b, high_b) {
+            corners.push(Clipped { at, origin: Origin::OfA(i) });
         }
     }
-    for j in 0..2 {
-        let new = corners.iter().all(|corner| (place(corner.at) - place(b[j])).abs() > ON_EDGE);
-        if within(b[j], low_a, high_a) && new {
-            corners.push(Clipped { at: b[j], origin: Origin::OfB(j) });
+    for (j, at) in b.into_iter().enumerate() {
+        let new = corners.iter().all(|corner| (place(corner.at) - place(at)).abs() > ON_EDGE);
+        if within(at, low_a, high_a) && new {
+            corners.push(Clipped { at, origin: Origin::OfB(j) });
         }
     }
     corners
@@ -167,7 +167,8 @@ mod tests {
         assert_eq!(count(&[DVec2::new(-3.0, 0.5), DVec2::new(3.0, 0.5)]), (2, 2));
         let small = square(DVec2::ZERO, 0.5, 0.0);
         assert!(clip(&unit, &small).iter().all(|corner| matches!(corner.origin, Origin::OfB(_))));
-        let ring: Vec<DVec2> = (0..16).map(|i| 1.2 * DVec2::from_angle(f64::from(i) * 0.3927)).collect();
+        let ring: Vec<DVec2> =
+            (0..16).map(|i| 1.2 * DVec2::from_angle(f64::from(i) * std::f64::consts::FRAC_PI_8)).collect();
         let cut = clip(&square(DVec2::new(0.2, 0.1), 1.0, 0.0), &ring);
         assert!(cut.iter().all(|corner| corner.at.x > -0.8 - 1e-9 && corner.at.length() < 1.2 + 1e-9));
         let reversed: Vec<DVec2> = small.iter().rev().copied().collect();
