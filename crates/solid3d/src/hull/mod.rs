@@ -15,6 +15,7 @@
 
 mod exact;
 mod facets;
+mod outline;
 mod planar;
 mod quickhull;
 #[cfg(test)]
@@ -24,6 +25,7 @@ mod validate;
 use exact::Sites;
 use facets::Polygons;
 use glam::DVec3;
+pub(crate) use outline::outline;
 
 /// The convex hull of finitely many points, as indices into the caller's points.
 ///

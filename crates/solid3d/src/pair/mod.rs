@@ -12,6 +12,7 @@ mod cast;
 mod closed_form;
 mod complex_complex;
 mod complex_convex;
+mod contact;
 mod containment;
 mod convex_convex;
 mod crossing;
@@ -34,6 +35,8 @@ use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
+pub(crate) use contact::contacts;
+pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};
 pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;

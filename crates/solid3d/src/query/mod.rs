@@ -12,6 +12,7 @@
 
 mod cast;
 mod distance;
+mod contacts;
 mod penetration;
 mod point;
 mod ray;
@@ -22,12 +23,14 @@ use glam::{DAffine3, DVec3};
 use crate::bounds::Aabb;
 use crate::error::Result;
 use crate::pair::{self, Placed, Relation, Scratch};
+pub use crate::pair::{ContactOptions, ContactPoint, Feature, Manifold};
 pub use crate::pair::{Faces, FromInside, Ray, RayHit, RayOptions, SurfaceHit};
 pub use crate::pair::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 use crate::placement;
 use crate::shape::Shape;
 pub use cast::{ShapeCast, cast_shape};
 pub use distance::distance_within;
+pub use contacts::contacts;
 pub use penetration::{Penetration, penetration};
 pub use point::{ClosestPoint, closest_point, contains_point, winding_number};
 pub use ray::{cast_ray, cast_ray_all, ray_meets};

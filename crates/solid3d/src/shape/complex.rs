@@ -7,6 +7,7 @@ use solid_convex::IndexedPoints;
 
 use super::parts::parts;
 use super::solid::Solid;
+use super::topology::Topology;
 use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
@@ -23,6 +24,8 @@ pub(crate) struct Complex {
     /// A vertex of each connected part, found when first asked for. Shared by the deformations of one soup, and by nothing
     /// else.
     parts: Arc<OnceLock<Vec<u32>>>,
+    /// What lies next to what, at these positions, found when first asked for.
+    topology: OnceLock<Arc<Topology>>,
 }
 
 /// Which vertices make up each primitive: its hull is the primitive. Invariant: there is at least one, each names at
@@ -121,7 +124,14 @@ impl Complex {
     pub(super) fn new(vertices: Vec<DVec3>, primitives: Primitives) -> Result<Self> {
         validate::vertices(&vertices)?;
         let tree = build(&primitives, &vertices);
-        Ok(Complex { primitives: Arc::new(primitives), vertices, tree, solid: None, parts: Arc::default() })
+        Ok(Complex {
+            primitives: Arc::new(primitives),
+            vertices,
+            tree,
+            solid: None,
+            parts: Arc::default(),
+            topology: OnceLock::new(),
+        })
     }
 
     pub fn is_mesh(&self) -> bool {
@@ -159,6 +169,14 @@ impl Complex {
             let primitives = (0..self.primitives.len() as u32).map(|i| self.primitives.get(i));
             let twins = self.solid.as_ref().map_or(&[][..], |solid| solid.twins());
             parts(self.vertices.len(), primitives, twins)
+        })
+    }
+
+    /// What lies next to what. Cost: O(n) at the first call since the last deformation, O(n log n) for a closed convex mesh.
+    pub fn topology(&self) -> &Topology {
+        self.topology.get_or_init(|| {
+            let primitives = (0..self.primitives.len() as u32).map(|i| self.primitives.get(i));
+            Arc::new(Topology::of(&self.vertices, primitives, self.triangles()))
         })
     }
 
@@ -236,6 +254,7 @@ impl Complex {
     pub fn deform(&mut self, positions: &[DVec3]) {
         self.vertices.copy_from_slice(positions);
         self.tree.refit_leaves(|leaf| self.primitives.union(leaf, &self.vertices));
+        self.topology = OnceLock::new();
         if self.tree.degraded() {
             self.tree = build(&self.primitives, &self.vertices);
         }

@@ -3,21 +3,27 @@
 mod builder;
 mod chord;
 mod complex;
+mod facets;
+mod hulled;
 mod kind;
 mod parts;
 mod radius;
 mod simple;
 mod solid;
 mod surface;
+mod topology;
 mod validate;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::DVec3;
-use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
+use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
 
 pub use builder::ComplexShapeBuilder;
 pub(crate) use complex::Complex;
+pub(crate) use facets::Facets;
+pub(crate) use hulled::Hulled;
 pub use kind::ShapeKind;
 pub(crate) use simple::Simple;
 pub use solid::OpenEdge;
@@ -55,7 +61,7 @@ enum Geometry {
     Cone(Cone),
     Cylinder(Cylinder),
     Capsule(Capsule),
-    Polytope(Arc<Polytope>),
+    Polytope(Arc<Hulled>),
     Complex(Arc<Complex>),
 }
 
@@ -65,6 +71,45 @@ pub(crate) enum Class<'a> {
     Convex(&'a dyn Support),
     /// A soup of convex primitives under a tree.
     Complex(&'a Complex),
+}
+
+/// A convex shape by its kind: what its faces are found from.
+pub(crate) enum Body<'a> {
+    Sphere(&'a Sphere),
+    Cuboid(&'a Cuboid),
+    Cone(&'a Cone),
+    Cylinder(&'a Cylinder),
+    Capsule(&'a Capsule),
+    /// A convex hull.
+    Hull {
+        points: Cow<'a, [DVec3]>,
+        facets: Cow<'a, Facets>,
+        /// What its points are called, when not by their places.
+        names: Option<&'a [u32]>,
+    },
+    /// A primitive of up to three vertices.
+    Simplex {
+        vertices: &'a [DVec3],
+        indices: &'a [u32],
+    },
+}
+
+impl<'a> Body<'a> {
+    /// `names` says what its points are called, when not by their places.
+    pub fn of_hull(hull: &'a Hulled, names: Option<&'a [u32]>) -> Body<'a> {
+        Body::Hull { points: Cow::Borrowed(hull.points()), facets: Cow::Borrowed(hull.facets()), names }
+    }
+
+    /// A primitive of a complex shape. Cost: O(n log n) for one of more than three vertices.
+    pub fn of_primitive(complex: &'a Complex, primitive: u32) -> Body<'a> {
+        let (vertices, indices) = (complex.vertices(), complex.primitive(primitive));
+        if indices.len() <= 3 {
+            return Body::Simplex { vertices, indices };
+        }
+        let points: Vec<DVec3> = indices.iter().map(|&i| vertices[i as usize]).collect();
+        let facets = Cow::Owned(Facets::of(&points));
+        Body::Hull { points: Cow::Owned(points), facets, names: Some(indices) }
+    }
 }
 
 impl Shape {
@@ -110,7 +155,7 @@ impl Shape {
         validate::vertices(points)?;
         let extreme =
             Hull::of(points).map(|hull| hull.vertices().iter().map(|&i| points[i as usize]).collect());
-        let polytope = extreme.and_then(Polytope::new).ok_or(Error::NoVertices { argument: "points" })?;
+        let polytope = extreme.and_then(Hulled::new).ok_or(Error::NoVertices { argument: "points" })?;
         Ok(Geometry::Polytope(Arc::new(polytope)).into())
     }
 
@@ -287,6 +332,19 @@ impl Shape {
         }
     }
 
+    /// The shape as a body with faces; `None` for a mesh or a complex shape.
+    pub(crate) fn body(&self) -> Option<Body<'_>> {
+        match &self.geometry {
+            Geometry::Sphere(shape) => Some(Body::Sphere(shape)),
+            Geometry::Cuboid(shape) => Some(Body::Cuboid(shape)),
+            Geometry::Cone(shape) => Some(Body::Cone(shape)),
+            Geometry::Cylinder(shape) => Some(Body::Cylinder(shape)),
+            Geometry::Capsule(shape) => Some(Body::Capsule(shape)),
+            Geometry::Polytope(shape) => Some(Body::of_hull(shape, None)),
+            Geometry::Complex(_) => None,
+        }
+    }
+
     pub(crate) fn class(&self) -> Class<'_> {
         match &self.geometry {
             Geometry::Sphere(shape) => Class::Convex(shape),
@@ -294,7 +352,7 @@ impl Shape {
             Geometry::Cone(shape) => Class::Convex(shape),
             Geometry::Cylinder(shape) => Class::Convex(shape),
             Geometry::Capsule(shape) => Class::Convex(shape),
-            Geometry::Polytope(shape) => Class::Convex(&**shape),
+            Geometry::Polytope(shape) => Class::Convex(shape.polytope()),
             Geometry::Complex(shape) => Class::Complex(shape),
         }
     }

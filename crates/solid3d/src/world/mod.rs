@@ -5,6 +5,7 @@
 mod candidates;
 mod clearance;
 mod collision;
+mod contacts;
 mod event;
 mod findings;
 mod motion;

@@ -1,0 +1,346 @@
+//! The supporting face of a body: the flat or straight part of its surface that faces a direction best.
+
+use std::f64::consts::TAU;
+
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Line, Sphere, Support};
+
+use crate::placement::inverse_linear;
+use crate::shape::{Body, Facets};
+
+/// Corners of the polygon that stands for a circle: what is cut off is 2 % of the radius.
+const RIM: u32 = 16;
+
+/// A face and a direction are aligned when the sine of the angle between them is at most this: half a degree. Faces need not be:
+/// a box that lands on an edge has its lower face for contacts too, with the gap at the other edge.
+const ALIGNED_SINE: f64 = 0.01;
+
+/// A face that is turned away further than this is no longer faced: its height along the direction loses its digits.
+const FACING_COSINE: f64 = 0.05;
+
+/// The side of a capsule counts along its length up to 60 degrees.
+const SIDE_COSINE: f64 = 0.5;
+
+/// How far beside a corner or an edge a point may be to be on it, in the unit of the pair.
+const BESIDE: f64 = 1e-6;
+
+/// A corner of a supporting face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// Space: common.
+    pub point: DVec3,
+    /// Its number among the vertices of its body.
+    pub vertex: u32,
+}
+
+/// A part of the surface: a convex polygon, a segment or a point.
+#[derive(Clone, Debug)]
+pub(super) struct Face {
+    /// In order around it.
+    pub corners: Vec<Corner>,
+    /// The outward unit normal of a polygon; of others a direction that they face.
+    pub normal: DVec3,
+    /// Its number among the faces of its body.
+    pub number: u32,
+    /// The cosine of the angle between the normal and the direction that was asked for.
+    pub cosine: f64,
+}
+
+impl Face {
+    /// Whether it is a polygon that lies across the direction it was asked for.
+    pub fn is_aligned(&self) -> bool {
+        self.corners.len() >= 3 && self.cosine >= 1.0 - 0.5 * ALIGNED_SINE * ALIGNED_SINE
+    }
+
+    /// Whether it is not seen from its edge.
+    pub fn is_faced(&self) -> bool {
+        self.corners.len() < 3 || self.cosine >= FACING_COSINE
+    }
+
+    /// What of it is furthest along a direction: an edge that is aligned, or a corner.
+    pub fn slim(mut self, direction: DVec3) -> Face {
+        let height = |corner: &Corner| corner.point.dot(direction);
+        let highest =
+            *self.corners.iter().max_by(|x, y| height(x).total_cmp(&height(y))).expect("a face has a corner");
+        let count = self.corners.len();
+        let first = self.corners.iter().position(|corner| corner.vertex == highest.vertex).unwrap_or(0);
+        let neighbours = [(first + 1) % count, (first + count - 1) % count].map(|i| self.corners[i]);
+        let level = |corner: &&Corner| {
+            let along = corner.point - highest.point;
+            corner.vertex != highest.vertex && -along.dot(direction) <= ALIGNED_SINE * along.length()
+        };
+        let other = neighbours.iter().filter(level).max_by(|x, y| height(x).total_cmp(&height(y))).copied();
+        self.corners.clear();
+        self.corners.push(highest);
+        self.corners.extend(other);
+        self
+    }
+}
+
+/// A convex body in the common frame of a pair.
+pub(super) struct Placed<'a> {
+    body: &'a Body<'a>,
+    /// Takes local points to the common frame.
+    pub map: DAffine3,
+    inverse: DMat3,
+}
+
+impl<'a> Placed<'a> {
+    pub fn new(body: &'a Body<'a>, map: DAffine3) -> Self {
+        Placed { body, map, inverse: inverse_linear(&map.matrix3) }
+    }
+
+    /// Whether what a face says of the heights is only true at its corners.
+    fn is_round(&self) -> bool {
+        !matches!(self.body, Body::Cuboid(_) | Body::Hull { .. } | Body::Simplex { .. })
+    }
+
+    /// The face that faces a direction best, of those at the furthest point along it. Space of the direction: common.
+    pub fn face(&self, direction: DVec3) -> Face {
+        let local = self.map.matrix3.transpose() * direction;
+        match self.body {
+            Body::Sphere(sphere) => self.ball(sphere, direction, local),
+            Body::Cuboid(cuboid) => self.side_of_box(cuboid, direction, local),
+            Body::Cone(cone) => self.cone(cone, direction, local),
+            Body::Cylinder(cylinder) => self.cylinder(cylinder, direction, local),
+            Body::Capsule(capsule) => self.capsule(capsule, direction, local),
+            Body::Hull { points, facets, names } => self.facet(points, facets, *names, direction, local),
+            Body::Simplex { vertices, indices } => self.simplex(vertices, indices, direction),
+        }
+    }
+
+    /// How far along `direction` the surface is at a place beside or on the face, on the side that `out` points to: `direction` or its
+    /// opposite. `None` where the body is not.
+    pub fn height(&self, face: &Face, at: DVec3, direction: DVec3, out: DVec3) -> Option<f64> {
+        let of_face = self.height_of(face, at, direction);
+        let Some([enter, leave]) = self.is_round().then(|| self.chord(at, direction)).flatten() else {
+            return of_face;
+        };
+        // The face is in the body: at its rim, where a line may leave again at once, it is further out.
+        let (along, base) = (out.dot(direction) > 0.0, at.dot(direction));
+        let of_body = base + if along { leave } else { enter };
+        Some(
+            of_face
+                .map_or(of_body, |of_face| if along { of_body.max(of_face) } else { of_body.min(of_face) }),
+        )
+    }
+
+    /// The same of the face alone.
+    fn height_of(&self, face: &Face, at: DVec3, direction: DVec3) -> Option<f64> {
+        let height = |corner: &Corner| corner.point.dot(direction);
+        match &face.corners[..] {
+            [] => None,
+            [corner] => {
+                let off = corner.point - at;
+                let beside = off - direction * off.dot(direction);
+                (beside.length() <= BESIDE).then(|| height(corner))
+            }
+            [from, to] => {
+                let across = |v: DVec3| v - direction * v.dot(direction);
+                let (edge, off) = (across(to.point - from.point), across(at - from.point));
+                let length_squared = edge.length_squared();
+                let t =
+                    if length_squared > 0.0 { (off.dot(edge) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+                let beside = off - edge * t;
+                (beside.length() <= BESIDE).then(|| height(from) * (1.0 - t) + height(to) * t)
+            }
+            [first, ..] => {
+                let slope = face.normal.dot(direction);
+                (slope.abs() >= FACING_COSINE)
+                    .then(|| at.dot(direction) + face.normal.dot(first.point - at) / slope)
+            }
+        }
+    }
+
+    /// Where a line along a direction runs through a round body, as parameters.
+    fn chord(&self, at: DVec3, direction: DVec3) -> Option<[f64; 2]> {
+        let origin = self.inverse * (at - self.map.translation);
+        let line = Line::new(origin, self.inverse * direction)?;
+        let chord = match self.body {
+            Body::Sphere(sphere) => sphere.chord(&line),
+            Body::Cone(cone) => cone.chord(&line),
+            Body::Cylinder(cylinder) => cylinder.chord(&line),
+            Body::Capsule(capsule) => capsule.chord(&line),
+            Body::Cuboid(_) | Body::Hull { .. } | Body::Simplex { .. } => None,
+        }?;
+        Some([chord.enter.t, chord.leave.t])
+    }
+
+    fn corner(&self, local: DVec3, vertex: u32) -> Corner {
+        Corner { point: self.map.transform_point3(local), vertex }
+    }
+
+    /// The image of a normal: by the inverse transposed.
+    fn normal(&self, local: DVec3) -> DVec3 {
+        (self.inverse.transpose() * local).normalize_or_zero()
+    }
+
+    fn ball(&self, sphere: &Sphere, direction: DVec3, local: DVec3) -> Face {
+        let corners = vec![self.corner(sphere.support(local), 0)];
+        Face { corners, normal: direction, number: 0, cosine: 1.0 }
+    }
+
+    fn side_of_box(&self, cuboid: &Cuboid, direction: DVec3, local: DVec3) -> Face {
+        let half = 0.5 * cuboid.size();
+        let side = |axis: usize| {
+            let sign = if local[axis] < 0.0 { -1.0 } else { 1.0 };
+            let normal = self.normal(DVec3::AXES[axis] * sign);
+            (normal.dot(direction), axis, sign, normal)
+        };
+        let sides = [side(0), side(1), side(2)];
+        let (cosine, axis, sign, normal) =
+            sides.into_iter().max_by(|x, y| x.0.total_cmp(&y.0)).expect("a box has three axes");
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let around = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+        let corners = around.map(|(along_i, along_j)| {
+            let mut signs = DVec3::splat(sign);
+            (signs[i], signs[j]) = (along_i, along_j);
+            let vertex = (0..3).map(|k| u32::from(signs[k] > 0.0) << k).sum();
+            self.corner(half * signs, vertex)
+        });
+        Face { corners: corners.to_vec(), normal, number: 2 * axis as u32 + u32::from(sign < 0.0), cosine }
+    }
+
+    fn cylinder(&self, cylinder: &Cylinder, direction: DVec3, local: DVec3) -> Face {
+        let (radius, half) = (cylinder.radius(), 0.5 * cylinder.height());
+        let y = if local.y < 0.0 { -half } else { half };
+        let cap = self.normal(DVec3::Y * y.signum());
+        let (x, z) = azimuth(local);
+        let side = self.normal(DVec3::new(x, 0.0, z));
+        let (of_cap, of_side) = (cap.dot(direction), side.dot(direction));
+        if of_cap >= of_side {
+            let first = if y < 0.0 { RIM } else { 0 };
+            let number = u32::from(y < 0.0);
+            return Face {
+                corners: self.rim(radius, y, first, of_cap, local),
+                normal: cap,
+                number,
+                cosine: of_cap,
+            };
+        }
+        let end = |y: f64, vertex: u32| self.corner(DVec3::new(radius * x, y, radius * z), vertex);
+        let corners = vec![end(half, 2 * RIM), end(-half, 2 * RIM + 1)];
+        Face { corners, normal: side, number: 2, cosine: of_side }
+    }
+
+    fn cone(&self, cone: &Cone, direction: DVec3, local: DVec3) -> Face {
+        let (radius, half) = (cone.radius(), 0.5 * cone.height());
+        let base = self.normal(DVec3::NEG_Y);
+        let (x, z) = azimuth(local);
+        let largest = radius.max(cone.height());
+        let (across, along) = (cone.height() / largest, radius / largest);
+        let side = self.normal(DVec3::new(x * across, along, z * across));
+        let (of_base, of_side) = (base.dot(direction), side.dot(direction));
+        if of_base >= of_side {
+            let corners = self.rim(radius, -half, RIM, of_base, local);
+            return Face { corners, normal: base, number: 1, cosine: of_base };
+        }
+        let corners = vec![
+            self.corner(DVec3::new(0.0, half, 0.0), 2 * RIM),
+            self.corner(DVec3::new(radius * x, -half, radius * z), 2 * RIM + 1),
+        ];
+        Face { corners, normal: side, number: 2, cosine: of_side }
+    }
+
+    fn capsule(&self, capsule: &Capsule, direction: DVec3, local: DVec3) -> Face {
+        let (radius, half) = (capsule.radius(), 0.5 * capsule.height());
+        let (x, z) = azimuth(local);
+        let side = self.normal(DVec3::new(x, 0.0, z));
+        let cosine = side.dot(direction);
+        let upper = u32::from(local.y >= 0.0);
+        let mut corners = vec![self.corner(capsule.support(local), upper)];
+        if cosine >= SIDE_COSINE {
+            let far = if local.y < 0.0 { half } else { -half };
+            corners.push(self.corner(DVec3::new(radius * x, far, radius * z), 1 - upper));
+        }
+        Face { corners, normal: side, number: 0, cosine }
+    }
+
+    /// A circle across the axis y: corners at places that stay with the body, and, when it is tilted, the furthest point.
+    fn rim(&self, radius: f64, y: f64, first: u32, cosine: f64, local: DVec3) -> Vec<Corner> {
+        let mut places: Vec<(f64, u32)> =
+            (0..RIM).map(|i| (TAU * f64::from(i) / f64::from(RIM), first + i)).collect();
+        if cosine < 1.0 - 0.5 * ALIGNED_SINE * ALIGNED_SINE {
+            places.push((local.z.atan2(local.x).rem_euclid(TAU), 2 * RIM + 2));
+            places.sort_by(|x, y| x.0.total_cmp(&y.0));
+        }
+        places
+            .into_iter()
+            .map(|(angle, vertex)| {
+                self.corner(DVec3::new(radius * angle.cos(), y, radius * angle.sin()), vertex)
+            })
+            .collect()
+    }
+
+    fn facet(
+        &self,
+        points: &[DVec3],
+        facets: &Facets,
+        names: Option<&[u32]>,
+        direction: DVec3,
+        local: DVec3,
+    ) -> Face {
+        let along = |i: usize| points[i].dot(local);
+        let highest = (0..points.len()).max_by(|&i, &j| along(i).total_cmp(&along(j)).then(j.cmp(&i)));
+        let cosine = |face: u32| self.normal(facets.get(face).normal).dot(direction);
+        let better = |x: &u32, y: &u32| cosine(*x).total_cmp(&cosine(*y)).then(y.cmp(x));
+        let here = highest.map_or(&[][..], |i| facets.at(i));
+        // The furthest point may have been flattened out of an edge.
+        let best = here.iter().copied().max_by(better).or_else(|| (0..facets.len()).max_by(better));
+        let named = |i: u32| names.map_or(i, |names| names[i as usize]);
+        let corner = |&i: &u32| self.corner(points[i as usize], named(i));
+        match best {
+            Some(face) => Face {
+                corners: facets.get(face).corners.iter().map(corner).collect(),
+                normal: self.normal(facets.get(face).normal),
+                number: face,
+                cosine: cosine(face),
+            },
+            None => {
+                let corners = facets.extreme().iter().map(corner).collect();
+                Face { corners, normal: direction, number: 0, cosine: 1.0 }
+            }
+        }
+    }
+
+    /// Both sides of a triangle are its face. One without area is a segment.
+    fn simplex(&self, vertices: &[DVec3], indices: &[u32], direction: DVec3) -> Face {
+        let mut corners: Vec<Corner> =
+            indices.iter().map(|&i| self.corner(vertices[i as usize], i)).collect();
+        if let Some(normal) = triangle_normal(&corners) {
+            let cosine = normal.dot(direction);
+            let number = u32::from(cosine < 0.0);
+            return Face { corners, normal: normal * cosine.signum(), number, cosine: cosine.abs() };
+        }
+        if let [p, q, r] = corners[..] {
+            let length = |pair: &[Corner; 2]| pair[0].point.distance_squared(pair[1].point);
+            let longest = [[p, q], [q, r], [p, r]].into_iter().max_by(|x, y| length(x).total_cmp(&length(y)));
+            corners = longest.expect("a triangle has edges").to_vec();
+        }
+        corners.dedup_by(|x, y| x.point == y.point);
+        Face { corners, normal: direction, number: 0, cosine: 1.0 }
+    }
+}
+
+/// The unit normal of a triangle; `None` for one without area, and for what is none.
+pub(super) fn triangle_normal(corners: &[Corner]) -> Option<DVec3> {
+    /// The sine of the least angle at a corner beyond which the normal has no digits.
+    const SINE_MIN: f64 = 1e-12;
+    let &[p, q, r] = corners else { return None };
+    let (u, v) = (q.point - p.point, r.point - p.point);
+    let cross = u.cross(v);
+    let area = cross.length();
+    let longest = u.length_squared().max(v.length_squared()).max((v - u).length_squared());
+    (area > SINE_MIN * longest).then(|| cross / area)
+}
+
+/// The direction across the axis y, as a unit vector; x when there is none.
+fn azimuth(local: DVec3) -> (f64, f64) {
+    let largest = local.x.abs().max(local.z.abs());
+    if largest == 0.0 {
+        return (1.0, 0.0);
+    }
+    let (x, z) = (local.x / largest, local.z / largest);
+    let length = x.hypot(z);
+    (x / length, z / length)
+}

@@ -1,0 +1,332 @@
+//! The contacts of two shapes: all points where their surfaces meet, or are in each other.
+//!
+//! Of two convex bodies: the normal is that of the penetration depth, or of the closest points of what is apart; the faces of
+//! both that lie across it are clipped against each other ([`clip`]), and each corner of what they have in common is a contact, as deep as
+//! the surfaces overlap there along the normal. The deepest point is always among them.
+//!
+//! Of meshes and complex shapes: the contacts of all pairs of primitives, each with a normal that the surface around the
+//! primitive has ([`soup`]), put together where the surface is connected and the normal the same ([`region`]).
+//!
+//! Everything is computed in the common frame of the pair: lengths near 1, so that tolerances are relative to the data.
+
+mod clip;
+mod face;
+mod region;
+mod soup;
+
+use glam::{DAffine3, DVec2, DVec3};
+use solid_convex::{Support, epa, gjk};
+
+use super::depth::of_common;
+use super::frame::Frame;
+use super::{Placed, Relation, Scratch, table};
+use crate::shape::{Body, Class, Complex};
+use clip::{Origin, clip};
+use face::{Face, triangle_normal};
+
+/// A part of the surface of a shape. Its number stays with the shape however it moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Feature {
+    /// A vertex: by its place in [`Shape::vertices`](crate::Shape::vertices); of a box, of the rims of cones and cylinders and of
+    /// the ends of capsules by a number of its own.
+    Vertex(u32),
+    /// An edge between two vertices, the lesser first.
+    Edge(u32, u32),
+    /// A face, by a number of its own; of a mesh, the front (0) or back (1) of a triangle.
+    Face(u32),
+}
+
+/// A point of contact of two shapes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// The point of the first shape. Space: world.
+    pub point_on_a: DVec3,
+    /// The point of the second shape, off the first by the depth along the normal. Space: world.
+    pub point_on_b: DVec3,
+    /// How deep the surfaces are in each other here, along the normal; negative for a gap. World units.
+    pub depth: f64,
+    /// The primitive of each shape; 0 for a convex shape.
+    pub primitives: [u32; 2],
+    /// The part of each primitive that the point is of. With `primitives` it names the contact from frame to frame.
+    pub features: [Feature; 2],
+}
+
+/// Contacts of two shapes that have one normal: a region of their surfaces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Manifold {
+    /// The unit normal, from `b` to `a`. Space: world.
+    pub normal: DVec3,
+    /// The points, at least one. Corners of the region in which the surfaces face each other.
+    pub points: Vec<ContactPoint>,
+}
+
+/// Which contacts are wanted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactOptions {
+    /// Surfaces that are apart by no more than this are in contact, with a negative depth: what a solver needs to stop them in time. At
+    /// least 0; 0 by default. World units.
+    pub margin: f64,
+    /// The most points of a manifold: the deepest, and those furthest from it and each other. At least one is kept. `None`, which is the
+    /// default, for all of them.
+    pub max_points: Option<usize>,
+}
+
+/// Depths this far apart are the same, in the unit of the pair: above the error of the depth of polytopes.
+const SAME_DEPTH: f64 = 1e-10;
+
+/// The error of the depth of a curved body, relative to it.
+const DEPTH_ERROR: f64 = 4.0 * epa::DEPTH_TOLERANCE;
+
+/// Closest points nearer to each other than this, in the unit of the pair, give a direction of few digits; a separating axis, which then
+/// can only be off by their distance over the extent, is better.
+const NEAR: f64 = 1e-9;
+
+/// A projected polygon whose area is below this share of the square of its extent is a segment.
+const THIN: f64 = 1e-9;
+
+/// A contact in the common frame.
+#[derive(Clone, Copy, Debug)]
+struct Touch {
+    on_a: DVec3,
+    on_b: DVec3,
+    depth: f64,
+    features: [Feature; 2],
+}
+
+/// The contacts of a pair of primitives. Space: common.
+struct Patch {
+    primitives: [u32; 2],
+    normal: DVec3,
+    touches: Vec<Touch>,
+    /// Whether the normal points into a solid: what is on the wrong side of a wall of it.
+    is_inward: bool,
+}
+
+/// How two convex bodies lie to each other.
+#[derive(Clone, Copy)]
+struct Meeting {
+    /// From `b` to `a`, unit.
+    normal: DVec3,
+    /// Negative for a gap. Space: common.
+    depth: f64,
+    /// The deepest point of each, or the closest. Space: common.
+    on_a: DVec3,
+    on_b: DVec3,
+}
+
+/// A pair in its common frame.
+struct Pair<'a> {
+    a: Placed<'a>,
+    b: Placed<'a>,
+    frame: Frame,
+    /// Space: common.
+    margin: f64,
+}
+
+/// A shape as contacts see it.
+enum Part<'a> {
+    Body(Body<'a>, &'a dyn Support),
+    Soup(&'a Complex),
+}
+
+/// All contacts of two shapes.
+pub(crate) fn contacts(
+    a: Placed,
+    b: Placed,
+    options: &ContactOptions,
+    scratch: &mut Scratch,
+) -> Vec<Manifold> {
+    let (part_a, part_b) = (part(a), part(b));
+    let frame = Frame::new(a.placement, reach(a), b.placement, reach(b));
+    let margin = options.margin * frame.scale;
+    let pair = Pair { a, b, frame, margin };
+    // A surface that is taken for the body it bounds does not collide with what is inside.
+    let hollow = [a, b].iter().any(|placed| match placed.shape.class() {
+        Class::Complex(complex) => !complex.is_solid() && complex.topology().convex().is_some(),
+        Class::Convex(_) => false,
+    });
+    let mut apart = || matches!(table::intersection(a, b, scratch), Relation::Separated { .. });
+    if hollow && options.margin == 0.0 && apart() {
+        return Vec::new();
+    }
+    let mut patches = match (&part_a, &part_b) {
+        (Part::Body(..), Part::Body(..)) => soup::body_body(&pair, &part_a, &part_b),
+        (Part::Soup(_), Part::Body(..)) => soup::soup_body(&pair, &part_a, &part_b, false, scratch),
+        (Part::Body(..), Part::Soup(_)) => soup::soup_body(&pair, &part_b, &part_a, true, scratch),
+        (Part::Soup(of_a), Part::Soup(of_b)) => soup::soup_soup(&pair, of_a, of_b, scratch),
+    };
+    if patches.iter().any(|patch| !patch.is_inward) {
+        patches.retain(|patch| !patch.is_inward);
+    }
+    if patches.is_empty() {
+        patches.extend(soup::whole(&pair, scratch));
+    }
+    let regions = region::regions(&part_a, &part_b, patches);
+    regions.into_iter().map(|region| pair.manifold(region, options)).collect()
+}
+
+fn part<'a>(placed: Placed<'a>) -> Part<'a> {
+    match placed.shape.class() {
+        Class::Convex(support) => Part::Body(placed.shape.body().expect("a convex shape is a body"), support),
+        Class::Complex(complex) => match complex.topology().convex() {
+            Some((hull, vertices)) => Part::Body(Body::of_hull(hull, Some(vertices)), hull.polytope()),
+            None => Part::Soup(complex),
+        },
+    }
+}
+
+fn reach(placed: Placed) -> DVec3 {
+    match placed.shape.class() {
+        Class::Convex(convex) => convex.reach(),
+        Class::Complex(complex) => complex.reach(),
+    }
+}
+
+impl Pair<'_> {
+    fn manifold(&self, region: region::Region, options: &ContactOptions) -> Manifold {
+        let region::Region { normal, mut points } = region;
+        if let Some(most) = options.max_points {
+            region::reduce(&mut points, normal, most.max(1));
+        }
+        let world = |p: DVec3| p / self.frame.scale + self.a.placement.translation;
+        let points = points.into_iter().map(|(primitives, touch)| ContactPoint {
+            point_on_a: world(touch.on_a),
+            point_on_b: world(touch.on_b),
+            depth: touch.depth / self.frame.scale,
+            primitives: [self.owner(self.a, primitives[0]), self.owner(self.b, primitives[1])],
+            features: touch.features,
+        });
+        Manifold { normal, points: points.collect() }
+    }
+
+    /// The user's primitive.
+    fn owner(&self, placed: Placed, primitive: u32) -> u32 {
+        match placed.shape.class() {
+            Class::Complex(complex) => complex.owner(primitive),
+            Class::Convex(_) => 0,
+        }
+    }
+
+    /// How two convex bodies lie to each other; `None` when they are further apart than the margin. `must` says that they are known
+    /// to have a common point.
+    fn meeting(&self, a: &dyn Support, b: &dyn Support, must: bool) -> Option<Meeting> {
+        let (at_a, at_b) = (self.a.placement, self.b.placement);
+        let [from_a, from_b] = &self.frame.common;
+        let found =
+            if must { Some(of_common((a, at_a), (b, at_b))) } else { epa::penetration(a, at_a, b, at_b) };
+        if let Some(found) = found {
+            let on_a = from_a.transform_point3(found.points.on_a);
+            let on_b = from_b.transform_point3(found.points.on_b);
+            let depth = found.depth * self.frame.scale;
+            return Some(Meeting { normal: found.direction, depth, on_a, on_b });
+        }
+        if self.margin == 0.0 {
+            return None;
+        }
+        let closest = gjk::closest_points(a, at_a, b, at_b);
+        let distance = closest.distance * self.frame.scale;
+        if distance > self.margin {
+            return None;
+        }
+        let on_a = from_a.transform_point3(closest.points.on_a);
+        let on_b = from_b.transform_point3(closest.points.on_b);
+        let between = || (on_a - on_b).try_normalize();
+        let axis = || match gjk::intersection(a, at_a, b, at_b) {
+            gjk::Outcome::Separated { axis } => Some(axis),
+            _ => None,
+        };
+        let normal = if distance < NEAR { axis().or_else(between) } else { between() }?;
+        Some(Meeting { normal, depth: -distance, on_a, on_b })
+    }
+
+    /// The contacts of two bodies along their normal: of their faces, when one lies across it, else of their edges and corners.
+    fn touches(&self, a: &face::Placed, b: &face::Placed, meeting: &Meeting) -> Vec<Touch> {
+        let Meeting { normal, depth, on_a, on_b } = *meeting;
+        let (mut face_a, mut face_b) = (a.face(-normal), b.face(normal));
+        let across = face_a.is_aligned() || face_b.is_aligned();
+        if !(across && face_a.is_faced()) {
+            face_a = face_a.slim(-normal);
+        }
+        if !(across && face_b.is_faced()) {
+            face_b = face_b.slim(normal);
+        }
+        let mut touches = self.clipped(a, &face_a, b, &face_b, normal);
+        let deepest = touches.iter().map(|touch| touch.depth).fold(f64::NEG_INFINITY, f64::max);
+        if deepest < depth - SAME_DEPTH - DEPTH_ERROR * depth.abs() {
+            let features = [feature_of(&face_a), feature_of(&face_b)];
+            touches.push(Touch { on_a, on_b, depth, features });
+        }
+        touches
+    }
+
+    /// The corners of what two faces have in common, seen along a normal from `b` to `a`, that are within the margin.
+    fn clipped(
+        &self,
+        a: &face::Placed,
+        face_a: &Face,
+        b: &face::Placed,
+        face_b: &Face,
+        normal: DVec3,
+    ) -> Vec<Touch> {
+        let (u, v) = normal.any_orthonormal_pair();
+        // Around a point of the contact, so that what is far away does not cost digits.
+        let origin = face_a.corners[0].point;
+        let flat = |point: DVec3| DVec2::new(u.dot(point - origin), v.dot(point - origin));
+        let (order_a, polygon_a) = projected(face_a, flat);
+        let (order_b, polygon_b) = projected(face_b, flat);
+        let base = origin - normal * origin.dot(normal);
+        let corners = clip(&polygon_a, &polygon_b);
+        let touch = |corner: clip::Clipped| {
+            let at = base + u * corner.at.x + v * corner.at.y;
+            let of = |face: &Face, order: &[usize], i: usize| face.corners[order[i % order.len()]];
+            let edge = |face: &Face, order: &[usize], i: usize| {
+                let (x, y) = (of(face, order, i).vertex, of(face, order, i + 1).vertex);
+                Feature::Edge(x.min(y), x.max(y))
+            };
+            let vertex = |face: &Face, order: &[usize], i: usize| Feature::Vertex(of(face, order, i).vertex);
+            let features = match corner.origin {
+                Origin::OfA(i) => [vertex(face_a, &order_a, i), feature_of(face_b)],
+                Origin::OfB(j) => [feature_of(face_a), vertex(face_b, &order_b, j)],
+                Origin::Crossing(i, j) => [edge(face_a, &order_a, i), edge(face_b, &order_b, j)],
+            };
+            let height_a = a.height(face_a, at, normal, -normal)?;
+            let height_b = b.height(face_b, at, normal, normal)?;
+            let depth = height_b - height_a;
+            let (on_a, on_b) = (at + normal * height_a, at + normal * height_b);
+            (depth >= -self.margin - SAME_DEPTH).then_some(Touch { on_a, on_b, depth, features })
+        };
+        corners.into_iter().filter_map(touch).collect()
+    }
+}
+
+/// What a point within a face is of.
+fn feature_of(face: &Face) -> Feature {
+    match face.corners[..] {
+        [corner] => Feature::Vertex(corner.vertex),
+        [from, to] => Feature::Edge(from.vertex.min(to.vertex), from.vertex.max(to.vertex)),
+        _ => Feature::Face(face.number),
+    }
+}
+
+/// The corners of a face in a plane, and which these are: of a polygon that is seen from its edge, the two ends.
+fn projected(face: &Face, flat: impl Fn(DVec3) -> DVec2) -> (Vec<usize>, Vec<DVec2>) {
+    let all: Vec<DVec2> = face.corners.iter().map(|corner| flat(corner.point)).collect();
+    let far = |from: DVec2| {
+        let distance = |&i: &usize| all[i].distance_squared(from);
+        (0..all.len()).max_by(|i, j| distance(i).total_cmp(&distance(j)).then(j.cmp(i))).unwrap_or(0)
+    };
+    if all.len() >= 3 {
+        let from = far(all[0]);
+        let to = far(all[from]);
+        if clip::area(&all).abs() <= THIN * all[from].distance_squared(all[to]) {
+            return (vec![from, to], vec![all[from], all[to]]);
+        }
+    }
+    ((0..all.len()).collect(), all)
+}
+
+/// The plane of a triangle, in the common frame.
+fn plane_of(map: &DAffine3, corners: [DVec3; 3]) -> Option<DVec3> {
+    let placed = corners.map(|p| face::Corner { point: map.transform_point3(p), vertex: 0 });
+    triangle_normal(&placed)
+}

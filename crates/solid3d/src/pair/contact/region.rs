@@ -1,0 +1,191 @@
+//! Contacts of primitives put together to regions of the surface.
+
+use std::collections::HashMap;
+
+use glam::{DVec2, DVec3};
+
+use super::{Part, Patch, Touch};
+use crate::hull::outline;
+
+/// Normals that differ by less than this angle, in radians, are one.
+const SAME_NORMAL: f64 = 1e-3;
+
+/// Points nearer to each other than this are one, in the unit of the pair.
+const SAME_POINT: f64 = 1e-8;
+
+/// Points that are off a plane by less than this are in it, in the unit of the pair.
+const FLAT: f64 = 1e-8;
+
+/// Contacts with one normal, each with its primitives. Space: common.
+pub(super) struct Region {
+    pub normal: DVec3,
+    pub points: Vec<([u32; 2], Touch)>,
+}
+
+/// Puts patches together whose primitives are connected on both sides, and whose normals are the same. In the order of their first
+/// primitives. Cost: follows the pairs of patches at one vertex.
+pub(super) fn regions(a: &Part, b: &Part, patches: Vec<Patch>) -> Vec<Region> {
+    let mut parent: Vec<usize> = (0..patches.len()).collect();
+    let corners: Vec<[Vec<u32>; 2]> = patches
+        .iter()
+        .map(|patch| [corners(a, patch.primitives[0]), corners(b, patch.primitives[1])])
+        .collect();
+    let mut at_vertex: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
+    for (i, [of_a, of_b]) in corners.iter().enumerate() {
+        for &x in of_a {
+            for &y in of_b {
+                let here = at_vertex.entry([x, y]).or_default();
+                for &j in &*here {
+                    if patches[i].normal.dot(patches[j].normal) > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL {
+                        unite(&mut parent, i, j);
+                    }
+                }
+                here.push(i);
+            }
+        }
+    }
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); patches.len()];
+    for i in 0..patches.len() {
+        members[root(&mut parent, i)].push(i);
+    }
+    let joined = members.into_iter().filter(|members| !members.is_empty()).map(|members| {
+        let deepest =
+            |&i: &usize| patches[i].touches.iter().map(|touch| touch.depth).fold(f64::MIN, f64::max);
+        let first = members
+            .iter()
+            .copied()
+            .max_by(|i, j| deepest(i).total_cmp(&deepest(j)).then(j.cmp(i)))
+            .expect("a region has a patch");
+        let normal = patches[first].normal;
+        let touches = members.iter().flat_map(|&i| {
+            let patch = &patches[i];
+            patch.touches.iter().map(|&touch| (patch.primitives, touch))
+        });
+        let points = thinned(touches.collect(), normal, members.len() > 1);
+        Region { normal, points }
+    });
+    joined.collect()
+}
+
+/// The vertices of a primitive by which it is connected to others; a body is connected to itself.
+fn corners(part: &Part, primitive: u32) -> Vec<u32> {
+    match part {
+        Part::Body(..) => vec![0],
+        Part::Soup(complex) => {
+            let mut corners: Vec<u32> =
+                complex.primitive(primitive).iter().map(|&i| complex.topology().welded(i)).collect();
+            corners.sort_unstable();
+            corners.dedup();
+            corners
+        }
+    }
+}
+
+fn unite(parent: &mut [usize], i: usize, j: usize) {
+    let (i, j) = (root(parent, i), root(parent, j));
+    parent[i.max(j)] = i.min(j);
+}
+
+/// The root of an element; the way to it is halved.
+fn root(parent: &mut [usize], mut i: usize) -> usize {
+    while parent[i] != i {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    i
+}
+
+/// Points without duplicates; of flat surfaces of several primitives, those at the outline, which say all of the others.
+fn thinned(points: Vec<([u32; 2], Touch)>, normal: DVec3, several: bool) -> Vec<([u32; 2], Touch)> {
+    let (u, v) = normal.any_orthonormal_pair();
+    let Some(origin) = points.first().map(|(_, touch)| touch.on_a) else { return points };
+    let flat = |touch: &Touch| DVec2::new(u.dot(touch.on_a - origin), v.dot(touch.on_a - origin));
+    if !several {
+        return points;
+    }
+    let places: Vec<DVec2> = points.iter().map(|(_, touch)| flat(touch)).collect();
+    let around = outline(&places, FLAT);
+    let height = |touch: &Touch| normal.dot(touch.on_a - origin);
+    let linear = |value: &dyn Fn(&Touch) -> f64| is_linear(&places, &around, |i| value(&points[i].1));
+    if linear(&height) && linear(&|touch: &Touch| touch.depth) {
+        return around.into_iter().map(|i| points[i]).collect();
+    }
+    without_duplicates(points, &places)
+}
+
+/// Of points at one place, the deepest; by a grid, whose cells hold few.
+fn without_duplicates(points: Vec<([u32; 2], Touch)>, places: &[DVec2]) -> Vec<([u32; 2], Touch)> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&i, &j| points[j].1.depth.total_cmp(&points[i].1.depth).then(i.cmp(&j)));
+    let mut kept_in: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
+    let mut kept = Vec::new();
+    for i in order {
+        let cell = (places[i] / SAME_POINT).floor();
+        let cell = [cell.x as i64, cell.y as i64];
+        let near = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [cell[0] + dx, cell[1] + dy]));
+        let same = |&j: &usize| {
+            let (p, q) = (&points[i].1, &points[j].1);
+            p.on_a.distance(q.on_a) <= SAME_POINT && p.on_b.distance(q.on_b) <= SAME_POINT
+        };
+        if !near.into_iter().any(|cell| kept_in.get(&cell).is_some_and(|others| others.iter().any(same))) {
+            kept_in.entry(cell).or_default().push(i);
+            kept.push(i);
+        }
+    }
+    kept.sort_unstable();
+    kept.into_iter().map(|i| points[i]).collect()
+}
+
+/// Whether a value at places in a plane is that of a linear function; `around` is their outline.
+fn is_linear(places: &[DVec2], around: &[usize], value: impl Fn(usize) -> f64) -> bool {
+    let Some(&first) = around.first() else { return true };
+    let furthest = |measure: &dyn Fn(usize) -> f64| {
+        around.iter().copied().max_by(|&i, &j| measure(i).total_cmp(&measure(j))).unwrap_or(first)
+    };
+    let second = furthest(&|i| places[i].distance_squared(places[first]));
+    let along = places[second] - places[first];
+    let third = furthest(&|i| along.perp_dot(places[i] - places[first]).abs());
+    let length_squared = along.length_squared();
+    if length_squared == 0.0 {
+        return (0..places.len()).all(|i| (value(i) - value(first)).abs() <= FLAT);
+    }
+    let across = |i: usize| along.perp_dot(places[i] - places[first]);
+    let on_line = |i: usize| {
+        let t = along.dot(places[i] - places[first]) / length_squared;
+        value(first) + (value(second) - value(first)) * t
+    };
+    let slope = if across(third).abs() > FLAT * length_squared.sqrt() {
+        (value(third) - on_line(third)) / across(third)
+    } else {
+        0.0
+    };
+    (0..places.len()).all(|i| (value(i) - on_line(i) - slope * across(i)).abs() <= FLAT)
+}
+
+/// Leaves at most so many points: the deepest, then always the one furthest from those.
+pub(super) fn reduce(points: &mut Vec<([u32; 2], Touch)>, normal: DVec3, most: usize) {
+    if points.len() <= most {
+        return;
+    }
+    let across = |i: usize, j: usize| {
+        let v = points[i].1.on_a - points[j].1.on_a;
+        (v - normal * v.dot(normal)).length_squared()
+    };
+    let deepest = (0..points.len())
+        .max_by(|&i, &j| points[i].1.depth.total_cmp(&points[j].1.depth).then(j.cmp(&i)))
+        .unwrap_or(0);
+    let mut kept = vec![deepest];
+    let mut distance: Vec<f64> = (0..points.len()).map(|i| across(i, deepest)).collect();
+    while kept.len() < most {
+        let next = (0..points.len())
+            .filter(|i| !kept.contains(i))
+            .max_by(|&i, &j| distance[i].total_cmp(&distance[j]).then(j.cmp(&i)))
+            .expect("there are more points than are kept");
+        kept.push(next);
+        for (i, nearest) in distance.iter_mut().enumerate() {
+            *nearest = nearest.min(across(i, next));
+        }
+    }
+    kept.sort_unstable();
+    *points = kept.into_iter().map(|i| points[i]).collect();
+}

@@ -1,0 +1,163 @@
+//! The flat faces of a convex hull, for contacts: triangles that lie in one plane up to rounding are one face.
+//!
+//! [`Hull`] merges what is exactly coplanar. The corners of a prism that was turned are not, by their rounding; here they are.
+
+use std::collections::HashMap;
+
+use glam::{DVec2, DVec3};
+use solid_convex::unit_scale;
+
+use crate::bounds::Aabb;
+use crate::hull::{Hull, outline};
+
+/// Corners this near to the plane of a face, relative to the extent of the hull, belong to it: far above the rounding of
+/// positions that were turned and moved, far below what can be seen.
+const FLATNESS: f64 = 1e-9;
+
+/// The faces of a convex hull.
+#[derive(Clone, Debug)]
+pub(crate) struct Facets {
+    faces: Vec<Facet>,
+    /// The faces at point `i` are `at_point[starts[i]..starts[i + 1]]`.
+    starts: Vec<u32>,
+    at_point: Vec<u32>,
+    /// The extreme points: the faces of a hull that is a segment or a point.
+    extreme: Vec<u32>,
+}
+
+/// A face: a convex polygon.
+#[derive(Clone, Debug)]
+pub(crate) struct Facet {
+    /// The outward unit normal.
+    pub normal: DVec3,
+    /// The corners, in order around it.
+    pub corners: Vec<u32>,
+}
+
+impl Facets {
+    /// The faces of the hull of points, of which there must be one. A flat hull has two, one for each side. O(n log n).
+    pub fn of(points: &[DVec3]) -> Facets {
+        let bounds = Aabb::of_points(points.iter().copied());
+        let scale = unit_scale(bounds.half_extents().max_element());
+        let center = bounds.center();
+        // In a unit near the extent, so that no product overflows.
+        let unit: Vec<DVec3> = points.iter().map(|&p| (p - center) * scale).collect();
+        let hull = Hull::of(&unit);
+        let (triangles, extreme) = hull
+            .map_or((Vec::new(), Vec::new()), |hull| (hull.triangles().to_vec(), hull.vertices().to_vec()));
+        let faces = merged(&unit, &triangles);
+        let mut starts = vec![0u32; points.len() + 1];
+        for &corner in faces.iter().flat_map(|face| &face.corners) {
+            starts[corner as usize + 1] += 1;
+        }
+        for i in 0..points.len() {
+            starts[i + 1] += starts[i];
+        }
+        let mut next = starts.clone();
+        let mut at_point = vec![0; starts[points.len()] as usize];
+        for (index, face) in (0u32..).zip(&faces) {
+            for &corner in &face.corners {
+                at_point[next[corner as usize] as usize] = index;
+                next[corner as usize] += 1;
+            }
+        }
+        Facets { faces, starts, at_point, extreme }
+    }
+
+    /// How many faces there are.
+    pub fn len(&self) -> u32 {
+        self.faces.len() as u32
+    }
+
+    /// A face.
+    pub fn get(&self, face: u32) -> &Facet {
+        &self.faces[face as usize]
+    }
+
+    /// The faces that have a point for a corner; none when the hull has no faces.
+    pub fn at(&self, point: usize) -> &[u32] {
+        &self.at_point[self.starts[point] as usize..self.starts[point + 1] as usize]
+    }
+
+    /// The extreme points.
+    pub fn extreme(&self) -> &[u32] {
+        &self.extreme
+    }
+}
+
+/// Grows a face from each triangle, the largest first, over its neighbours in the same plane.
+fn merged(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Facet> {
+    let corner = |index: u32| points[index as usize];
+    let cross = |[i, j, k]: [u32; 3]| (corner(j) - corner(i)).cross(corner(k) - corner(i));
+    let mut beyond = HashMap::new();
+    for (index, &[i, j, k]) in triangles.iter().enumerate() {
+        for edge in [[i, j], [j, k], [k, i]] {
+            beyond.insert(edge, index);
+        }
+    }
+    let mut seeds: Vec<usize> = (0..triangles.len()).collect();
+    seeds.sort_by(|&i, &j| {
+        cross(triangles[j]).length_squared().total_cmp(&cross(triangles[i]).length_squared()).then(i.cmp(&j))
+    });
+    let mut taken = vec![false; triangles.len()];
+    let mut faces = Vec::new();
+    for seed in seeds {
+        // What is left of no area is a sliver within a face, or has no plane.
+        let Some(normal) = cross(triangles[seed]).try_normalize().filter(|_| !taken[seed]) else { continue };
+        let origin = corner(triangles[seed][0]);
+        let in_plane = |&index: &u32| normal.dot(corner(index) - origin).abs() <= FLATNESS;
+        let (mut stack, mut members) = (vec![seed], Vec::new());
+        taken[seed] = true;
+        // Each triangle enters once.
+        while let Some(index) = stack.pop() {
+            let [i, j, k] = triangles[index];
+            members.extend([i, j, k]);
+            for edge in [[j, i], [k, j], [i, k]] {
+                if let Some(&other) = beyond.get(&edge) {
+                    let same_side = cross(triangles[other]).dot(normal) >= -FLATNESS;
+                    if !taken[other] && same_side && triangles[other].iter().all(in_plane) {
+                        taken[other] = true;
+                        stack.push(other);
+                    }
+                }
+            }
+        }
+        members.sort_unstable();
+        members.dedup();
+        let (u, v) = normal.any_orthonormal_pair();
+        let flat: Vec<DVec2> =
+            members.iter().map(|&i| DVec2::new(u.dot(corner(i)), v.dot(corner(i)))).collect();
+        let corners = outline(&flat, FLATNESS).into_iter().map(|i| members[i]).collect();
+        faces.push(Facet { normal, corners });
+    }
+    faces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DMat3;
+
+    /// Sides of a prism, turned so that its rounded corners are in no plane.
+    #[test]
+    fn rounding_parts_no_face() {
+        let turn = DMat3::from_rotation_x(0.3) * DMat3::from_rotation_z(1.1);
+        let rim = |i: u32| DMat3::from_rotation_y(f64::from(i) * std::f64::consts::FRAC_PI_4) * DVec3::X;
+        let points: Vec<DVec3> =
+            (0..8).flat_map(|i| [rim(i) + DVec3::Y, rim(i) - DVec3::Y]).map(|p| turn * p + 5.0).collect();
+        let facets = Facets::of(&points);
+        let mut corners: Vec<usize> = facets.faces.iter().map(|face| face.corners.len()).collect();
+        corners.sort_unstable();
+        assert_eq!(corners, [4, 4, 4, 4, 4, 4, 4, 4, 8, 8]);
+        assert!((0..16).all(|i| facets.at(i).len() == 3));
+    }
+
+    #[test]
+    fn hulls_without_a_volume_have_what_they_have() {
+        let [x, y, z] = DVec3::AXES;
+        assert_eq!(Facets::of(&[x, y, z]).faces.len(), 2);
+        let segment = Facets::of(&[x, 2.0 * x, 3.0 * x]);
+        assert_eq!((segment.faces.len(), segment.extreme()), (0, [0, 2].as_slice()));
+        assert_eq!(Facets::of(&[x, x]).extreme().len(), 1);
+    }
+}

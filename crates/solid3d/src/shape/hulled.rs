@@ -1,0 +1,35 @@
+//! A convex hull as a shape: its support mapping, and its faces when they are asked for.
+
+use std::sync::OnceLock;
+
+use glam::DVec3;
+use solid_convex::Polytope;
+
+use super::facets::Facets;
+
+/// A polytope, with its faces once they were needed.
+#[derive(Clone, Debug)]
+pub(crate) struct Hulled {
+    polytope: Polytope,
+    facets: OnceLock<Facets>,
+}
+
+impl Hulled {
+    /// The hull of points; `None` for none.
+    pub fn new(points: Vec<DVec3>) -> Option<Hulled> {
+        Some(Hulled { polytope: Polytope::new(points)?, facets: OnceLock::new() })
+    }
+
+    pub fn polytope(&self) -> &Polytope {
+        &self.polytope
+    }
+
+    pub fn points(&self) -> &[DVec3] {
+        self.polytope.points()
+    }
+
+    /// The faces. Cost: O(n log n) at the first call.
+    pub fn facets(&self) -> &Facets {
+        self.facets.get_or_init(|| Facets::of(self.points()))
+    }
+}

@@ -1,0 +1,504 @@
+//! Contacts of all kinds of shapes: by their laws, against the penetration depth, and known cases.
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking and says what it did"
+)]
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
+
+use common::{placement, random_complex, random_mesh, sheet};
+use glam::{DAffine3, DQuat, DVec3};
+use rand::Rng;
+use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
+use solid3d::query::{self, ContactOptions, ContactPoint, Feature, Manifold};
+use solid3d::{Shape, World, glam};
+
+const SEED: u64 = 20_262;
+
+fn at(x: f64, y: f64, z: f64) -> DAffine3 {
+    DAffine3::from_translation(DVec3::new(x, y, z))
+}
+
+fn within(margin: f64) -> ContactOptions {
+    ContactOptions { margin, ..ContactOptions::default() }
+}
+
+fn contacts(a: &Shape, pa: &DAffine3, b: &Shape, pb: &DAffine3) -> Vec<Manifold> {
+    query::contacts(a, pa, b, pb, &ContactOptions::default()).unwrap()
+}
+
+/// The only region.
+fn only(a: &Shape, pa: &DAffine3, b: &Shape, pb: &DAffine3) -> Manifold {
+    let mut found = contacts(a, pa, b, pb);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    found.remove(0)
+}
+
+fn cube() -> Shape {
+    Shape::cuboid([1.0; 3]).unwrap()
+}
+
+/// A flat floor of squares of two triangles each, from -5 to 5.
+fn floor(squares: u32) -> Shape {
+    sheet(squares + 1, squares + 1, [false, false], |u, v| DVec3::new(10.0 * v - 5.0, 0.0, 10.0 * u - 5.0))
+        .shape()
+}
+
+/// The surface of a unit cube, of 12 triangles.
+fn cube_mesh() -> Shape {
+    let corner = |i: u32| DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -0.5 } else { 0.5 }));
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles: Vec<[u32; 3]> = sides.iter().flat_map(|&[i, j, k, l]| [[i, j, k], [i, k, l]]).collect();
+    Shape::mesh((0..8).map(corner).collect::<Vec<_>>(), triangles).unwrap()
+}
+
+/// A length that bounds the extents of both shapes and the distance of their origins.
+fn size_of(a: &Shape, pa: &DAffine3, b: &Shape, pb: &DAffine3) -> f64 {
+    let extent = |shape: &Shape, at: &DAffine3| {
+        let here = DAffine3 { translation: DVec3::ZERO, ..*at };
+        let bounds = query::bounds(shape, &here).unwrap();
+        bounds.min.abs().max(bounds.max.abs()).max_element()
+    };
+    extent(a, pa) + extent(b, pb) + (pa.translation - pb.translation).abs().max_element()
+}
+
+fn deepest(manifolds: &[Manifold]) -> f64 {
+    manifolds.iter().flat_map(|m| &m.points).map(|point| point.depth).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// What holds of every answer.
+fn assert_laws(manifolds: &[Manifold], margin: f64, size: f64, context: &str) {
+    for Manifold { normal, points } in manifolds {
+        assert!((normal.length() - 1.0).abs() < 1e-9, "{context}: {normal}");
+        assert!(!points.is_empty(), "{context}: a manifold without points");
+        for ContactPoint { point_on_a, point_on_b, depth, .. } in points {
+            assert!(depth.is_finite() && *depth >= -margin - 1e-9 * size, "{context}: {depth}");
+            let off = (point_on_b - point_on_a).distance(normal * *depth);
+            // The deepest points of round bodies are known to the square root of the error of the depth.
+            let limit = 3e-3 * depth.abs() + 1e-8 * size;
+            assert!(off <= limit, "{context}: the points of depth {depth} are {off:e} off the normal");
+        }
+    }
+}
+
+/// All pairs of kinds of convex shapes: the points are on both surfaces, the deepest is as deep as the penetration, the swapped pair has the
+/// same depth.
+#[test]
+fn convex_pairs_agree_with_the_penetration_depth() {
+    for (regime, hits_expected) in [
+        (Regime::Random, 30..=70),
+        (Regime::SizeRatio, 30..=70),
+        (Regime::NearTouching { relative_gap: 1e-6 }, 30..=70),
+        (Regime::Flat, 30..=70),
+        (Regime::Concentric, 70..=100),
+    ] {
+        let (mut rng, mut hits, mut tested, mut several) = (seeded(SEED), 0, 0, 0);
+        for i in 0..1_000 {
+            let Pair { a: reference_a, pa, b: reference_b, pb, .. } = random_pair(&mut rng, regime);
+            let (Ok(a), Ok(b)) = (common::try_shape_of(&reference_a), common::try_shape_of(&reference_b))
+            else {
+                continue;
+            };
+            tested += 1;
+            let context = format!("{regime:?}, pair {i}: {} {pa:?} {} {pb:?}", a.kind(), b.kind());
+            let size = size_of(&a, &pa, &b, &pb);
+            let found = contacts(&a, &pa, &b, &pb);
+            let penetration = query::penetration(&a, &pa, &b, &pb).unwrap();
+            assert_eq!(found.is_empty(), penetration.is_none(), "{context}");
+            assert_laws(&found, 0.0, size, &context);
+            let Some(penetration) = penetration else { continue };
+            hits += 1;
+            let depth = deepest(&found);
+            several += usize::from(found[0].points.len() > 1);
+            let error = 1e-6 * penetration.depth + 1e-9 * size;
+            assert!(
+                (depth - penetration.depth).abs() <= error,
+                "{context}: {depth}, {penetration:?}, {found:?}"
+            );
+            for point in &found[0].points {
+                let normal = found[0].normal;
+                for (shape, placement, point, out, what) in
+                    [(&a, &pa, point.point_on_a, -normal, "a"), (&b, &pb, point.point_on_b, normal, "b")]
+                {
+                    let on = query::closest_point(shape, placement, point).unwrap();
+                    let limit = 1e-3 * penetration.depth + 1e-6 * size;
+                    assert!(
+                        on.distance.abs() <= limit,
+                        "{context}: {point} is {:e} off {what}, {:?}",
+                        on.distance,
+                        found[0]
+                    );
+                    let outside = point + out * (2.0 * limit);
+                    let inside = query::contains_point(shape, placement, outside).unwrap();
+                    assert!(!inside, "{context}: {point} is within {what}, {:?}", found[0]);
+                }
+            }
+            let swapped = contacts(&b, &pb, &a, &pa);
+            let error = 1e-3 * depth + 1e-9 * size;
+            assert!((deepest(&swapped) - depth).abs() <= error, "{context}: swapped {swapped:?}, {found:?}");
+        }
+        println!("{regime:?}: {hits} of {tested} hit, {several} with several points");
+        assert!(hits_expected.contains(&(100 * hits / tested)), "{regime:?}: {hits} of {tested}");
+        assert!(several > 0, "{regime:?}");
+    }
+}
+
+/// Swapped, the same points and the opposite normal, where there is but one answer.
+#[test]
+fn swapping_mirrors() {
+    let pose = DAffine3::from_rotation_translation(DQuat::from_rotation_z(0.003), DVec3::new(0.2, 0.98, 0.1));
+    for (a, b) in
+        [(cube(), cube()), (cube(), floor(7)), (cube_mesh(), floor(7)), (Shape::sphere(0.5).unwrap(), cube())]
+    {
+        let offset = if b.triangles().is_some() { at(0.0, -0.49, 0.0) } else { DAffine3::IDENTITY };
+        let place = DAffine3 { translation: pose.translation + offset.translation, ..pose };
+        let here = DAffine3::IDENTITY;
+        let found = only(&a, &place, &b, &here);
+        let mirrored = only(&b, &here, &a, &place);
+        assert!((found.normal + mirrored.normal).length() < 1e-12);
+        assert_eq!(found.points.len(), mirrored.points.len());
+        for point in &found.points {
+            let same = mirrored.points.iter().any(|other| {
+                other.point_on_a.distance(point.point_on_b) < 1e-9 && (other.depth - point.depth).abs() < 1e-9
+            });
+            assert!(same, "{point:?} is not in {mirrored:?}");
+        }
+    }
+}
+
+fn assert_flat(found: &Manifold, normal: DVec3, depth: f64, count: usize) {
+    assert!((found.normal - normal).length() < 1e-9, "{found:?}");
+    assert_eq!(found.points.len(), count, "{found:#?}");
+    for point in &found.points {
+        assert!((point.depth - depth).abs() < 1e-7, "{point:?} is not {depth} deep");
+    }
+}
+
+#[test]
+fn faces_on_faces() {
+    let here = DAffine3::IDENTITY;
+    assert_flat(&only(&cube(), &at(0.0, 0.9, 0.0), &cube(), &here), DVec3::Y, 0.1, 4);
+    assert_flat(&only(&cube(), &at(0.3, 0.9, 0.2), &cube(), &here), DVec3::Y, 0.1, 4);
+    let turned = at(0.0, 0.9, 0.0) * DAffine3::from_rotation_y(FRAC_PI_4);
+    assert_flat(&only(&cube(), &turned, &cube(), &here), DVec3::Y, 0.1, 8);
+    // All eight corners of a face of eight, on the whole of it.
+    let rim = |i: u32, y: f64| DQuat::from_rotation_y(f64::from(i) * FRAC_PI_4) * DVec3::X + DVec3::Y * y;
+    let prism =
+        Shape::convex_hull(&(0..8).flat_map(|i| [rim(i, 0.5), rim(i, -0.5)]).collect::<Vec<_>>()).unwrap();
+    let plate = Shape::cuboid([9.0, 1.0, 9.0]).unwrap();
+    for turn in 0..10 {
+        let turn = DAffine3::from_rotation_x(f64::from(turn));
+        let found = only(&prism, &(turn * at(0.0, 0.9, 0.0)), &plate, &turn);
+        assert_flat(&found, turn.transform_vector3(DVec3::Y), 0.1, 8);
+        let corners: DVec3 = found.points.iter().map(|point| point.point_on_a).sum();
+        let middle = turn.transform_point3(DVec3::Y * 0.4);
+        assert!((corners / 8.0).distance(middle) < 1e-9, "on one side only: {found:?}");
+    }
+    // Under any affine placement.
+    let shear =
+        DAffine3::from_cols(DVec3::new(2.0, 0.0, 0.0), DVec3::new(0.5, 1.0, 0.2), DVec3::Z, DVec3::Y * 0.95);
+    assert_flat(&only(&cube(), &shear, &plate, &here), DVec3::Y, 0.05, 4);
+}
+
+#[test]
+fn round_shapes_on_faces() {
+    let (plate, here) = (Shape::cuboid([9.0, 1.0, 9.0]).unwrap(), DAffine3::IDENTITY);
+    let cylinder = Shape::cylinder(0.5, 1.0).unwrap();
+    let lying = |y: f64| at(0.0, y, 0.0) * DAffine3::from_rotation_z(FRAC_PI_2);
+    let standing = only(&cylinder, &at(0.0, 0.9, 0.0), &plate, &here);
+    assert!(standing.points.len() >= 8, "{standing:?}");
+    assert_flat(&standing, DVec3::Y, 0.1, standing.points.len());
+    assert!(standing.points.iter().all(|p| (p.point_on_a.with_y(0.0).length() - 0.5).abs() < 1e-9));
+    assert_flat(&only(&cylinder, &lying(0.9), &plate, &here), DVec3::Y, 0.1, 2);
+    let cone = Shape::cone(0.5, 1.0).unwrap();
+    let base = only(&cone, &at(0.0, 0.9, 0.0), &plate, &here);
+    assert_flat(&base, DVec3::Y, 0.1, standing.points.len());
+    let apex_down = at(0.0, 0.9, 0.0) * DAffine3::from_rotation_z(2.0 * FRAC_PI_2);
+    assert_flat(&only(&cone, &apex_down, &plate, &here), DVec3::Y, 0.1, 1);
+    let capsule = Shape::capsule(0.25, 1.0).unwrap();
+    assert_flat(&only(&capsule, &lying(0.7), &plate, &here), DVec3::Y, 0.05, 2);
+    assert_flat(&only(&capsule, &at(0.0, 1.2, 0.0), &plate, &here), DVec3::Y, 0.05, 1);
+    assert_flat(&only(&capsule, &lying(0.4), &capsule, &lying(0.0)), DVec3::Y, 0.1, 2);
+    assert_flat(&only(&Shape::sphere(0.5).unwrap(), &at(0.3, 0.9, 0.2), &plate, &here), DVec3::Y, 0.1, 1);
+}
+
+#[test]
+fn crossing_edges_have_one_point() {
+    let tip = |turn: DAffine3| turn * DAffine3::from_rotation_z(FRAC_PI_4);
+    let upper = at(0.0, 2.0 * 0.5f64.sqrt() - 0.02, 0.0) * DAffine3::from_rotation_y(FRAC_PI_2);
+    let found = only(&cube(), &tip(upper), &cube(), &tip(DAffine3::IDENTITY));
+    assert_flat(&found, DVec3::Y, 0.02, 1);
+    // Along each other there are two.
+    let beside = at(0.0, 2.0 * 0.5f64.sqrt() + 0.02, 0.3);
+    let here = tip(DAffine3::IDENTITY);
+    let found = query::contacts(&cube(), &tip(beside), &cube(), &here, &within(0.05)).unwrap();
+    assert_flat(&found[0], DVec3::Y, -0.02, 2);
+}
+
+/// A box a little off a floor, tilted: all four corners within the margin, with their gaps.
+#[test]
+fn gaps_within_the_margin_are_contacts() {
+    let (plate, here) = (Shape::cuboid([9.0, 1.0, 9.0]).unwrap(), DAffine3::IDENTITY);
+    let tilted = at(0.0, 1.01, 0.0) * DAffine3::from_rotation_z(0.005);
+    for floor in [&plate, &floor(4)] {
+        let lift = if floor.triangles().is_some() { -0.5 } else { 0.0 };
+        let place = at(0.0, lift, 0.0) * tilted;
+        assert!(contacts(&cube(), &place, floor, &here).is_empty());
+        let found = query::contacts(&cube(), &place, floor, &here, &within(0.05)).unwrap();
+        assert_eq!((found.len(), found[0].points.len()), (1, 4), "{found:?}");
+        assert_laws(&found, 0.05, 10.0, "tilted");
+        let mut depths: Vec<f64> = found[0].points.iter().map(|point| point.depth).collect();
+        depths.sort_by(f64::total_cmp);
+        assert!((depths[3] - depths[0] - 0.005).abs() < 1e-5 && depths[3] < 0.0, "{depths:?}");
+        let near = query::contacts(&cube(), &place, floor, &here, &within(0.008)).unwrap();
+        assert_eq!(near[0].points.len(), 2, "{near:?}");
+    }
+    for gap in [1e-13, 1e-11, 1e-9, 1e-6] {
+        let found = query::contacts(&cube(), &at(0.0, 1.0 + gap, 0.0), &plate, &here, &within(0.01)).unwrap();
+        assert_eq!((found[0].points.len(), found[0].normal), (4, DVec3::Y), "{gap}: {found:?}");
+    }
+}
+
+/// Two unit cubes of triangles, 0.30 in each other: that deep, everywhere.
+#[test]
+fn cubes_of_triangles_are_as_deep_as_cubes() {
+    let mesh = cube_mesh();
+    let solid = mesh.clone().into_solid().unwrap();
+    for (a, b) in [(&mesh, &mesh), (&mesh, &solid), (&solid, &solid), (&mesh, &cube()), (&solid, &cube())] {
+        for place in [at(0.7, 0.0, 0.0), at(0.7, 0.1, 0.2)] {
+            assert_flat(&only(a, &place, b, &DAffine3::IDENTITY), DVec3::X, 0.3, 4);
+        }
+    }
+    // A surface has no inside.
+    let small = Shape::cuboid([0.1; 3]).unwrap();
+    assert!(contacts(&small, &at(0.1, 0.0, 0.0), &mesh, &DAffine3::IDENTITY).is_empty());
+    assert_eq!(contacts(&small, &at(0.1, 0.0, 0.0), &solid, &DAffine3::IDENTITY).len(), 1);
+}
+
+/// Sliding over a floor of triangles gives what one big box would: its normal, and the corners of what slides.
+#[test]
+fn internal_edges_have_no_normals() {
+    let mut rng = seeded(SEED);
+    let block = Shape::cuboid([1.0, 1.0, 1.5]).unwrap();
+    let cylinder = Shape::cylinder(0.5, 1.0).unwrap();
+    let sphere = Shape::sphere(0.5).unwrap();
+    for squares in [3, 10, 40] {
+        let floor = floor(squares);
+        for step in 0..60 {
+            let slide = DVec3::new(rng.random_range(-2.0..2.0), 0.0, rng.random_range(-2.0..2.0));
+            let depth = if step % 3 == 0 { 0.2 } else { 0.001 };
+            let turn =
+                DAffine3::from_rotation_y(if step % 2 == 0 { 0.0 } else { rng.random_range(0.0..TAU) });
+            for (shape, half, count) in
+                [(&block, 0.5, 4), (&cube_mesh(), 0.5, 4), (&cylinder, 0.5, 16), (&sphere, 0.5, 1)]
+            {
+                let place = DAffine3::from_translation(slide + DVec3::Y * (half - depth)) * turn;
+                let found = only(shape, &place, &floor, &DAffine3::IDENTITY);
+                assert_eq!(found.normal, DVec3::Y, "{squares}, step {step}: {found:?}");
+                // Where only the arc beyond a corner of a circle reaches a triangle, that adds a point.
+                let more = if count == 16 { found.points.len().clamp(16, 24) } else { count };
+                assert_flat(&found, DVec3::Y, depth, more);
+            }
+        }
+    }
+}
+
+/// A convex edge of a mesh is no internal one.
+#[test]
+fn ridges_have_normals() {
+    let ridge = Shape::mesh(
+        [
+            [-1.0, 0.0, -3.0],
+            [-1.0, 0.0, 3.0],
+            [0.0, 1.0, -3.0],
+            [0.0, 1.0, 3.0],
+            [1.0, 0.0, -3.0],
+            [1.0, 0.0, 3.0],
+        ]
+        .map(DVec3::from),
+        [[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]],
+    )
+    .unwrap();
+    let found = only(&cube(), &at(0.0, 1.49, 0.0), &ridge, &DAffine3::IDENTITY);
+    assert_flat(&found, DVec3::Y, 0.01, 2);
+    // In the valley below it, a ball touches both sides.
+    let flipped = DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0));
+    let ball = Shape::sphere(0.5).unwrap();
+    let found = contacts(&ball, &at(0.0, -1.0 + 0.5f64.sqrt() - 0.01, 0.1), &ridge, &flipped);
+    let mut normals: Vec<f64> = found.iter().map(|manifold| manifold.normal.x).collect();
+    normals.sort_by(f64::total_cmp);
+    assert_eq!(found.len(), 2, "{found:#?}");
+    assert!((normals[0] + 0.5f64.sqrt()).abs() < 1e-9 && (normals[1] - 0.5f64.sqrt()).abs() < 1e-9);
+}
+
+/// Separate regions are reported apart.
+#[test]
+fn a_table_stands_on_its_legs() {
+    let legs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let mut vertices = Vec::new();
+    let mut builder_legs = Vec::new();
+    for (x, z) in legs {
+        let first = vertices.len() as u32;
+        for i in 0..8u32 {
+            let corner = DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -0.1 } else { 0.1 }));
+            vertices.push(corner * DVec3::new(1.0, 5.0, 1.0) + DVec3::new(x, 0.5, z));
+        }
+        builder_legs.push((first..first + 8).collect::<Vec<u32>>());
+    }
+    let table = builder_legs
+        .iter()
+        .fold(solid3d::ComplexShapeBuilder::new(vertices), |builder, leg| builder.polyhedron(leg))
+        .build()
+        .unwrap();
+    let found = contacts(&table, &at(0.0, -0.01, 0.0), &floor(10), &DAffine3::IDENTITY);
+    assert_eq!(found.len(), 4, "{found:#?}");
+    for (leg, manifold) in (0..).zip(&found) {
+        assert_flat(manifold, DVec3::Y, 0.01, 4);
+        assert!(manifold.points.iter().all(|point| point.primitives[0] == leg));
+    }
+}
+
+fn names(manifold: &Manifold) -> BTreeSet<([u32; 2], [Feature; 2])> {
+    manifold.points.iter().map(|point| (point.primitives, point.features)).collect()
+}
+
+/// While the same parts are in contact, the same names: each its own.
+#[test]
+fn names_persist() {
+    let plate = Shape::cuboid([4.0, 1.0, 4.0]).unwrap();
+    let shapes = [cube(), Shape::cylinder(0.5, 1.0).unwrap(), cube_mesh(), Shape::capsule(0.2, 0.6).unwrap()];
+    for (k, shape) in shapes.iter().enumerate() {
+        let mut before = None;
+        for frame in 0..50 {
+            let t = f64::from(frame);
+            let turn =
+                DQuat::from_rotation_y(0.3 + 0.001 * t) * DQuat::from_rotation_z(1e-4 * (0.1 * t).sin());
+            let place = DAffine3::from_rotation_translation(turn, DVec3::new(0.002 * t, 0.95, 0.1));
+            let found = query::contacts(shape, &place, &plate, &DAffine3::IDENTITY, &within(0.1)).unwrap();
+            let now = names(&found[0]);
+            if k < 3 {
+                assert_eq!(now.len(), found[0].points.len(), "shape {k}: {found:#?}");
+            }
+            assert!(before.is_none_or(|before| before == now), "shape {k}, frame {frame}: {found:#?}");
+            before = Some(now);
+        }
+    }
+}
+
+#[test]
+fn at_most_so_many_points() {
+    let (plate, here) = (Shape::cuboid([9.0, 1.0, 9.0]).unwrap(), DAffine3::IDENTITY);
+    let cylinder = Shape::cylinder(0.5, 1.0).unwrap();
+    for most in [0, 1, 2, 4, 7] {
+        let options = ContactOptions { max_points: Some(most), ..ContactOptions::default() };
+        let found = query::contacts(&cylinder, &at(0.0, 0.9, 0.0), &plate, &here, &options).unwrap();
+        assert_eq!(found[0].points.len(), most.max(1));
+        if most == 4 {
+            let middle: DVec3 = found[0].points.iter().map(|point| point.point_on_a).sum();
+            assert!((middle / 4.0).with_y(0.0).length() < 1e-9, "four that carry it: {found:?}");
+        }
+    }
+}
+
+/// Meshes and complex shapes, also degenerate ones, in any place: the laws hold, and there are contacts if and only if they intersect.
+#[test]
+fn soups_obey_the_laws() {
+    let mut rng = seeded(SEED);
+    let (mut hits, cases) = (0, 400);
+    for case in 0..cases {
+        let soup = |rng: &mut _| {
+            let soup: common::Soup =
+                if case % 3 == 0 { random_complex(rng, 6) } else { random_mesh(rng, 30) };
+            soup.shape()
+        };
+        let (a, other) = (soup(&mut rng), soup(&mut rng));
+        let Pair { b, .. } = random_pair(&mut rng, Regime::Random);
+        let b = if case % 2 == 0 { other } else { common::try_shape_of(&b).unwrap_or(other) };
+        let places = [0, 1].map(|_| placement(&mut rng, 1.3));
+        let context = format!("case {case}: {} {:?} {} {:?}", a.kind(), places[0], b.kind(), places[1]);
+        let size = size_of(&a, &places[0], &b, &places[1]);
+        let found = contacts(&a, &places[0], &b, &places[1]);
+        assert_eq!(
+            !found.is_empty(),
+            query::intersects(&a, &places[0], &b, &places[1]).unwrap(),
+            "{context}"
+        );
+        assert_laws(&found, 0.0, size, &context);
+        hits += usize::from(!found.is_empty());
+        let wide = query::contacts(&a, &places[0], &b, &places[1], &within(0.1 * size)).unwrap();
+        assert_laws(&wide, 0.1 * size, size, &context);
+    }
+    common::assert_rate("soups", hits, cases);
+}
+
+#[test]
+fn degenerate_input_has_answers() {
+    let here = DAffine3::IDENTITY;
+    let points = [vec![DVec3::ZERO], vec![DVec3::ZERO, DVec3::X], vec![DVec3::ZERO, DVec3::X, DVec3::Z]];
+    let mut shapes: Vec<Shape> = points.iter().map(|points| Shape::convex_hull(points).unwrap()).collect();
+    shapes.push(Shape::mesh([DVec3::ZERO, DVec3::X], [[0, 1, 1], [0, 0, 0], [0, 0, 1]]).unwrap());
+    shapes.push(Shape::mesh([DVec3::ZERO, DVec3::X, DVec3::Z], [[0, 1, 2], [0, 2, 1], [0, 1, 2]]).unwrap());
+    shapes.extend([
+        cube(),
+        cube_mesh(),
+        floor(2),
+        Shape::cone(1.0, 1.0).unwrap(),
+        Shape::sphere(1e-6).unwrap(),
+    ]);
+    for a in &shapes {
+        for b in &shapes {
+            for place in [here, at(0.5, 0.0, 0.0), at(0.0, -0.5, 0.0), at(0.5, 0.5, 0.5)] {
+                for size in [1e-90, 1e-6, 1.0, 1e6, 1e90] {
+                    let scaled = |at: DAffine3| DAffine3::from_scale(DVec3::splat(size)) * at;
+                    let found = contacts(a, &scaled(place), b, &scaled(here));
+                    let meet = query::intersects(a, &scaled(place), b, &scaled(here)).unwrap();
+                    assert_eq!(!found.is_empty(), meet, "{} {} {place:?} {size}", a.kind(), b.kind());
+                    assert_laws(&found, 0.0, 4.0 * size, "degenerate");
+                }
+            }
+        }
+    }
+}
+
+/// Scaling a scene by a power of two scales the answer, to the bit.
+#[test]
+fn powers_of_two_change_nothing() {
+    let mut rng = seeded(SEED);
+    for i in 0..200 {
+        let Pair { a, pa, b, pb, .. } = random_pair(&mut rng, Regime::Random);
+        let (Ok(mut a), Ok(b)) = (common::try_shape_of(&a), common::try_shape_of(&b)) else { continue };
+        if i % 4 == 0 {
+            a = random_mesh(&mut rng, 30).shape();
+        }
+        let answer = |power: i32| {
+            let factor = 2f64.powi(power);
+            let (pa, pb) = (common::rescaled(&pa, factor), common::rescaled(&pb, factor));
+            let mut found = contacts(&a, &pa, &b, &pb);
+            for point in found.iter_mut().flat_map(|manifold| &mut manifold.points) {
+                point.depth /= factor;
+                point.point_on_a /= factor;
+                point.point_on_b /= factor;
+            }
+            found
+        };
+        let reference = answer(0);
+        for power in [-200, -1, 7, 200] {
+            assert_eq!(answer(power), reference, "pair {i}, 2^{power}");
+        }
+    }
+}
+
+#[test]
+fn a_world_has_contacts() {
+    let mut world = World::new();
+    let ground = world.add(&floor(10), DAffine3::IDENTITY).unwrap();
+    let block = world.add(&cube(), at(0.0, 0.49, 0.0)).unwrap();
+    let found = world.contacts(ground, block, &ContactOptions::default()).unwrap();
+    assert_flat(&found[0], DVec3::NEG_Y, 0.01, 4);
+    assert!(world.contacts(ground, ground, &ContactOptions::default()).is_err());
+    assert!(world.contacts(ground, block, &within(f64::NAN)).is_err());
+}
