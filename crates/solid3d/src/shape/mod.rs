@@ -254,6 +254,20 @@ impl Shape {
         }
     }
 
+    /// Whether the two are one shape, of which a mesh or complex shape may be deformed differently.
+    pub(crate) fn is_same_or_deformed(&self, other: &Shape) -> bool {
+        match (&self.geometry, &other.geometry) {
+            (Geometry::Sphere(a), Geometry::Sphere(b)) => a == b,
+            (Geometry::Cuboid(a), Geometry::Cuboid(b)) => a == b,
+            (Geometry::Cone(a), Geometry::Cone(b)) => a == b,
+            (Geometry::Cylinder(a), Geometry::Cylinder(b)) => a == b,
+            (Geometry::Capsule(a), Geometry::Capsule(b)) => a == b,
+            (Geometry::Polytope(a), Geometry::Polytope(b)) => Arc::ptr_eq(a, b),
+            (Geometry::Complex(a), Geometry::Complex(b)) => a.same_primitives(b),
+            _ => false,
+        }
+    }
+
     /// Whether the primitives of the two have the same numbers: both are convex, or one mesh or complex shape, deformed or not.
     pub(crate) fn has_primitives_of(&self, other: &Shape) -> bool {
         match (&self.geometry, &other.geometry) {
