@@ -19,7 +19,7 @@ use solid3d::Response;
 use crate::args::CheckArgs;
 use crate::output::{self, is_stdout};
 use crate::placements::Placements;
-use crate::record::{CsvRecorder, JsonRecorder, Recorder};
+use crate::record::{Columns, CsvRecorder, JsonRecorder, Recorder};
 use crate::rules::{self, Objects, Rules};
 use crate::table::Style;
 use crate::{Verdict, complain, scene};
@@ -47,7 +47,8 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let (solid, warnings) = rules::solids(&rules, &names(&scene));
     warnings.iter().for_each(|warning| complain("warning", warning));
     let shapes = solids::shapes(&scene, &solid)?;
-    let mut stage = Stage::new(&scene, &shapes, motion, timeline.time(0))?;
+    let tested = if args.continuous { solid3d::Motion::Swept } else { solid3d::Motion::Sampled };
+    let mut stage = Stage::new(&scene, &shapes, motion, tested, timeline.time(0))?;
     set_responses(&rules, args.response.map(Response::from), &scene, &mut stage)?;
     let recorders = recorders(args, &scene)?;
     clock.lap(&mut times.load);
@@ -99,7 +100,8 @@ fn recorders(args: &CheckArgs, scene: &Scene) -> Result<Vec<Box<dyn Recorder>>> 
         recorders.push(Box::new(JsonRecorder::new(output::open(path)?, scene)?));
     }
     if let Some(path) = &args.csv {
-        recorders.push(Box::new(CsvRecorder::new(output::open(path)?)?));
+        let columns = if args.continuous { Columns::WithContactTime } else { Columns::Plain };
+        recorders.push(Box::new(CsvRecorder::new(output::open(path)?, columns)?));
     }
     Ok(recorders)
 }

@@ -8,18 +8,32 @@ use solid_scene::Scene;
 
 use super::{Frame, Recorder, Summary};
 
-const HEADER: [&str; 10] = ["frame", "time", "a", "b", "px", "py", "pz", "nx", "ny", "nz"];
+const HEADER: [&str; 11] = ["frame", "time", "a", "b", "px", "py", "pz", "nx", "ny", "nz", "contact_time"];
 
-/// Writes `frame,time,a,b,px,py,pz,nx,ny,nz`, with empty fields for what is not known.
+/// Which columns there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Columns {
+    /// All but the last.
+    Plain,
+    /// All: what is tested between frames has a time of contact.
+    WithContactTime,
+}
+
+/// Writes `frame,time,a,b,px,py,pz,nx,ny,nz` and perhaps `contact_time`, with empty fields for what is not known.
 pub struct CsvRecorder<W: Write> {
     writer: Writer<W>,
+    columns: Columns,
 }
 
 impl<W: Write> CsvRecorder<W> {
-    pub fn new(writer: W) -> Result<Self> {
+    pub fn new(writer: W, columns: Columns) -> Result<Self> {
         let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(writer);
-        writer.write_record(HEADER)?;
-        Ok(CsvRecorder { writer })
+        let plain = HEADER.len() - 1;
+        writer.write_record(match columns {
+            Columns::Plain => &HEADER[..plain],
+            Columns::WithContactTime => &HEADER,
+        })?;
+        Ok(CsvRecorder { writer, columns })
     }
 }
 
@@ -29,7 +43,11 @@ impl<W: Write> Recorder for CsvRecorder<W> {
             let [a, b] = [hit.a, hit.b].map(|object| scene.objects()[object].name());
             let [point, normal] =
                 [hit.point, hit.normal].map(|v| v.map_or([None; 3], |v| v.to_array().map(Some)));
-            self.writer.serialize((frame.number, frame.time, a, b, point, normal))?;
+            let row = (frame.number, frame.time, a, b, point, normal);
+            match self.columns {
+                Columns::Plain => self.writer.serialize(row)?,
+                Columns::WithContactTime => self.writer.serialize((row, hit.contact_time))?,
+            }
         }
         Ok(())
     }

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Of the response `curve` a collision also has `"curve":[[[0,0,0],[1,0,0]]]`: polylines of points; a closed one ends with its
-//! first point.
+//! first point. With `--continuous` it has `"contact_time":0.25`: when the two first touch, from the previous frame on.
 
 use std::io::Write;
 
@@ -48,6 +48,8 @@ struct CollisionEntry<'a> {
     normal: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     curve: Option<Vec<Vec<[f64; 3]>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact_time: Option<f64>,
 }
 
 impl<W: Write> JsonRecorder<W> {
@@ -87,7 +89,8 @@ impl<W: Write> Recorder for JsonRecorder<W> {
 fn collision<'a>(scene: &'a Scene, hit: &Hit) -> CollisionEntry<'a> {
     let [a, b] = [hit.a, hit.b].map(|object| scene.objects()[object].name());
     let [point, normal] = [hit.point, hit.normal].map(|v| v.map(|v| v.to_array()));
-    CollisionEntry { a, b, point, normal, curve: hit.curve.as_deref().map(paths) }
+    let curve = hit.curve.as_deref().map(paths);
+    CollisionEntry { a, b, point, normal, curve, contact_time: hit.contact_time }
 }
 
 fn paths(curve: &IntersectionCurve) -> Vec<Vec<[f64; 3]>> {

@@ -11,7 +11,7 @@ use solid_scene::Scene;
 use solid3d::glam::DVec3;
 use solid3d::query::IntersectionCurve;
 
-pub use self::csv::CsvRecorder;
+pub use self::csv::{Columns, CsvRecorder};
 pub use json::JsonRecorder;
 pub use pairs::PairRecorder;
 
@@ -26,6 +26,8 @@ pub struct Hit {
     pub normal: Option<DVec3>,
     /// Where the surfaces meet, if the response tells. Space: world.
     pub curve: Option<Arc<IntersectionCurve>>,
+    /// When they first touch, from the previous frame on, if it was asked. Seconds from the start of the scene.
+    pub contact_time: Option<f64>,
 }
 
 /// A tested frame.
