@@ -166,6 +166,24 @@ pub enum Error {
         /// Its value.
         value: f64,
     },
+    /// A tolerance is out of range.
+    #[error("{argument} is {value:?}; it must be from {least:e} to 1")]
+    Tolerance {
+        /// The argument's name.
+        argument: &'static str,
+        /// Its value.
+        value: f64,
+        /// The least that it may be.
+        least: f64,
+    },
+    /// Two shapes that should be the ends of one motion are different ones.
+    #[error("the two shapes of {argument} are a {} and a {}, or of different origin; each must be a deformed clone of the other, or the same", kinds[0], kinds[1])]
+    NotADeformation {
+        /// The argument's name.
+        argument: &'static str,
+        /// The kinds of the two.
+        kinds: [crate::ShapeKind; 2],
+    },
     /// A placement has an entry that is not finite, or too large.
     #[error(
         "placement has the entry {value:?}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"

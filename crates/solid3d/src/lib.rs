@@ -3,6 +3,7 @@
 
 pub mod bounds;
 pub mod broad;
+pub mod ccd;
 mod error;
 mod exact;
 pub mod hull;

@@ -47,10 +47,11 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let (solid, warnings) = rules::solids(&rules, &names(&scene));
     warnings.iter().for_each(|warning| complain("warning", warning));
     let shapes = solids::shapes(&scene, &solid)?;
-    let mut stage = Stage::new(&scene, &shapes, motion, timeline.time(0))?;
+    let tested = if args.continuous { solid3d::Motion::Swept } else { solid3d::Motion::Sampled };
+    let mut stage = Stage::new(&scene, &shapes, motion, tested, timeline.time(0))?;
     let has_clearance = set_rules(&rules, args, &scene, &mut stage)?;
     let tells_distances = has_clearance || rules.tell_depth(args.response.map(Response::from));
-    let columns = if tells_distances { CsvColumns::Distances } else { CsvColumns::Basic };
+    let columns = CsvColumns { distances: tells_distances, contact_time: args.continuous };
     let recorders = recorders(args, columns, &scene)?;
     clock.lap(&mut times.load);
 

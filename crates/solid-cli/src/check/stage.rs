@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use anyhow::{Result, anyhow};
 use solid_scene::{ObjectPose, Pose, Scene};
-use solid3d::{Collision, Contact, Near, ObjectId, Shape, Statistics, World};
+use solid3d::query::{ImpactOptions, Path};
+use solid3d::{Collision, Contact, Near, ObjectId, Shape, Statistics, When, World, WorldOptions};
 
 use super::motion::Motion;
 use crate::record::{Depth, Hit, Pass};
@@ -22,21 +23,33 @@ pub struct Stage<'a> {
     shown: Pose,
     /// The pose that motion wrote last.
     wanted: Pose,
+    /// Whether the world is tested between frames, too.
+    tested: solid3d::Motion,
+    /// The times of the previous frame and of the one shown, in seconds.
+    times: [f64; 2],
 }
 
 impl<'a> Stage<'a> {
-    /// The scene at the first frame, at a time in seconds, its objects with these shapes.
-    pub fn new(scene: &'a Scene, shapes: &[Shape], mut motion: Motion<'a>, time: f64) -> Result<Self> {
+    /// The scene at the first frame, at a time in seconds, its objects with these shapes, and tested as said.
+    pub fn new(
+        scene: &'a Scene,
+        shapes: &[Shape],
+        mut motion: Motion<'a>,
+        tested: solid3d::Motion,
+        time: f64,
+    ) -> Result<Self> {
         let mut wanted = Pose::default();
         motion.pose(0, time, &mut wanted);
         let mut stage = Stage {
             scene,
             motion,
-            world: World::new(),
+            world: World::with_options(&WorldOptions { motion: tested, ..WorldOptions::default() }),
             ids: Vec::new(),
             places: HashMap::new(),
             shown: wanted.clone(),
             wanted,
+            tested,
+            times: [time; 2],
         };
         for (object, shape) in shapes.iter().enumerate() {
             let added = stage.add(object, shape);
@@ -57,6 +70,7 @@ impl<'a> Stage<'a> {
     /// Brings the world to a frame; they come in order.
     pub fn show(&mut self, frame: u64, time: f64) -> Result<()> {
         self.motion.pose(frame, time, &mut self.wanted);
+        self.times = [self.times[1], time];
         for object in 0..self.ids.len() {
             self.update(object).map_err(|error| self.refusal(object, time, &error))?;
         }
@@ -73,9 +87,12 @@ impl<'a> Stage<'a> {
     /// The collisions of the frame, in the scene's order. Ends the frame.
     pub fn test(&mut self, hits: &mut Vec<Hit>) {
         let collisions = self.world.test();
-        self.world.proceed();
         hits.clear();
-        hits.extend(collisions.iter().map(|collision| self.hit(collision)));
+        hits.extend(collisions.iter().filter_map(|collision| match self.tested {
+            solid3d::Motion::Sampled => Some(self.hit(collision)),
+            solid3d::Motion::Swept => self.timed_hit(collision),
+        }));
+        self.world.proceed();
     }
 
     /// The work done so far.
@@ -116,13 +133,33 @@ impl<'a> Stage<'a> {
             _ => None,
         };
         let curve = collision.curve().cloned();
-        Hit { a, b, point: collision.point(), normal: collision.normal(), curve, depth }
+        Hit { a, b, point: collision.point(), normal: collision.normal(), curve, depth, contact_time: None }
     }
 
     fn pass(&self, near: &Near) -> Pass {
         let [a, b] = [near.a, near.b].map(|id| self.places[&id]);
         let &Near { distance, point_on_a, point_on_b, normal, .. } = near;
         Pass { a, b, distance, points: [point_on_a, point_on_b], normal }
+    }
+
+    /// The same with the time of the first contact since the previous frame; `None` for a pair that only seemed to meet on the
+    /// way: what the world tests encloses the way of what turns or deforms.
+    fn timed_hit(&self, collision: &Collision) -> Option<Hit> {
+        let options = ImpactOptions { path: Path::Straight, ..ImpactOptions::default() };
+        let impact = self.world.time_of_impact(collision.a, collision.b, &options);
+        let impact = impact.expect("the world said that they collide, and the options are in range");
+        let hit = self.hit(collision);
+        let [previous, now] = self.times;
+        match (collision.when, impact) {
+            (When::OnTheWay, None) => None,
+            // Touching counts now, by less than the error of the time of impact.
+            (When::Now, None) => Some(Hit { contact_time: Some(now), ..hit }),
+            (when, Some(impact)) => {
+                let point = if when == When::Now { hit.point } else { hit.point.map(|_| impact.point) };
+                let time = previous + impact.time * (now - previous);
+                Some(Hit { point, contact_time: Some(time), ..hit })
+            }
+        }
     }
 
     /// In words, that an object can't be as it is wanted.

@@ -12,49 +12,56 @@ use super::{Frame, Recorder, Summary};
 const HEADER: [&str; 10] = ["frame", "time", "a", "b", "px", "py", "pz", "nx", "ny", "nz"];
 /// What there is of clearances and depths.
 const DISTANCES: [&str; 8] = ["distance", "depth", "ax", "ay", "az", "bx", "by", "bz"];
+/// What there is of tests between frames.
+const CONTACT_TIME: [&str; 1] = ["contact_time"];
 
-/// Whether rows tell of distances and depths, too.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CsvColumns {
-    /// Only what every response may tell.
-    Basic,
-    /// Also distances and depths, with the points of each object.
-    Distances,
+/// What rows tell beside what every response may tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CsvColumns {
+    /// Distances and depths, with the points of each object.
+    pub distances: bool,
+    /// When the two first touch.
+    pub contact_time: bool,
 }
 
-/// Writes `frame,time,a,b,px,py,pz,nx,ny,nz`, perhaps also `distance,depth,ax,ay,az,bx,by,bz`, with empty fields for what is not
-/// known. Rows with a distance are pairs that are near, the others collisions.
+/// Writes `frame,time,a,b,px,py,pz,nx,ny,nz`, perhaps also `distance,depth,ax,ay,az,bx,by,bz`, perhaps also `contact_time`, with empty
+/// fields for what is not known. Rows with a distance are pairs that are near, the others collisions.
 pub struct CsvRecorder<W: Write> {
     writer: Writer<W>,
     columns: CsvColumns,
 }
 
-/// What a row tells of distances.
-type Distances = (Option<f64>, Option<f64>, [[Option<f64>; 3]; 2]);
+/// What a row may tell beside the frame and the names.
+#[derive(Default)]
+struct Known {
+    point: Option<DVec3>,
+    normal: Option<DVec3>,
+    distance: Option<f64>,
+    depth: Option<f64>,
+    points: Option<[DVec3; 2]>,
+    contact_time: Option<f64>,
+}
 
 impl<W: Write> CsvRecorder<W> {
     pub fn new(writer: W, columns: CsvColumns) -> Result<Self> {
         let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(writer);
-        match columns {
-            CsvColumns::Basic => writer.write_record(HEADER)?,
-            CsvColumns::Distances => writer.write_record(HEADER.iter().chain(&DISTANCES))?,
-        }
+        let distances: &[&str] = if columns.distances { &DISTANCES } else { &[] };
+        let contact_time: &[&str] = if columns.contact_time { &CONTACT_TIME } else { &[] };
+        writer.write_record(HEADER.iter().chain(distances).chain(contact_time))?;
         Ok(CsvRecorder { writer, columns })
     }
 
-    fn row(
-        &mut self,
-        frame: &Frame,
-        names: [&str; 2],
-        place: [Option<DVec3>; 2],
-        distances: Distances,
-    ) -> Result<()> {
-        let ([a, b], [point, normal]) = (names, place.map(coordinates));
-        let basic = (frame.number, frame.time, a, b, point, normal);
-        Ok(match self.columns {
-            CsvColumns::Basic => self.writer.serialize(basic)?,
-            CsvColumns::Distances => self.writer.serialize((basic, distances))?,
-        })
+    fn row(&mut self, frame: &Frame, [a, b]: [&str; 2], known: &Known) -> Result<()> {
+        let [point, normal] = [known.point, known.normal].map(coordinates);
+        let mut more = Vec::new();
+        if self.columns.distances {
+            more.extend([known.distance, known.depth]);
+            more.extend(of_each(known.points).as_flattened());
+        }
+        if self.columns.contact_time {
+            more.push(known.contact_time);
+        }
+        Ok(self.writer.serialize((frame.number, frame.time, a, b, point, normal, more))?)
     }
 }
 
@@ -62,13 +69,24 @@ impl<W: Write> Recorder for CsvRecorder<W> {
     fn frame(&mut self, scene: &Scene, frame: &Frame) -> Result<()> {
         let names = |a: usize, b: usize| [a, b].map(|object| scene.objects()[object].name());
         for hit in frame.hits {
-            let points = hit.depth.map(|depth| depth.points);
-            let distances = (None, hit.depth.map(|depth| depth.depth), of_each(points));
-            self.row(frame, names(hit.a, hit.b), [hit.point, hit.normal], distances)?;
+            let known = Known {
+                point: hit.point,
+                normal: hit.normal,
+                depth: hit.depth.map(|depth| depth.depth),
+                points: hit.depth.map(|depth| depth.points),
+                contact_time: hit.contact_time,
+                distance: None,
+            };
+            self.row(frame, names(hit.a, hit.b), &known)?;
         }
         for pass in frame.near.unwrap_or_default() {
-            let distances = (Some(pass.distance), None, of_each(Some(pass.points)));
-            self.row(frame, names(pass.a, pass.b), [None, Some(pass.normal)], distances)?;
+            let known = Known {
+                normal: Some(pass.normal),
+                distance: Some(pass.distance),
+                points: Some(pass.points),
+                ..Known::default()
+            };
+            self.row(frame, names(pass.a, pass.b), &known)?;
         }
         Ok(())
     }

@@ -13,7 +13,7 @@
 //! `near_pairs` and `least_distance`; a negative distance is less the depth.
 //!
 //! Of the response `curve` a collision also has `"curve":[[[0,0,0],[1,0,0]]]`: polylines of points; a closed one ends with its
-//! first point.
+//! first point. With `--continuous` it has `"contact_time":0.25`: when the two first touch, from the previous frame on.
 
 use std::io::Write;
 
@@ -82,6 +82,8 @@ struct CollisionEntry<'a> {
     curve: Option<Vec<Vec<[f64; 3]>>>,
     #[serde(flatten)]
     depth: Option<DepthEntry>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact_time: Option<f64>,
 }
 
 impl<W: Write> JsonRecorder<W> {
@@ -123,7 +125,8 @@ fn collision<'a>(scene: &'a Scene, hit: &Hit) -> CollisionEntry<'a> {
     let [a, b] = [hit.a, hit.b].map(|object| scene.objects()[object].name());
     let [point, normal] = [hit.point, hit.normal].map(|v| v.map(|v| v.to_array()));
     let depth = hit.depth.map(|Depth { depth, points: p }| DepthEntry { depth, points: points(p) });
-    CollisionEntry { a, b, point, normal, curve: hit.curve.as_deref().map(paths), depth }
+    let curve = hit.curve.as_deref().map(paths);
+    CollisionEntry { a, b, point, normal, curve, depth, contact_time: hit.contact_time }
 }
 
 fn pass<'a>(scene: &'a Scene, pass: &Pass) -> PassEntry<'a> {

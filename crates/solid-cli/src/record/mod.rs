@@ -30,6 +30,8 @@ pub struct Hit {
     pub curve: Option<Arc<IntersectionCurve>>,
     /// How deep they are in each other, if the response tells, with the deepest points.
     pub depth: Option<Depth>,
+    /// When they first touch, from the previous frame on, if it was asked. Seconds from the start of the scene.
+    pub contact_time: Option<f64>,
 }
 
 /// How deep two objects are in each other.

@@ -36,7 +36,7 @@ pub struct PairRecorder {
 struct Pair {
     a: usize,
     b: usize,
-    /// The times of the first and last frame, in seconds.
+    /// The time of the first frame, or of the first contact before it if that is known, and of the last frame, in seconds.
     first: f64,
     last: f64,
     frames: u64,
@@ -92,8 +92,9 @@ impl Recorder for PairRecorder {
 
 impl Pair {
     fn new(hit: &Hit, time: f64) -> Self {
+        let first = hit.contact_time.unwrap_or(time);
         let depth = hit.depth.map(|depth| depth.depth);
-        Pair { a: hit.a, b: hit.b, first: time, last: time, frames: 1, point: hit.point, depth }
+        Pair { a: hit.a, b: hit.b, first, last: time, frames: 1, point: hit.point, depth }
     }
 
     fn extend(&mut self, hit: &Hit, time: f64) {
@@ -116,7 +117,7 @@ mod tests {
     use super::*;
 
     fn hit(a: usize, b: usize) -> Hit {
-        Hit { a, b, point: Some(DVec3::X), normal: None, curve: None, depth: None }
+        Hit { a, b, point: Some(DVec3::X), normal: None, curve: None, depth: None, contact_time: None }
     }
 
     #[test]

@@ -249,7 +249,7 @@ fn common_point(a: PlacedComplex, i: u32, b: PlacedComplex, j: u32, common: &[DA
 }
 
 /// The corners of a primitive that is a triangle.
-fn corners(complex: &Complex, primitive: u32) -> Option<Triangle> {
+pub(super) fn corners(complex: &Complex, primitive: u32) -> Option<Triangle> {
     match *complex.primitive(primitive) {
         [i, j, k] => Some([i, j, k].map(|index| complex.vertices()[index as usize])),
         _ => None,

@@ -45,6 +45,7 @@ pub(crate) use ray::{Hits, Wanted, entry, ray_hits};
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};
+pub use swept::Path;
 pub(crate) use table::{axis, closest, closest_within, intersection, intersects, penetration};
 
 use crate::placement::inverse_linear;

@@ -65,7 +65,7 @@ pub fn cast_shape(
 }
 
 /// Whether each coordinate is finite and in range.
-pub(super) fn bounded(argument: &'static str, value: DVec3) -> Result<()> {
+pub(crate) fn bounded(argument: &'static str, value: DVec3) -> Result<()> {
     match value.abs().cmple(DVec3::splat(MAGNITUDE_MAX)).all() {
         true => Ok(()),
         false => Err(Error::Coordinates { argument, value }),

@@ -11,8 +11,9 @@
 //! [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR).
 
 mod cast;
-mod distance;
 mod contacts;
+mod distance;
+mod impact;
 mod penetration;
 mod point;
 mod ray;
@@ -25,12 +26,15 @@ use crate::error::Result;
 use crate::pair::{self, Placed, Relation, Scratch};
 pub use crate::pair::{ContactOptions, ContactPoint, Feature, Manifold};
 pub use crate::pair::{Faces, FromInside, Ray, RayHit, RayOptions, SurfaceHit};
-pub use crate::pair::{IntersectionCurve, Polyline, PrimitivePair, Segment};
+pub use crate::pair::{IntersectionCurve, Path, Polyline, PrimitivePair, Segment};
 use crate::placement;
 use crate::shape::Shape;
+pub(crate) use cast::bounded;
 pub use cast::{ShapeCast, cast_shape};
-pub use distance::distance_within;
 pub use contacts::contacts;
+pub use distance::distance_within;
+pub(crate) use impact::impact_of;
+pub use impact::{Impact, ImpactOptions, time_of_impact, time_of_impact_deforming};
 pub use penetration::{Penetration, penetration};
 pub use point::{ClosestPoint, closest_point, contains_point, winding_number};
 pub use ray::{cast_ray, cast_ray_all, ray_meets};

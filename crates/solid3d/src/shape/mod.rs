@@ -266,7 +266,7 @@ impl Shape {
     pub fn memory(&self) -> usize {
         let owned = match &self.geometry {
             Geometry::Complex(complex) => complex.memory(),
-            Geometry::Polytope(polytope) => size_of::<Polytope>() + size_of_val(polytope.points()),
+            Geometry::Polytope(polytope) => size_of_val(&**polytope) + size_of_val(polytope.points()),
             _ => 0,
         };
         size_of::<Shape>() + owned
@@ -319,6 +319,20 @@ impl Shape {
     pub(crate) fn is_deformation_of(&self, other: &Shape) -> bool {
         match (&self.geometry, &other.geometry) {
             (Geometry::Complex(a), Geometry::Complex(b)) => !Arc::ptr_eq(a, b) && a.same_primitives(b),
+            _ => false,
+        }
+    }
+
+    /// Whether the two are one shape, of which a mesh or complex shape may be deformed differently.
+    pub(crate) fn is_same_or_deformed(&self, other: &Shape) -> bool {
+        match (&self.geometry, &other.geometry) {
+            (Geometry::Sphere(a), Geometry::Sphere(b)) => a == b,
+            (Geometry::Cuboid(a), Geometry::Cuboid(b)) => a == b,
+            (Geometry::Cone(a), Geometry::Cone(b)) => a == b,
+            (Geometry::Cylinder(a), Geometry::Cylinder(b)) => a == b,
+            (Geometry::Capsule(a), Geometry::Capsule(b)) => a == b,
+            (Geometry::Polytope(a), Geometry::Polytope(b)) => Arc::ptr_eq(a, b),
+            (Geometry::Complex(a), Geometry::Complex(b)) => a.same_primitives(b),
             _ => false,
         }
     }

@@ -2,7 +2,9 @@
 
 use super::object::Staleness;
 use super::{ObjectId, World};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::pair::Scratch;
+use crate::query::{Impact, ImpactOptions, impact_of};
 
 /// Where an object is tested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -61,6 +63,42 @@ impl World {
         self.object_mut(id)?.motion = motion;
         self.stir(id, Staleness::Bounds);
         Ok(())
+    }
+
+    /// When two objects first met on their way from the previous frame to where they are: at time 0 in the previous frame, at time 1
+    /// now; `None` when they did not. [`query::time_of_impact_deforming`](crate::query::time_of_impact_deforming) says more.
+    ///
+    /// An object that is [`Sampled`](Motion::Sampled), or was set to another shape, has been where it is. On a
+    /// [straight](crate::query::Path::Straight) path, only pairs that collide, now or [on the way](When::OnTheWay), can have an answer: so
+    /// this tells those that met from those of which but what was tested encloses a contact.
+    ///
+    /// ```
+    /// use solid3d::{Motion, Shape, World, glam::{DAffine3, DVec3}, query::ImpactOptions};
+    /// let mut world = World::new();
+    /// let wall = world.add(&Shape::cuboid([0.1, 4.0, 4.0])?, DAffine3::IDENTITY)?;
+    /// let bullet = world.add(&Shape::sphere(0.01)?, DAffine3::from_translation(DVec3::X * -1.06))?;
+    /// world.set_motion(bullet, Motion::Swept)?;
+    /// world.set_placement(bullet, DAffine3::from_translation(DVec3::X * 3.0))?;
+    /// let impact = world.time_of_impact(wall, bullet, &ImpactOptions::default())?.unwrap();
+    /// assert!((impact.time - 1.0 / 4.06).abs() < 1e-6 && (impact.point.x + 0.05).abs() < 1e-6);
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// An object that is not in the world, a pair of an object with itself, a tolerance out of range.
+    pub fn time_of_impact(
+        &self,
+        a: ObjectId,
+        b: ObjectId,
+        options: &ImpactOptions,
+    ) -> Result<Option<Impact>> {
+        if a == b {
+            self.object(a)?;
+            return Err(Error::SameObject { id: a });
+        }
+        let [a, b] = [self.object(a)?.way(), self.object(b)?.way()];
+        impact_of(&a, &b, options, &mut Scratch::default())
     }
 
     /// Where an object is tested.

@@ -129,6 +129,12 @@ impl Object {
         self.moving_by(self.extra.as_ref().map_or(STILL, |extra| extra.deformation))
     }
 
+    /// The same when its bounds may be stale. Cost: linear in a shape that deformed.
+    pub fn way(&self) -> Moving<'_> {
+        let moving = self.moving_by(STILL);
+        Moving { deformation: deformation(moving.from.shape, moving.to.shape), ..moving }
+    }
+
     fn moving_by(&self, deformation: Aabb) -> Moving<'_> {
         let from = if self.has_way() {
             Placed { shape: self.shape_on_way(), placement: self.previous_placement() }

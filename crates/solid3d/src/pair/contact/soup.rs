@@ -7,7 +7,7 @@
 
 use std::ops::ControlFlow;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use solid_convex::Support;
 
 use super::super::table::PlacedConvex;
@@ -15,6 +15,7 @@ use super::super::{Scratch, complex_complex, complex_convex, table, triangle_tri
 use super::{Meeting, Pair, Part, Patch, Touch, face, plane_of};
 use crate::shape::{Body, Complex};
 use crate::tree::pairs;
+use crate::triangle_triangle::Triangle;
 
 /// Heights along a normal that differ by less than this, in the unit of the pair, are the same.
 const LEVEL: f64 = 1e-9;
@@ -93,6 +94,12 @@ pub(super) fn soup_body(
     found.into_iter().filter_map(patch).collect()
 }
 
+/// The placed corners of a primitive that is a triangle.
+fn corners(complex: &Complex, primitive: u32, map: &DAffine3) -> Option<Triangle> {
+    let corners = complex_complex::corners(complex, primitive)?;
+    Some(corners.map(|corner| map.transform_point3(corner)))
+}
+
 /// The contacts of two soups.
 pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scratch) -> Vec<Patch> {
     let mut relative = pair.frame.relative;
@@ -108,10 +115,8 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
             let reached = x.bounds.inflated(pair.margin);
             for y in in_b.iter().filter(|y| reached.overlaps(&y.bounds)) {
                 // Of triangles it is decided exactly, as everywhere.
-                let meet = match (&x.triangle, &y.triangle) {
-                    (Some(x), Some(y)) => Some(triangle_triangle::intersect(x, y)),
-                    _ => None,
-                };
+                let [of_a, of_b] = [corners(a, x.primitive, &map_a), corners(b, y.primitive, &map_b)];
+                let meet = of_a.zip(of_b).map(|(x, y)| triangle_triangle::intersect(&x, &y));
                 if meet != Some(false) || pair.margin > 0.0 {
                     found.push(([x.primitive, y.primitive], meet == Some(true)));
                 }

@@ -65,6 +65,11 @@ impl<'a> MovingComplex<'a> {
         [(was, self.from.1), (is, self.to.1)]
     }
 
+    /// How far it reaches from its local origin at either end.
+    pub fn reach(&self) -> DVec3 {
+        self.from.0.reach().max(self.to.0.reach())
+    }
+
     /// How far it reaches from its local origin, as it was and as it is.
     pub fn reaches(&self) -> [(DVec3, &'a DAffine3); 2] {
         [(self.from.0.reach(), self.from.1), (self.to.0.reach(), self.to.1)]

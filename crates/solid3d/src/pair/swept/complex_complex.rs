@@ -5,7 +5,7 @@
 //! object is much more than what it sweeps.
 
 use super::bodies::MovingComplex;
-use super::query::{TreeSpace, size};
+use super::query::{STRAIGHT, TreeSpace, size};
 use super::{Encounter, complex_convex};
 use crate::pair::Scratch;
 
@@ -13,7 +13,8 @@ pub(super) fn encounter(a: MovingComplex, b: MovingComplex, scratch: &mut Scratc
     // The first walk is through the larger tree: what it leaves out is most.
     let (large, small) = if a.to.0.primitive_count() < b.to.0.primitive_count() { (b, a) } else { (a, b) };
     let size = size(large.reaches(), small.reaches());
-    let (in_large, in_small) = (TreeSpace::new(&large, size), TreeSpace::new(&small, size));
+    let (in_large, in_small) =
+        (TreeSpace::new(&large, size, STRAIGHT), TreeSpace::new(&small, size, STRAIGHT));
     let mut primitives = std::mem::take(&mut scratch.on_the_way);
     in_large.primitives(&in_large.query_of_complex(&small), &mut scratch.traversal, &mut primitives);
     let met = primitives.iter().find_map(|&primitive| {

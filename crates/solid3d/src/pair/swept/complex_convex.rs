@@ -3,14 +3,14 @@
 use std::ops::ControlFlow;
 
 use super::bodies::{MovingComplex, MovingConvex};
-use super::query::{TreeSpace, size};
+use super::query::{STRAIGHT, TreeSpace, size};
 use super::{Encounter, convex_convex};
 use crate::bounds::Aabb;
 use crate::pair::Scratch;
 
 pub(super) fn encounter(complex: MovingComplex, convex: MovingConvex, scratch: &mut Scratch) -> Encounter {
     let size = size(complex.reaches(), convex.map(|(shape, at)| (shape.reach(), at)));
-    encounter_in(&TreeSpace::new(&complex, size), &complex, convex, scratch)
+    encounter_in(&TreeSpace::new(&complex, size, STRAIGHT), &complex, convex, scratch)
 }
 
 /// The same in the space of the complex shape.

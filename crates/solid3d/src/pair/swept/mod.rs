@@ -13,19 +13,27 @@
 //! objects that fly side by side, or one behind the other, do not meet. When one of the two stands still, both are the same.
 //!
 //! Complex shapes are tested primitive by primitive, each with its vertices as they were and as they are.
+//!
+//! [`impact`] says when two shapes first meet on their way, straight or turning ([`Path`]).
 
+mod advance;
 mod bodies;
+mod body;
 mod complex_complex;
 mod complex_convex;
 mod convex_convex;
 mod hulls;
+mod impact;
 mod moving_box;
+mod path;
 mod query;
 
 use glam::DVec3;
 
 use bodies::MovingClass;
 pub(crate) use bodies::{Moving, deformation, moving_bounds};
+pub(crate) use impact::{Meeting, TOLERANCE_MIN, impact};
+pub use path::Path;
 
 use super::Scratch;
 

@@ -14,6 +14,9 @@ use crate::placement::{inverse_linear, row_norm};
 use crate::shape::Complex;
 use crate::tree::Traversal;
 
+/// All points move straight.
+pub(super) const STRAIGHT: f64 = 0.0;
+
 /// The local space of a moving complex shape as it is now, seen by what else moves.
 ///
 /// With `c0`, `c1` the two positions of a point of the shape and `x0`, `x1` those of a point of the other, all in this
@@ -32,8 +35,9 @@ pub(super) struct TreeSpace<'a> {
 }
 
 impl<'a> TreeSpace<'a> {
-    /// `size` bounds the size of the data; see [`size`].
-    pub fn new(moving: &MovingComplex<'a>, size: f64) -> Self {
+    /// `size` bounds the size of the data; see [`size`]. `bend` bounds how far points of both are off straight ways, together.
+    /// World units.
+    pub fn new(moving: &MovingComplex<'a>, size: f64, bend: f64) -> Self {
         let ((was, from), (is, to)) = (moving.from, moving.to);
         let to_local = inverse_linear(&to.matrix3);
         let origin = to.translation;
@@ -44,7 +48,8 @@ impl<'a> TreeSpace<'a> {
         };
         let backward = less(&was.bounds().transformed(&by_placement), &moving.deformation);
         let local_size = (was.reach() + is.reach()).max_element() * (1.0 + row_norm(&by_placement.matrix3));
-        let slack = 2.0 * (slack(&to.matrix3, &to_local, size) + ROUNDINGS * local_size);
+        let slack =
+            2.0 * (slack(&to.matrix3, &to_local, size) + ROUNDINGS * local_size) + bend * row_norm(&to_local);
         TreeSpace { shape: is, to_local, origin, backward, slack }
     }
 

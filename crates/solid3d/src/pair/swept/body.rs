@@ -1,0 +1,129 @@
+//! A convex object on its way, at a time: where its points are, and how they move.
+
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::{Points, Support};
+
+use super::path::Way;
+use crate::pair::reach::image_reach;
+use crate::shape::Complex;
+
+/// A convex object on its way. Space: along the world's axes, in a unit of length near the size of the data, seen from the local
+/// origin of the other object, which may itself be on its way: only relative motion counts. What it says of points holds at the time to
+/// which it was last brought by [`seek`](Self::seek).
+pub(super) struct Body<'a> {
+    geometry: Geometry<'a>,
+    way: Way,
+    /// Bounds the acceleration of its points.
+    acceleration: f64,
+    /// Where the local origin is at the time, and how it moves.
+    origin: [DVec3; 2],
+}
+
+enum Geometry<'a> {
+    /// A convex shape: the linear part of its placement, and how that changes.
+    Shape { shape: &'a dyn Support, linear: [DMat3; 2] },
+    /// A primitive of a complex shape.
+    Vertices(Vertices),
+}
+
+/// The vertices of a primitive, as seen from the local origin.
+#[derive(Default)]
+struct Vertices {
+    /// At both ends of the way, but for the turn.
+    ends: [Vec<DVec3>; 2],
+    /// Now, and how they move.
+    positions: Vec<DVec3>,
+    velocities: Vec<DVec3>,
+}
+
+/// The way of a body's local origin, in its space.
+type OriginWay = [DVec3; 2];
+
+impl<'a> Body<'a> {
+    /// A convex shape, on a way in the world.
+    pub fn shape(shape: &'a dyn Support, way: &Way, origin: OriginWay, scale: f64) -> Self {
+        let way = way.seen_from(origin, scale);
+        let reach = |linear: &DMat3| image_reach(linear, shape.reach()).length();
+        let [from, to] = way.linear;
+        let acceleration = way.acceleration(reach(&from).max(reach(&to)), reach(&(to - from)));
+        let geometry = Geometry::Shape { shape, linear: [DMat3::IDENTITY; 2] };
+        Body { geometry, way, acceleration, origin }
+    }
+
+    /// A primitive of a complex shape; [`set_primitive`](Self::set_primitive) says which.
+    pub fn primitive(way: &Way, origin: OriginWay, scale: f64) -> Self {
+        let geometry = Geometry::Vertices(Vertices::default());
+        Body { geometry, way: way.seen_from(origin, scale), acceleration: 0.0, origin }
+    }
+
+    /// Makes the body another primitive of its shape, which is given as it was and as it is.
+    pub fn set_primitive(&mut self, shape: [&Complex; 2], primitive: u32) {
+        let Geometry::Vertices(Vertices { ends, .. }) = &mut self.geometry else {
+            unreachable!("the body was made to be a primitive");
+        };
+        for end in 0..2 {
+            let linear = self.way.linear[end];
+            let indices = shape[end].primitive(primitive).iter();
+            ends[end].clear();
+            ends[end].extend(indices.map(|&i| linear * shape[end].vertices()[i as usize]));
+        }
+        let far = ends.iter().flatten().map(|p| p.length()).fold(0.0, f64::max);
+        let change = ends[0].iter().zip(&ends[1]).map(|(p, q)| p.distance(*q)).fold(0.0, f64::max);
+        self.acceleration = self.way.acceleration(far, change);
+    }
+
+    /// Bounds the acceleration of its points, in the body's unit of length.
+    pub fn acceleration(&self) -> f64 {
+        self.acceleration
+    }
+
+    /// Goes to a time.
+    pub fn seek(&mut self, t: f64) {
+        self.origin = [self.way.origin_at(t), self.way.origin[1] - self.way.origin[0]];
+        let (turn, rate) = (self.way.rotation(t), self.way.rotation_rate(t));
+        match &mut self.geometry {
+            Geometry::Shape { linear, .. } => {
+                let [from, to] = self.way.linear;
+                let between = from * (1.0 - t) + to * t;
+                *linear = [turn * between, rate * between + turn * (to - from)];
+            }
+            Geometry::Vertices(Vertices { ends, positions, velocities }) => {
+                positions.clear();
+                velocities.clear();
+                for (&from, &to) in ends[0].iter().zip(&ends[1]) {
+                    let between = from * (1.0 - t) + to * t;
+                    positions.push(turn * between);
+                    velocities.push(rate * between + turn * (to - from));
+                }
+            }
+        }
+    }
+
+    /// The largest of `direction . (x + ahead * v)` over all its points `x` and their velocities `v`.
+    pub fn furthest(&self, direction: DVec3, ahead: f64) -> f64 {
+        let of_points = match &self.geometry {
+            Geometry::Shape { shape, linear } => {
+                let linear = linear[0] + linear[1] * ahead;
+                (linear * shape.support(linear.transpose() * direction)).dot(direction)
+            }
+            Geometry::Vertices(Vertices { positions, velocities, .. }) => {
+                let along = positions.iter().zip(velocities).map(|(x, v)| (*x + *v * ahead).dot(direction));
+                along.fold(f64::NEG_INFINITY, f64::max)
+            }
+        };
+        of_points + (self.origin[0] + self.origin[1] * ahead).dot(direction)
+    }
+
+    /// Calls a function with the body as it is now, and its placement.
+    pub fn with_placed<T>(&self, ask: impl FnOnce(&dyn Support, &DAffine3) -> T) -> T {
+        match &self.geometry {
+            Geometry::Shape { shape, linear } => {
+                ask(*shape, &DAffine3 { matrix3: linear[0], translation: self.origin[0] })
+            }
+            Geometry::Vertices(Vertices { positions, .. }) => {
+                let points = Points::new(positions).expect("a primitive has a vertex");
+                ask(&points, &DAffine3::from_translation(self.origin[0]))
+            }
+        }
+    }
+}

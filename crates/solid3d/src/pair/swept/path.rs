@@ -1,0 +1,212 @@
+//! How a shape gets from one placement to another.
+//!
+//! With `M0`, `M1` the linear parts of the placements, `o0`, `o1` the positions of the local origin, and `v0`, `v1` those of a
+//! point of the shape in its own space, its way is
+//!
+//! ```text
+//! x(t) = o0 + t (o1 - o0) + Q(t) ((1 - t) M0 v0 + t Q(1)^-1 M1 v1),        Q(t): a rotation by t times an angle about an axis
+//! ```
+//!
+//! Of a straight path the angle is 0: each point moves straight. Of a turning one, `Q(1)` is the rotation nearest to
+//! `M1 M0^-1`, the factor `U` of its polar decomposition `U S`: a rigid body then turns about a fixed axis at constant speed, and
+//! what scales does so linearly. Every placement on the way is regular: it is `Q(t) ((1 - t) I + t S) M0`, and `S` is positive.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use solid_convex::unit_scale;
+
+use crate::placement::inverse_linear;
+
+/// How shapes move between two placements.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Path {
+    /// The local origin moves straight, and the shape turns about it with constant speed, by the rotation nearest to that between
+    /// the two placements, of at most half a turn. What is left of them (scale, shear) changes linearly.
+    ///
+    /// Straight, when one of the two placements mirrors and the other does not, or when sizes change by so much that there is no
+    /// nearest rotation in numbers. Where one of the two shapes deforms, both move straight.
+    #[default]
+    Turning,
+    /// Each point moves straight, at constant speed, from where it was to where it is: as if vertices were interpolated. The
+    /// motion of [`Motion::Swept`](crate::Motion::Swept).
+    Straight,
+}
+
+/// Turns by less are none: the way of a point is then straight within 1e-19 of its distance from the axis.
+const ANGLE_MIN: f64 = 1e-9;
+
+/// Steps of the iteration for the polar decomposition. It doubles the digits with each, and before that halves the
+/// largest stretch, of which there is at most 1e200.
+const POLAR_STEPS_MAX: usize = 1024;
+
+/// The iteration ends when no entry changes by more.
+const POLAR_ERROR: f64 = 1e-15;
+
+/// A rotation at constant speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turn {
+    /// A unit vector.
+    axis: DVec3,
+    /// In a unit of time.
+    angle: f64,
+}
+
+/// The way of a shape from one placement to another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    /// `M0` and `Q(1)^-1 M1`.
+    pub linear: [DMat3; 2],
+    pub origin: [DVec3; 2],
+    pub turn: Option<Turn>,
+    ends: [DAffine3; 2],
+}
+
+impl Turn {
+    /// The turn that leads from one linear part to another.
+    fn between(from: &DMat3, to: &DMat3) -> Option<Turn> {
+        let rotation = nearest_rotation(&(*to * inverse_linear(from)))?;
+        let turn = DQuat::from_mat3(&rotation).normalize();
+        // Of the two quaternions that is the one of at most half a turn.
+        let (sine, cosine) = (turn.xyz() * turn.w.signum(), turn.w.abs());
+        let angle = 2.0 * sine.length().atan2(cosine);
+        (angle > ANGLE_MIN).then(|| Turn { axis: sine.normalize(), angle })
+    }
+
+    /// The rotation up to a time.
+    fn rotation(&self, t: f64) -> DMat3 {
+        DMat3::from_axis_angle(self.axis, self.angle * t)
+    }
+
+    /// What a vector that turns changes by in a unit of time.
+    fn rate(&self) -> DMat3 {
+        let DVec3 { x, y, z } = self.axis * self.angle;
+        DMat3::from_cols(DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0))
+    }
+
+    /// The angle in a unit of time.
+    pub fn angle(&self) -> f64 {
+        self.angle
+    }
+}
+
+/// The rotation nearest to a map, by Newton's iteration (Higham, *Computing the Polar Decomposition*, 1986); `None` when it
+/// mirrors, or is not a number.
+fn nearest_rotation(map: &DMat3) -> Option<DMat3> {
+    let largest = map.to_cols_array().into_iter().fold(0.0, |most, entry: f64| entry.abs().max(most));
+    let mut x = *map * unit_scale(largest);
+    for _ in 0..POLAR_STEPS_MAX {
+        let next = (x + x.inverse().transpose()) * 0.5;
+        if !next.is_finite() {
+            return None;
+        }
+        let change =
+            (next - x).to_cols_array().into_iter().fold(0.0, |most, entry: f64| entry.abs().max(most));
+        x = next;
+        if change <= POLAR_ERROR {
+            break;
+        }
+    }
+    ((x.determinant() - 1.0).abs() < 1e-6).then_some(x)
+}
+
+impl Way {
+    pub fn new(from: &DAffine3, to: &DAffine3, path: Path) -> Way {
+        let turns = path == Path::Turning && from.matrix3 != to.matrix3;
+        let turn = turns.then(|| Turn::between(&from.matrix3, &to.matrix3)).flatten();
+        let back = |turn: Turn| turn.rotation(1.0).transpose() * to.matrix3;
+        Way {
+            linear: [from.matrix3, turn.map_or(to.matrix3, back)],
+            origin: [from.translation, to.translation],
+            turn,
+            ends: [*from, *to],
+        }
+    }
+
+    /// The same with another way of the local origin, in a unit of length of which `scale` make one.
+    pub fn seen_from(&self, origin: [DVec3; 2], scale: f64) -> Way {
+        let linear = self.linear.map(|linear| linear * scale);
+        Way { linear, origin: origin.map(|origin| origin * scale), ..*self }
+    }
+
+    /// Where the local origin is.
+    pub fn origin_at(&self, t: f64) -> DVec3 {
+        self.origin[0] * (1.0 - t) + self.origin[1] * t
+    }
+
+    /// The placement at a time; at the ends to the bit.
+    pub fn placement_at(&self, t: f64) -> DAffine3 {
+        match t {
+            0.0 => self.ends[0],
+            1.0 => self.ends[1],
+            _ => {
+                let linear = self.linear[0] * (1.0 - t) + self.linear[1] * t;
+                DAffine3 { matrix3: self.rotation(t) * linear, translation: self.origin_at(t) }
+            }
+        }
+    }
+
+    /// `Q(t)`.
+    pub fn rotation(&self, t: f64) -> DMat3 {
+        self.turn.map_or(DMat3::IDENTITY, |turn| turn.rotation(t))
+    }
+
+    /// `Q'(t)`.
+    pub fn rotation_rate(&self, t: f64) -> DMat3 {
+        self.turn.map_or(DMat3::ZERO, |turn| turn.rate() * turn.rotation(t))
+    }
+
+    /// A bound on the acceleration of a point that never is further than `reach` from the local origin, and would move by
+    /// `change` if it did not turn: `|Q''| |y| + 2 |Q'| |y'|`.
+    pub fn acceleration(&self, reach: f64, change: f64) -> f64 {
+        let angle = self.turn.map_or(0.0, |turn| turn.angle);
+        angle * (angle * reach + 2.0 * change)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::Rng;
+    use solid_oracle::generate::{PlacementKind, random_placement, seeded};
+
+    /// Both ends are what was given, a rigid body stays rigid, and no placement on the way is singular.
+    #[test]
+    fn a_way_leads_from_one_placement_to_the_other() {
+        let mut rng = seeded(2100);
+        let mut turned = 0;
+        for case in 0..2000 {
+            let kind = PlacementKind::ALL[case % PlacementKind::ALL.len()];
+            let [from, to] = [0, 1].map(|_| random_placement(&mut rng, kind));
+            let way = Way::new(&from, &to, Path::Turning);
+            turned += usize::from(way.turn.is_some());
+            let size = to.matrix3.to_cols_array().into_iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            for (end, at) in [(0.0, &from), (1.0, &to)] {
+                let linear = way.rotation(end) * way.linear[end as usize];
+                assert!(linear.abs_diff_eq(at.matrix3, 1e-12 * size.max(1.0)), "{linear} {at:?}");
+                assert_eq!(way.placement_at(end), *at);
+            }
+            let t = rng.random_range(0.0..1.0);
+            let middle = way.placement_at(t).matrix3;
+            let mirrors = |m: &DMat3| m.determinant() < 0.0;
+            if mirrors(&from.matrix3) == mirrors(&to.matrix3) {
+                assert!(middle.determinant() != 0.0 && mirrors(&middle) == mirrors(&to.matrix3));
+            } else {
+                assert_eq!(way.turn, None);
+            }
+            let rigid = |m: &DMat3| (*m * m.transpose()).abs_diff_eq(DMat3::IDENTITY, 1e-9);
+            if rigid(&from.matrix3) && rigid(&to.matrix3) && way.turn.is_some() {
+                assert!(rigid(&middle), "{middle}");
+            }
+        }
+        assert!(turned > 600, "{turned}");
+    }
+
+    #[test]
+    fn a_quarter_turn_is_an_eighth_at_half_time() {
+        let to = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        let way = Way::new(&DAffine3::IDENTITY, &to, Path::Turning);
+        let half = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_4);
+        assert!(way.placement_at(0.5).abs_diff_eq(half, 1e-15));
+        let straight = Way::new(&DAffine3::IDENTITY, &to, Path::Straight);
+        assert!(straight.placement_at(0.5).matrix3.determinant() < 0.6);
+    }
+}

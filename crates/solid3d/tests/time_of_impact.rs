@@ -1,0 +1,318 @@
+//! Shapes that move and turn: by laws, and against small steps.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and prints its hit rate"
+)]
+
+mod common;
+
+use common::{assert_rate, direction, in_cube, placement, random_complex, random_mesh, shape_of, torus};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use rand::Rng;
+use rand::rngs::StdRng;
+use solid_oracle::generate::{random_shape, seeded};
+use solid3d::query::{self, Impact, ImpactOptions, Path};
+use solid3d::{Error, Shape, glam};
+
+const OPTIONS: ImpactOptions = ImpactOptions { path: Path::Turning, tolerance: 1e-8 };
+
+fn some_shape(rng: &mut StdRng, case: u32) -> Shape {
+    match case % 4 {
+        0 => random_mesh(rng, 50).shape(),
+        1 => random_complex(rng, 10).shape(),
+        _ => shape_of(&random_shape(rng, 1.0)),
+    }
+}
+
+/// A rigid motion: a turn by a vector, about the local origin, and a translation.
+#[derive(Clone, Copy, Debug)]
+struct Rigid {
+    from: DAffine3,
+    turn: DVec3,
+    way: DVec3,
+}
+
+impl Rigid {
+    fn at(&self, t: f64) -> DAffine3 {
+        let turn = DMat3::from_quat(DQuat::from_scaled_axis(self.turn * t));
+        DAffine3 { matrix3: turn * self.from.matrix3, translation: self.from.translation + self.way * t }
+    }
+}
+
+fn rigid(rng: &mut StdRng, origin: DVec3, way: DVec3) -> Rigid {
+    let mut from = placement(rng, 1.0);
+    from.translation = origin;
+    // At most half a turn, so that the shorter way is this.
+    let turn = direction(rng) * rng.random_range(0.0..3.1);
+    Rigid { from, turn, way }
+}
+
+fn impact(a: &Shape, way_a: &Rigid, b: &Shape, way_b: &Rigid, options: &ImpactOptions) -> Option<Impact> {
+    query::time_of_impact(a, &way_a.at(0.0), &way_a.at(1.0), b, &way_b.at(0.0), &way_b.at(1.0), options)
+        .unwrap()
+}
+
+/// A pair that passes near each other.
+fn passing(rng: &mut StdRng, size: f64) -> [Rigid; 2] {
+    let away = direction(rng) * rng.random_range(2.0..5.0);
+    let mut ways = [DVec3::ZERO, away].map(|origin| {
+        let way = in_cube(rng);
+        rigid(rng, origin, way)
+    });
+    ways[0].way = ways[1].way + (away + in_cube(rng) * 2.5) * rng.random_range(0.4..1.4);
+    ways.map(|Rigid { mut from, turn, way }| {
+        from = DAffine3::from_scale(DVec3::splat(size)) * from;
+        Rigid { from, turn, way: way * size }
+    })
+}
+
+/// Steps along the way, of which none may find what was not found before.
+const STEPS: u32 = 60;
+
+/// Law: before the time of impact shapes are apart, at it they are as near as the tolerance says, and without one they never meet.
+#[test]
+fn no_contact_comes_before_the_time_of_impact() {
+    let seed = 2001;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut hits, mut worst, cases) = (0, 0.0f64, 1200);
+    for case in 0..cases {
+        let size = 10f64.powi(rng.random_range(-5..6));
+        let (a, b) = (some_shape(&mut rng, case), some_shape(&mut rng, case / 4));
+        let [way_a, way_b] = passing(&mut rng, size);
+        let found = impact(&a, &way_a, &b, &way_b, &OPTIONS);
+        let context = || format!("case {case}: {} {} {way_a:?} {way_b:?} {found:?}", a.kind(), b.kind());
+        let meet = |t: f64| query::intersects(&a, &way_a.at(t), &b, &way_b.at(t)).unwrap();
+        let until = found.map_or(1.0, |impact| impact.time);
+        for step in 0..STEPS {
+            let t = until * f64::from(step) / f64::from(STEPS);
+            assert!(t >= until || !meet(t), "{}: they meet at {t}", context());
+        }
+        let Some(found) = found else {
+            assert!(!meet(1.0), "{}", context());
+            continue;
+        };
+        hits += 1;
+        if found.time == 0.0 && found.normal.is_none() {
+            assert!(meet(0.0), "{}", context());
+            continue;
+        }
+        let [at_a, at_b] = [&way_a, &way_b].map(|way| way.at(found.time));
+        let gap = query::distance(&a, &at_a, &b, &at_b).unwrap();
+        worst = worst.max(gap.distance / size);
+        assert!(gap.distance < 1e-7 * size, "{}: {}", context(), gap.distance / size);
+        assert!((found.normal.unwrap().length() - 1.0).abs() < 1e-12);
+        let point = Shape::convex_hull(&[found.point]).unwrap();
+        for (shape, at) in [(&a, &at_a), (&b, &at_b)] {
+            let off = query::distance(shape, at, &point, &DAffine3::IDENTITY).unwrap().distance;
+            assert!(off < 1e-7 * size, "{}: {off}", context());
+        }
+        // Who is which makes no difference but for the sign.
+        let swapped = impact(&b, &way_b, &a, &way_a, &OPTIONS);
+        assert!(swapped.is_some(), "{}", context());
+    }
+    println!("the widest gap is {worst:e}");
+    assert_rate("turning pairs", hits, cases as usize);
+}
+
+/// Law: a unit of length that is a power of two larger changes nothing but lengths.
+#[test]
+fn scaling_by_a_power_of_two_changes_no_time() {
+    let mut rng = seeded(2002);
+    for case in 0..200 {
+        let (a, b) = (some_shape(&mut rng, case), some_shape(&mut rng, case / 4));
+        let [way_a, way_b] = passing(&mut rng, 1.0);
+        let path = if case % 2 == 0 { Path::Turning } else { Path::Straight };
+        let options = ImpactOptions { path, ..OPTIONS };
+        let times = [1.0, 1024.0, 2f64.powi(-80)].map(|unit| {
+            let ends = [&way_a, &way_b].map(|way| {
+                [0.0, 1.0].map(|t| {
+                    let at = way.at(t);
+                    DAffine3 { matrix3: at.matrix3 * unit, translation: at.translation * unit }
+                })
+            });
+            let [[from_a, to_a], [from_b, to_b]] = &ends;
+            let found = query::time_of_impact(&a, from_a, to_a, &b, from_b, to_b, &options).unwrap();
+            found.map(|impact| (impact.time, impact.normal, impact.point / unit))
+        });
+        assert!(times[0] == times[1] && times[0] == times[2], "case {case}: {times:?}");
+    }
+}
+
+/// A straight path is that of a cast, when nothing turns.
+#[test]
+fn translation_alone_agrees_with_the_cast() {
+    let mut rng = seeded(2003);
+    let (mut hits, cases) = (0, 400);
+    for case in 0..cases {
+        let (a, b) = (some_shape(&mut rng, case), some_shape(&mut rng, case / 4));
+        let [mut way_a, mut way_b] = passing(&mut rng, 1.0);
+        (way_a.turn, way_b.turn) = (DVec3::ZERO, DVec3::ZERO);
+        let found = impact(&a, &way_a, &b, &way_b, &OPTIONS);
+        let cast = query::cast_shape(&a, &way_a.from, way_a.way, &b, &way_b.from, way_b.way).unwrap();
+        hits += usize::from(cast.is_some());
+        match (found, cast) {
+            (None, None) => {}
+            (Some(found), Some(cast)) => {
+                // Near to the tolerance a grazing motion goes a long way.
+                assert!(found.time <= cast.time + 1e-9, "case {case}: {found:?} {cast:?}");
+                assert!(cast.time - found.time < 1e-3, "case {case}: {found:?} {cast:?}");
+            }
+            (Some(found), None) => {
+                let [at_a, at_b] = [&way_a, &way_b].map(|way| way.at(found.time));
+                let gap = query::distance(&a, &at_a, &b, &at_b).unwrap().distance;
+                assert!(gap < 1e-7, "case {case}: {gap}");
+            }
+            (None, Some(_)) => panic!("case {case}: {cast:?} was missed"),
+        }
+    }
+    assert_rate("translations", hits, cases as usize);
+}
+
+/// A small ball that flies past a box which spins fast. A time of impact that looks at the ends of the way, or advances along a fixed
+/// normal, misses some; none that overlaps for a twentieth of the way is missed here.
+#[test]
+fn a_ball_against_a_spinning_box_is_never_missed() {
+    const SAMPLES: u32 = 200;
+    let mut rng = seeded(2004);
+    let (mut hits, mut short, cases) = (0, 0, 1500);
+    let (ball, block) = (Shape::sphere(0.1).unwrap(), Shape::cuboid([2.0, 0.2, 0.6]).unwrap());
+    for case in 0..cases {
+        let turn = direction(&mut rng) * rng.random_range(1.0..3.14);
+        let spinning = Rigid { from: placement_rigid(&mut rng), turn, way: DVec3::ZERO };
+        let start = direction(&mut rng) * rng.random_range(0.8..1.6);
+        let way = (direction(&mut rng) * 0.6 - start) * rng.random_range(0.5..1.5);
+        let flying = Rigid { from: DAffine3::from_translation(start), turn: DVec3::ZERO, way };
+        let found = impact(&ball, &flying, &block, &spinning, &OPTIONS);
+        let met = (0..=SAMPLES)
+            .map(|i| f64::from(i) / f64::from(SAMPLES))
+            .filter(|&t| query::intersects(&ball, &flying.at(t), &block, &spinning.at(t)).unwrap());
+        let met: Vec<f64> = met.collect();
+        if let Some(&first) = met.first() {
+            hits += 1;
+            short += usize::from(met.len() < SAMPLES as usize / 2);
+            let found = found.unwrap_or_else(|| panic!("case {case}: missed, for {} samples", met.len()));
+            assert!(found.time <= first, "case {case}: {} {first}", found.time);
+        }
+    }
+    println!("{short} overlap for less than half of the way");
+    assert!(short > 100);
+    assert_rate("spinning boxes", hits, cases);
+}
+
+fn placement_rigid(rng: &mut StdRng) -> DAffine3 {
+    let turn = DQuat::from_scaled_axis(direction(rng) * rng.random_range(0.0..3.1));
+    DAffine3::from_quat(turn)
+}
+
+/// Meshes of which every vertex moves: against small steps, and against the placements that do the same.
+#[test]
+fn no_contact_of_deforming_meshes_is_missed() {
+    let mut rng = seeded(2005);
+    let (mut hits, cases) = (0, 300);
+    for case in 0..cases {
+        let soups = [torus(9, 6, 0.3), random_mesh(&mut rng, 60)];
+        let shift = direction(&mut rng) * 2.6;
+        let ways = [0.0, 1.0].map(|part| {
+            [placement(&mut rng, 0.1), placement(&mut rng, 0.1)].map(|mut at| {
+                at.translation = shift * part;
+                at
+            })
+        });
+        let ends: [[Vec<DVec3>; 2]; 2] = std::array::from_fn(|i| {
+            let onward =
+                shift * if i == 0 { 1.0 } else { 0.0 } * rng.random_range(0.4..1.2) + in_cube(&mut rng) * 0.5;
+            let moved = soups[i].vertices.iter().map(|&v| v + onward + 0.2 * in_cube(&mut rng));
+            [soups[i].vertices.clone(), moved.collect()]
+        });
+        let shapes = [0, 1].map(|i| {
+            let was = soups[i].shape();
+            let mut is = was.clone();
+            is.deform(&ends[i][1]).unwrap();
+            [was, is]
+        });
+        let [a, b] = [0, 1].map(|i| [0, 1].map(|end| (&shapes[i][end], &ways[i][end])));
+        let found = query::time_of_impact_deforming(a, b, &OPTIONS).unwrap();
+        let world = |i: usize, t: f64| {
+            let corners = |end: usize| ends[i][end].iter().map(move |&v| (end, v));
+            let placed = |(end, v): (usize, DVec3)| ways[i][end].transform_point3(v);
+            let at = corners(0).zip(corners(1)).map(|(p, q)| placed(p).lerp(placed(q), t));
+            Shape::mesh(at.collect::<Vec<_>>(), soups[i].triangles()).unwrap()
+        };
+        let here = DAffine3::IDENTITY;
+        let until = found.map_or(1.0, |impact| impact.time);
+        for step in 0..24 {
+            let t = until * f64::from(step) / 24.0;
+            let meet = t < until && query::intersects(&world(0, t), &here, &world(1, t), &here).unwrap();
+            assert!(!meet, "case {case}: they meet at {t}, {found:?}");
+        }
+        let Some(found) = found else { continue };
+        hits += 1;
+        let gap = query::distance(&world(0, found.time), &here, &world(1, found.time), &here).unwrap();
+        assert!(gap.distance < 1e-6, "case {case}: {} {found:?}", gap.distance);
+    }
+    assert_rate("deforming meshes", hits, cases);
+}
+
+/// What starts nearly in touch and leaves, or slides, does not meet.
+#[test]
+fn what_leaves_does_not_meet_at_the_start() {
+    let block = Shape::cuboid([1.0, 1.0, 1.0]).unwrap();
+    let at = |x: f64, y: f64| DAffine3::from_translation(DVec3::new(x, y, 0.0));
+    let here = at(0.0, 0.0);
+    for gap in [1e-9, 1e-8, 1e-3] {
+        let start = at(1.0 + gap, 0.0);
+        for (to, meets) in [(at(2.0, 0.0), false), (at(1.0 + gap, 1.5), false), (at(0.5, 0.0), true)] {
+            let found = query::time_of_impact(&block, &start, &to, &block, &here, &here, &OPTIONS).unwrap();
+            assert_eq!(found.is_some(), meets, "{gap} {to:?} {found:?}");
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_refused_by_name() {
+    let (ball, mesh) = (Shape::sphere(1.0).unwrap(), torus(3, 3, 0.5).shape());
+    let here = DAffine3::IDENTITY;
+    for tolerance in [f64::NAN, 0.0, 9e-11, 1.1, f64::INFINITY] {
+        let options = ImpactOptions { tolerance, ..OPTIONS };
+        let error = query::time_of_impact(&ball, &here, &here, &ball, &here, &here, &options).unwrap_err();
+        assert!(error.to_string().starts_with("tolerance is "), "{error}");
+    }
+    let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
+    let wild = DAffine3::from_translation(DVec3::splat(f64::NAN));
+    for bad in [flat, wild] {
+        for [from, to] in [[&bad, &here], [&here, &bad]] {
+            assert!(query::time_of_impact(&ball, from, to, &ball, &here, &here, &OPTIONS).is_err());
+            assert!(query::time_of_impact(&ball, &here, &here, &ball, from, to, &OPTIONS).is_err());
+        }
+    }
+    let other = torus(3, 3, 0.5).shape();
+    let error =
+        query::time_of_impact_deforming([(&mesh, &here), (&other, &here)], [(&ball, &here); 2], &OPTIONS);
+    assert!(matches!(error, Err(Error::NotADeformation { argument: "a", .. })), "{error:?}");
+}
+
+/// Wild but allowed numbers neither panic nor hang.
+#[test]
+fn wild_placements_are_survived() {
+    let mut rng = seeded(2006);
+    let wild = [0.0, 5e-324, 1e-100, 1e-30, 1.0, -3.0, 1e16, 1e100, -1e100];
+    let mut answered = 0;
+    for case in 0..600 {
+        let (a, b) = (some_shape(&mut rng, case), some_shape(&mut rng, case / 4));
+        let mut pick = || DVec3::from_array(std::array::from_fn(|_| wild[rng.random_range(0..wild.len())]));
+        let [p, q, r, s] = [(); 4].map(|()| DAffine3 {
+            matrix3: match case % 3 {
+                0 => DMat3::IDENTITY,
+                1 => DMat3::from_diagonal(pick()),
+                _ => DMat3::from_cols(pick(), pick(), pick()),
+            },
+            translation: pick(),
+        });
+        let Ok(found) = query::time_of_impact(&a, &p, &q, &b, &r, &s, &OPTIONS) else { continue };
+        answered += 1;
+        assert!(found.is_none_or(|impact| (0.0..=1.0).contains(&impact.time)), "{found:?}");
+    }
+    assert!(answered > 150, "{answered}");
+}
