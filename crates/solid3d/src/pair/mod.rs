@@ -10,6 +10,7 @@
 mod approach;
 mod cast;
 mod closed_form;
+mod coherent;
 mod complex_complex;
 mod complex_convex;
 mod containment;
@@ -30,6 +31,7 @@ use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach};
 pub(crate) use cast::cast;
+pub(crate) use coherent::{closest_again, intersects_again};
 pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;
