@@ -121,7 +121,7 @@ fn assert_is_consistent(found: &Penetration, pa: &DAffine3, pb: &DAffine3, size:
 }
 
 /// A gap that is asked of GJK, relative to the size of the data.
-const GAP: f64 = 1e-9;
+const GAP: f64 = 2.0 * TOUCHING_ERROR;
 
 /// Moved by the depth along the normal, `A` is off `B`, which the oracle verifies; moved by less than what the depth is at least, it
 /// is not.

@@ -10,6 +10,7 @@
 mod approach;
 mod cast;
 mod closed_form;
+mod coherent;
 mod complex_complex;
 mod complex_convex;
 mod contact;
@@ -37,6 +38,7 @@ pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
 pub(crate) use contact::contacts;
 pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};
+pub(crate) use coherent::{closest_again, intersects_again};
 pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;

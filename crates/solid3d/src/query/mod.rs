@@ -14,12 +14,14 @@ mod cast;
 mod contacts;
 mod distance;
 mod impact;
+mod pair_cache;
 mod penetration;
 mod point;
 mod ray;
 use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
+use solid_convex::Closest;
 
 use crate::bounds::Aabb;
 use crate::error::Result;
@@ -35,6 +37,7 @@ pub use contacts::contacts;
 pub use distance::distance_within;
 pub(crate) use impact::impact_of;
 pub use impact::{Impact, ImpactOptions, time_of_impact, time_of_impact_deforming};
+pub use pair_cache::PairCache;
 pub use penetration::{Penetration, penetration};
 pub use point::{ClosestPoint, closest_point, contains_point, winding_number};
 pub use ray::{cast_ray, cast_ray_all, ray_meets};
@@ -163,12 +166,17 @@ pub fn separating_axis(
 /// ```
 pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<Distance> {
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
-    let closest = pair::closest(a, b, &mut Scratch::default());
-    Ok(Distance {
-        distance: closest.distance,
-        point_on_a: placement_a.transform_point3(closest.points.on_a),
-        point_on_b: placement_b.transform_point3(closest.points.on_b),
-    })
+    Ok(Distance::new(a, b, &pair::closest(a, b, &mut Scratch::default())))
+}
+
+impl Distance {
+    fn new(a: Placed, b: Placed, closest: &Closest) -> Distance {
+        Distance {
+            distance: closest.distance,
+            point_on_a: a.placement.transform_point3(closest.points.on_a),
+            point_on_b: b.placement.transform_point3(closest.points.on_b),
+        }
+    }
 }
 
 /// The curve in which the surfaces of two placed shapes meet: polylines, each segment with the primitives that it comes from

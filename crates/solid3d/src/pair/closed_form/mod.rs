@@ -4,6 +4,7 @@
 //! [`SKEW_MAX`], and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
 //! ([`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR)). So both say the same, and GJK decides the rest.
 
+mod balls;
 mod boxes;
 mod round;
 mod similarity;
@@ -35,6 +36,9 @@ enum Pair {
 
 /// Whether they intersect; `None` where GJK has to say.
 pub(super) fn intersects(a: Placed, b: Placed) -> Option<bool> {
+    if let answer @ Some(_) = balls::intersects(a, b) {
+        return answer;
+    }
     match Pair::new(a, b)?.0 {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).gap().intersects(),
         Pair::RoundBox(round, cuboid) | Pair::BoxRound(cuboid, round) => {

@@ -1,0 +1,58 @@
+//! The questions about two shapes, asked frame after frame.
+
+use glam::DAffine3;
+use solid_convex::gjk::Memory;
+
+use super::{Distance, placed};
+use crate::error::Result;
+use crate::pair::{self, Scratch};
+use crate::shape::Shape;
+
+/// Two shapes about which the same is asked frame after frame, as they move a little: what was found last is tried first
+/// (thesis, section 4.4.3). For pairs outside of a [`World`](crate::World), which does the like by itself.
+///
+/// Convex shapes gain most: while the axis, or the overlapping points, of the last frame still tell, a question costs a support point of
+/// each, or none. Meshes and complex shapes gain that nothing is allocated any more. After a jump the answers are as right,
+/// and cost what they cost without.
+///
+/// ```
+/// use solid3d::{Shape, query::{self, PairCache}, glam::{DAffine3, DVec3}};
+/// let block = Shape::cuboid([1.0, 1.0, 1.0])?;
+/// let drum = Shape::cylinder(0.5, 1.0)?;
+/// let mut pair = PairCache::new(&block, &drum);
+/// for frame in 0..60 {
+///     let moved = DAffine3::from_translation(DVec3::new(0.03 * f64::from(frame), 0.2, 0.1));
+///     let meet = pair.intersects(&DAffine3::IDENTITY, &moved)?;
+///     assert_eq!(meet, query::intersects(&block, &DAffine3::IDENTITY, &drum, &moved)?);
+///     assert_eq!(meet, pair.distance(&DAffine3::IDENTITY, &moved)?.distance == 0.0);
+/// }
+/// # Ok::<(), solid3d::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct PairCache {
+    a: Shape,
+    b: Shape,
+    /// Of these two shapes.
+    memory: Memory,
+    scratch: Scratch,
+}
+
+impl PairCache {
+    /// Two shapes of which nothing is known yet. Cost: none to speak of; shapes share their geometry.
+    pub fn new(a: &Shape, b: &Shape) -> PairCache {
+        PairCache { a: a.clone(), b: b.clone(), memory: Memory::default(), scratch: Scratch::default() }
+    }
+
+    /// What [`intersects`](super::intersects) says, always.
+    pub fn intersects(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<bool> {
+        let Self { a, b, memory, scratch } = self;
+        Ok(pair::intersects_again(placed(a, placement_a)?, placed(b, placement_b)?, memory, scratch))
+    }
+
+    /// What [`distance`](super::distance) says, with the same error, but not always the same bits.
+    pub fn distance(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<Distance> {
+        let Self { a, b, memory, scratch } = self;
+        let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+        Ok(Distance::new(a, b, &pair::closest_again(a, b, memory, scratch)))
+    }
+}
