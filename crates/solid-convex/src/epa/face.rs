@@ -19,7 +19,7 @@ pub(super) struct Face {
     pub offset: f64,
     /// How much less it may be.
     pub slack: f64,
-    /// How much higher above the plane, or lower, a vertex may be than its computed height says.
+    /// How much higher above the plane of its rounded corners, or lower, a vertex may be than its computed height says.
     pub blur: f64,
     /// Whether the point being inserted sees it.
     pub seen: bool,
@@ -141,7 +141,8 @@ impl Face {
         let tilt = NORMAL_ROUNDINGS * (1.0 + (size_x * y.length() + size_y * x.length()) / length);
         // The vertices are the rounded ones.
         let slack = tilt.min(2.0) * nearest.length() + HEIGHT_ERROR;
-        let blur = tilt * DIAMETER + HEIGHT_ERROR;
-        Face { corners, twins, normal: unit, offset: unit.dot(nearest), slack, blur, seen: false, open: true }
+        // Far from the face, the plane of the rounded vertices may be anywhere.
+        let (offset, blur) = (unit.dot(nearest), f64::INFINITY);
+        Face { corners, twins, normal: unit, offset, slack, blur, seen: false, open: true }
     }
 }
