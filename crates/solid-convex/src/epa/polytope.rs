@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 use robust::orient3d;
 
-use super::face::{Face, HalfEdge, Wide};
+use super::face::{Face, HalfEdge};
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::coord;
@@ -22,7 +22,6 @@ pub(super) struct Polytope {
     open: BinaryHeap<Reverse<(u64, u32)>>,
     /// Faces that are at least this far from the origin are not to be looked across.
     limit: f64,
-    wide: Wide,
     horizon: Horizon,
 }
 
@@ -91,7 +90,6 @@ impl Polytope {
         };
         let mut polytope = SPARE.take().unwrap_or_default();
         polytope.clear();
-        polytope.wide = Wide::of(difference.is_polytope());
         polytope.vertices.extend(vertices);
         for (place, (corners, twins)) in (0..).zip(TETRAHEDRON) {
             polytope.put(difference, place, corners, twins);
@@ -315,7 +313,7 @@ impl Polytope {
         B: Support + ?Sized,
     {
         let points = corners.map(|i| &self.vertices[i as usize]);
-        let face = Face::new(difference, corners, points, twins, self.wide);
+        let face = Face::new(difference, corners, points, twins);
         if face.offset < self.limit {
             self.open.push(Reverse((order(face.offset), place)));
         }
