@@ -19,7 +19,7 @@ pub(super) struct Face {
     pub offset: f64,
     /// How much less it may be.
     pub slack: f64,
-    /// How much higher above the plane, or lower, a vertex may be than its computed height says.
+    /// How much higher above the plane of its rounded corners, or lower, a vertex may be than its computed height says.
     pub blur: f64,
     /// Whether the point being inserted sees it.
     pub seen: bool,
@@ -60,22 +60,9 @@ const NORMAL_ROUNDINGS: f64 = 16.0 / (1u64 << 53) as f64;
 /// No two points of the difference, whose coordinates are below 2, are further apart.
 const DIAMETER: f64 = 8.0;
 
-/// From which width on, over their longest edge and in the difference's unit, faces are wide: squared. The rounding of the corners, some
-/// 1e-16, tilts a wide face by no more than its part of the width.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Wide {
-    width_squared: f64,
-}
-
-impl Wide {
-    /// Of objects whose depth is searched to the rounding error, or only to [`DEPTH_TOLERANCE`](super::DEPTH_TOLERANCE): tilts of some
-    /// 1e-14, and some 1e-13.
-    pub fn of(is_polytope: bool) -> Self {
-        Wide {
-            width_squared: if is_polytope { 1.0 / (1u64 << 10) as f64 } else { 1.0 / (1u64 << 18) as f64 },
-        }
-    }
-}
+/// The square of the width of a triangle over its longest edge, in the difference's unit, beyond which the rounding of its corners does
+/// not tilt it by more than some 1e-14.
+const WIDE_SQUARED: f64 = 1.0 / 1024.0;
 
 impl Face {
     /// The face of three points.
@@ -85,7 +72,6 @@ impl Face {
         corners: [u32; 3],
         points: [&SupportPoint; 3],
         twins: [HalfEdge; 3],
-        wide: Wide,
     ) -> Self
     where
         A: Support + ?Sized,
@@ -96,7 +82,7 @@ impl Face {
         let normal = pq.cross(pr);
         let area_squared = normal.length_squared();
         let longest_squared = pq.length_squared().max(pr.length_squared()).max((r - q).length_squared());
-        if area_squared <= wide.width_squared * longest_squared {
+        if area_squared <= WIDE_SQUARED * longest_squared {
             return Face::narrow(difference, corners, points, twins);
         }
         let inverse = 1.0 / area_squared.sqrt();
@@ -141,7 +127,8 @@ impl Face {
         let tilt = NORMAL_ROUNDINGS * (1.0 + (size_x * y.length() + size_y * x.length()) / length);
         // The vertices are the rounded ones.
         let slack = tilt.min(2.0) * nearest.length() + HEIGHT_ERROR;
-        let blur = tilt * DIAMETER + HEIGHT_ERROR;
-        Face { corners, twins, normal: unit, offset: unit.dot(nearest), slack, blur, seen: false, open: true }
+        // Far from the face, the plane of the rounded vertices may be anywhere.
+        let (offset, blur) = (unit.dot(nearest), f64::INFINITY);
+        Face { corners, twins, normal: unit, offset, slack, blur, seen: false, open: true }
     }
 }

@@ -5,8 +5,8 @@
 //! a support point along the normal of the face nearest to the origin, until that face is known to lie on the boundary of `A - B`.
 //! What differs, and why:
 //!
-//! - The lower bound rests on the polytope being closed, and on every face having the origin inside, not on its being convex: which
-//!   faces a new point sees may then be decided up to the rounding error, and only of slivers it is decided exactly.
+//! - Which faces a new point sees is decided exactly, so that the polytope is always convex and closed. Where rounding decides,
+//!   the seen faces can be several patches, or none.
 //! - It starts from GJK's tetrahedron when there is one. When GJK ended with less, as it does for shapes that touch or have
 //!   their middles in one place, the start is spanned by support points along the axes and then across what these span; a
 //!   difference without thickness is recognised there, and its depth is 0 along its normal.
@@ -187,29 +187,32 @@ where
 /// The point where the ray along a normal leaves the polytope, which is at a height up to a margin.
 fn witness(polytope: &Polytope, normal: DVec3, height: f64, margin: f64) -> Witness {
     let target = normal * height;
-    let within = polytope.faces_across(normal, margin).find_map(|corners| over(&corners, target));
-    let nearest = || {
-        let near = polytope.faces_across(normal, margin).map(|corners| closest(&corners, target));
-        let (_, points) = near.min_by(|x, y| x.0.total_cmp(&y.0)).expect("a polytope has faces");
-        points
-    };
-    within.unwrap_or_else(nearest)
+    let near = polytope
+        .faces_across(normal, margin)
+        .map(|corners| over(&corners, target).unwrap_or_else(|| closest(&corners, target)));
+    let (_, points) = near.min_by(|x, y| x.0.total_cmp(&y.0)).expect("a polytope has faces");
+    points
 }
 
-/// The point of a triangle at the foot of a point, by the areas; `None` when that is not well inside, or the triangle too thin for these.
-fn over([p, q, r]: &[SupportPoint; 3], target: DVec3) -> Option<Witness> {
+/// The point of a triangle at the foot of a point, by the areas, with the square of the distance; `None` when that is not well inside, or the triangle too thin for these.
+fn over([p, q, r]: &[SupportPoint; 3], target: DVec3) -> Option<(f64, Witness)> {
     let (pq, pr) = (q.w - p.w, r.w - p.w);
     let n = pq.cross(pr);
     let n_squared = n.length_squared();
     if n_squared < SLIVER_SINE_SQUARED * pq.length_squared() * pr.length_squared() {
         return None;
     }
-    let across = (p.w - target).cross(n) / n_squared;
+    let from = p.w - target;
+    let across = from.cross(n) / n_squared;
+    let distance = from.dot(n);
     let (of_q, of_r) = (pr.dot(across), -pq.dot(across));
     let of_p = 1.0 - of_q - of_r;
     let blend = |p: DVec3, q: DVec3, r: DVec3| p * of_p + q * of_q + r * of_r;
     let inside = of_p > 0.0 && of_q > 0.0 && of_r > 0.0;
-    inside.then(|| Witness { on_a: blend(p.a, q.a, r.a), on_b: blend(p.b, q.b, r.b) })
+    inside.then(|| {
+        let points = Witness { on_a: blend(p.a, q.a, r.a), on_b: blend(p.b, q.b, r.b) };
+        (distance * distance / n_squared, points)
+    })
 }
 
 /// The side of a difference without thickness on which less of it is; `ended` has the origin between its points.

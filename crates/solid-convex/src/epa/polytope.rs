@@ -7,20 +7,13 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 use robust::orient3d;
 
-use super::HEIGHT_ERROR;
-use super::face::{Face, HalfEdge, Wide};
+use super::face::{Face, HalfEdge};
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::coord;
 
-/// A closed surface of triangles with their vertices in `A - B`.
-///
-/// It is the hull of its vertices, up to rounding: a point that is within [`Face::blur`] of the plane of a face does not see it. That is
-/// the choice that makes few slivers, and nothing certain rests on it. A ball around the origin is in the hull of the vertices as soon as
-/// no face comes into it and all have the origin on their inner side: for then the solid angles that they take up, which sum
-/// to a multiple of the full one because the surface is closed, are none of them negative and not all zero. The surface goes around the
-/// origin, at least once, and so around all of the ball; and no closed surface goes around a point that a plane separates from
-/// its vertices.
+/// The hull of some points of `A - B`, with an inside. Invariant: exactly convex and closed, for the vertices as they were rounded;
+/// faces may be coplanar.
 #[derive(Debug, Default)]
 pub(super) struct Polytope {
     vertices: Vec<SupportPoint>,
@@ -29,7 +22,6 @@ pub(super) struct Polytope {
     open: BinaryHeap<Reverse<(u64, u32)>>,
     /// Faces that are at least this far from the origin are not to be looked across.
     limit: f64,
-    wide: Wide,
     horizon: Horizon,
 }
 
@@ -66,10 +58,6 @@ const TETRAHEDRON: [([u32; 3], [HalfEdge; 3]); 4] = {
     ]
 };
 
-/// A blur up to this is the rounding error: the height of a point that is within it of a plane is nothing. Of faces with a greater
-/// one the exact sign is taken.
-const BLUR_MAX: f64 = 64.0 * HEIGHT_ERROR;
-
 thread_local! {
     /// A polytope whose memory the next one on this thread takes over: no more than the [`VERTICES_MAX`](super::VERTICES_MAX) ask for.
     static SPARE: Cell<Option<Polytope>> = const { Cell::new(None) };
@@ -102,7 +90,6 @@ impl Polytope {
         };
         let mut polytope = SPARE.take().unwrap_or_default();
         polytope.clear();
-        polytope.wide = Wide::of(difference.is_polytope());
         polytope.vertices.extend(vertices);
         for (place, (corners, twins)) in (0..).zip(TETRAHEDRON) {
             polytope.put(difference, place, corners, twins);
@@ -199,9 +186,22 @@ impl Polytope {
         near.map(|i| self.corners(i))
     }
 
-    /// Takes a point in, which is beyond a face; false, and nothing changes, when what it sees of the polytope is not in one piece without
-    /// holes, which only rounding can do.
+    /// Takes a point in, which should be beyond a face; false, and nothing changes, when it is in the polytope.
     pub fn insert_beyond<A, B>(&mut self, difference: &Difference<A, B>, p: SupportPoint, face: usize) -> bool
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        if self.sees(face, p.w) {
+            self.insert_seen_by(difference, p, face)
+        } else {
+            self.insert(difference, p)
+        }
+    }
+
+    /// Takes a point in that a face sees; false, and nothing changes, when what it sees is not in one piece without holes: only where
+    /// a product of coordinates is too small for a number is a sign not exact.
+    fn insert_seen_by<A, B>(&mut self, difference: &Difference<A, B>, p: SupportPoint, face: usize) -> bool
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
@@ -224,20 +224,20 @@ impl Polytope {
         B: Support + ?Sized,
     {
         let first = (0..self.faces.len()).find(|&i| self.is_live(i) && self.sees(i, p.w));
-        first.is_some_and(|first| self.insert_beyond(difference, p, first))
+        first.is_some_and(|first| self.insert_seen_by(difference, p, first))
     }
 
     fn is_live(&self, index: usize) -> bool {
         self.faces[index].offset < f64::INFINITY
     }
 
-    /// Whether a point is beyond a face, further than the rounding error.
+    /// Whether a point is beyond a face: by its height over the plane where that is certain, else by the exact sign.
     #[inline]
     fn sees(&self, index: usize, p: DVec3) -> bool {
         let face = &self.faces[index];
         let height = face.normal.dot(p) - face.offset;
-        if height.abs() > face.blur || face.blur <= BLUR_MAX {
-            return height > face.blur;
+        if height.abs() > face.blur {
+            return height > 0.0;
         }
         side(face.corners.map(|i| self.vertices[i as usize].w), p) < 0.0
     }
@@ -313,7 +313,7 @@ impl Polytope {
         B: Support + ?Sized,
     {
         let points = corners.map(|i| &self.vertices[i as usize]);
-        let face = Face::new(difference, corners, points, twins, self.wide);
+        let face = Face::new(difference, corners, points, twins);
         if face.offset < self.limit {
             self.open.push(Reverse((order(face.offset), place)));
         }
@@ -326,8 +326,8 @@ impl Polytope {
 
 #[cfg(test)]
 impl Polytope {
-    /// Whether it is closed, and convex up to a height.
-    pub fn assert_well_formed(&self, height: f64) {
+    /// Whether it is closed and exactly convex, as its invariant says.
+    pub fn assert_well_formed(&self) {
         let mut live = 0;
         for (index, face) in self.faces.iter().enumerate().filter(|&(i, _)| self.is_live(i)) {
             live += 1;
@@ -343,10 +343,10 @@ impl Polytope {
                 let [start, end] = ends(face, edge);
                 assert_eq!(ends(neighbour, twin), [end, start]);
             }
-            if face.blur <= BLUR_MAX {
-                let above = |p: &SupportPoint| face.normal.dot(p.w) - face.offset;
-                let highest = self.vertices.iter().map(above).fold(0.0, f64::max);
-                assert!(highest <= height, "face {index} has a vertex {highest:e} above it");
+            let corners = face.corners.map(|i| self.vertices[i as usize].w);
+            for p in &self.vertices {
+                assert!(side(corners, p.w) >= 0.0, "face {index} is not of the hull");
+                assert_eq!(self.sees(index, p.w), side(corners, p.w) < 0.0);
             }
         }
         let corners =

@@ -2,15 +2,15 @@
 
 use std::rc::Rc;
 
-use solid_oracle::{Convex, distance_bounds, verdict};
+use solid_oracle::{Convex, distance_bounds, penetration_bounds, verdict};
 use solid3d::query;
 
-use super::pairs::{Scene, Truth, distance, distance_again, intersection, intersection_again};
+use super::pairs::{Scene, Truth, distance, distance_again, intersection, intersection_again, penetration};
 use super::with_commas;
 use crate::inputs::{PairPose, Polyhedron, pairs_at_overlap, track_at_overlap};
 use crate::peers::bench::Unit;
 use crate::peers::contestants::parry::{double, single};
-use crate::peers::contestants::{Library, Ours, Thesis, each};
+use crate::peers::contestants::{Depths, Library, Ours, Thesis, each};
 use crate::peers::{Bench, Kind, Peer};
 
 /// No polyhedra whose origins are further apart, in radii, meet; and in so large a cube hardly any do.
@@ -42,6 +42,16 @@ pub fn measure(bench: &mut Bench) {
             let rate = f64::from(overlap) / 100.0;
             let poses = pairs_at_overlap(&mut rng, count, rate, REACH, |_, pair| meet(pair));
             race(bench, &name, &format!("{overlap} % overlap"), &polyhedra, &poses);
+            // At half that rate too few of a small sample meet.
+            if overlap >= 50 {
+                let deep: Vec<PairPose> = poses.iter().filter(|pair| meet(pair)).copied().collect();
+                race_depths(bench, &format!("{name}, penetration, {overlap} % overlap"), &polyhedra, &deep);
+                if overlap == 50 {
+                    SIZES.iter().for_each(|(size, text)| {
+                        judge_depths(bench, &format!("{name}, {text}"), &polyhedra, &deep, *size)
+                    });
+                }
+            }
             if overlap == 50 {
                 SIZES.iter().for_each(|(size, text)| {
                     judge(bench, &format!("{name}, {text}"), &polyhedra, &poses, *size)
@@ -71,6 +81,15 @@ fn race(bench: &mut Bench, name: &str, how: &str, polyhedra: &[Polyhedron; 2], p
     bench.race(&format!("{name}, closest points, {how}"), poses.len(), Unit::Nano, entries);
 }
 
+fn race_depths(bench: &mut Bench, work: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose]) {
+    let ours = penetration(&scene::<Ours>(polyhedra, poses));
+    let (parry, parry_single) = (
+        penetration(&scene::<double::Parry>(polyhedra, poses)),
+        penetration(&scene::<single::Parry>(polyhedra, poses)),
+    );
+    bench.race(work, poses.len(), Unit::Nano, vec![ours, parry, parry_single]);
+}
+
 fn race_again(bench: &mut Bench, name: &str, how: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose]) {
     let ours = &scene::<Ours>(polyhedra, poses);
     let thesis = &scene::<Thesis>(polyhedra, poses);
@@ -90,6 +109,33 @@ fn race_again(bench: &mut Bench, name: &str, how: &str, polyhedra: &[Polyhedron;
         distance_again(parry_single),
     ];
     bench.race(&format!("{name}, closest points, {how}"), poses.len(), Unit::Nano, entries);
+}
+
+/// Compares the depths of some pairs that meet, scaled, with the oracle's.
+fn judge_depths(bench: &mut Bench, name: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose], size: f64) {
+    let polyhedra = polyhedra.each_ref().map(|polyhedron| polyhedron.scaled(size));
+    let hulls = polyhedra.each_ref().map(|polyhedron| Convex::Hull { points: polyhedron.vertices.clone() });
+    let (mut certain, mut truths) = (Vec::new(), Vec::new());
+    for pair in poses.iter().take(bench.effort.sample(JUDGED)).map(|pair| pair.map(|pose| pose.scaled(size)))
+    {
+        let [at_a, at_b] = pair.map(|pose| pose.affine());
+        if let Some((least, greatest)) = penetration_bounds(&hulls[0], &at_a, &hulls[1], &at_b) {
+            certain.push(pair);
+            truths.push([least, greatest]);
+        }
+    }
+    let wrong = each!(wrong_depths: Ours, double::Parry, single::Parry; (&polyhedra, &certain, &truths, DISTANCE_ERROR * size));
+    let work = format!("{name}, wrong answers to penetration of {}", truths.len());
+    bench.figures(&work, Kind::Wrong, "wrong", &wrong);
+}
+
+fn wrong_depths<L: Depths>(
+    polyhedra: &[Polyhedron; 2],
+    poses: &[PairPose],
+    truths: &[[f64; 2]],
+    tolerance: f64,
+) -> (Peer, f64) {
+    (L::PEER, scene::<L>(polyhedra, poses).wrong_depths(truths, tolerance) as f64)
 }
 
 /// Compares the answers to some pairs, scaled, with the oracle's.

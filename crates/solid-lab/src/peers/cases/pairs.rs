@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use crate::inputs::PairPose;
 use crate::peers::bench::Entry;
-use crate::peers::contestants::{AllPairs, Coherent, Library};
+use crate::peers::contestants::{AllPairs, Coherent, Depths, Library};
 
 /// The two shapes of all pairs, and where they are, in a library's own types.
 pub struct Scene<L: Library> {
@@ -46,6 +46,18 @@ impl<L: Library> Scene<L> {
     }
 }
 
+impl<L: Depths> Scene<L> {
+    /// How many depths of the first pairs are off the interval that they lie in by more than `tolerance`.
+    pub fn wrong_depths(&self, truths: &[[f64; 2]], tolerance: f64) -> usize {
+        let right =
+            |([least, greatest], ([a, b], [at_a, at_b])): &(&[f64; 2], ([&L::Shape; 2], [&L::Pose; 2]))| {
+                L::depth(a, at_a, b, at_b)
+                    .is_some_and(|depth| (least - tolerance..=greatest + tolerance).contains(&depth))
+            };
+        truths.iter().zip(self.each()).filter(|pair| !right(pair)).count()
+    }
+}
+
 /// What the oracle proved of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Truth {
@@ -65,6 +77,14 @@ pub fn intersection<L: Library>(scene: &Rc<Scene<L>>) -> Entry {
 pub fn distance<L: Library>(scene: &Rc<Scene<L>>) -> Entry {
     let scene = scene.clone();
     Entry::new(L::PEER, move || scene.count(|[a, b], [at_a, at_b]| L::distance(a, at_a, b, at_b) > 0.0))
+}
+
+/// How deep in each other each pair is.
+pub fn penetration<L: Depths>(scene: &Rc<Scene<L>>) -> Entry {
+    let scene = scene.clone();
+    Entry::new(L::PEER, move || {
+        scene.count(|[a, b], [at_a, at_b]| L::depth(a, at_a, b, at_b).is_some_and(|depth| depth > 0.0))
+    })
 }
 
 /// Whether the two meet in each frame of a motion, which begins with nothing known.

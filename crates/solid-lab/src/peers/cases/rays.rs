@@ -3,8 +3,8 @@
 use crate::inputs::{Mesh, direction};
 use crate::peers::Bench;
 use crate::peers::bench::{Entry, Unit};
-use crate::peers::contestants::Rays;
 use crate::peers::contestants::parry::{double, single};
+use crate::peers::contestants::{Ours, Rays};
 use solid3d::glam::DVec3;
 
 use super::with_commas;
@@ -17,7 +17,7 @@ const RAYS: usize = 1000;
 /// How far from the centre of the torus rays begin.
 const FROM: f64 = 3.0;
 
-/// Races. The library casts no rays yet: its figures are missing.
+/// Races.
 pub fn measure(bench: &mut Bench) {
     let name = format!("closest ray, {} triangles", with_commas(TRIANGLES));
     let mut rng = bench.rng(&name);
@@ -29,7 +29,11 @@ pub fn measure(bench: &mut Bench) {
             [origin, (direction(&mut rng) - origin).normalize()]
         })
         .collect();
-    let entries = vec![entry::<double::Parry>(&torus, &rays), entry::<single::Parry>(&torus, &rays)];
+    let entries = vec![
+        entry::<Ours>(&torus, &rays),
+        entry::<double::Parry>(&torus, &rays),
+        entry::<single::Parry>(&torus, &rays),
+    ];
     bench.race(&name, rays.len(), Unit::Nano, entries);
 }
 

@@ -52,6 +52,12 @@ pub trait Library: 'static {
     fn distance(a: &Self::Shape, at_a: &Self::Pose, b: &Self::Shape, at_b: &Self::Pose) -> f64;
 }
 
+/// What says how deep two polyhedra are in each other.
+pub trait Depths: Library {
+    /// How deep; `None` when they do not meet.
+    fn depth(a: &Self::Shape, at_a: &Self::Pose, b: &Self::Shape, at_b: &Self::Pose) -> Option<f64>;
+}
+
 /// What knows primitives too, and every class against every other.
 pub trait Primitives: Library {
     /// A primitive.

@@ -1,9 +1,10 @@
 use solid3d::broad::{BroadPhase, DynamicTree};
 use solid3d::convex::{Outcome, Polytope, gjk};
 use solid3d::glam::{DAffine3, DVec3};
+use solid3d::query::{Ray, RayOptions};
 use solid3d::{Aabb, ObjectId, Response, Shape, World, WorldOptions, query};
 
-use super::{AllPairs, Boxes, Coherent, Library, Primitives, Simulator};
+use super::{AllPairs, Boxes, Coherent, Depths, Library, Primitives, Rays, Simulator};
 use crate::inputs::{ICollide, Mesh, Polyhedron, Pose, Primitive};
 use crate::peers::Peer;
 
@@ -48,6 +49,26 @@ impl Library for Ours {
 
     fn distance(a: &Body, at_a: &DAffine3, b: &Body, at_b: &DAffine3) -> f64 {
         query::distance(&a.shape, at_a, &b.shape, at_b).expect("the poses are valid").distance
+    }
+}
+
+impl Depths for Ours {
+    fn depth(a: &Body, at_a: &DAffine3, b: &Body, at_b: &DAffine3) -> Option<f64> {
+        let found = query::penetration(&a.shape, at_a, &b.shape, at_b).expect("the poses are valid");
+        found.map(|found| found.depth)
+    }
+}
+
+impl Rays for Ours {
+    type Ray = Ray;
+
+    fn ray(origin: DVec3, direction: DVec3) -> Ray {
+        Ray::new(origin, direction)
+    }
+
+    fn closest(mesh: &Body, ray: &Ray) -> Option<f64> {
+        let hit = query::cast_ray(&mesh.shape, &DAffine3::IDENTITY, ray, &RayOptions::default());
+        hit.expect("the ray is valid").map(|hit| hit.t)
     }
 }
 

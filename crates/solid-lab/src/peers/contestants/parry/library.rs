@@ -10,7 +10,7 @@ use super::parry::shape::{Ball, Capsule, ConvexPolyhedron, Cuboid, Shape, TriMes
 use super::{PEER, Real, double, real};
 use crate::inputs::{self, ICollide, Mesh, Polyhedron, Primitive};
 use crate::peers::Peer;
-use crate::peers::contestants::{Boxes, Coherent, Library, Primitives, Rays, Simulator};
+use crate::peers::contestants::{Boxes, Coherent, Depths, Library, Primitives, Rays, Simulator};
 
 /// parry's shapes and queries.
 pub struct Parry;
@@ -62,6 +62,13 @@ impl Library for Parry {
 
     fn distance(a: &Box<dyn Shape>, at_a: &Pose, b: &Box<dyn Shape>, at_b: &Pose) -> f64 {
         double(query::distance(at_a, &**a, at_b, &**b).expect("the pair is supported").distance)
+    }
+}
+
+impl Depths for Parry {
+    fn depth(a: &Box<dyn Shape>, at_a: &Pose, b: &Box<dyn Shape>, at_b: &Pose) -> Option<f64> {
+        let contact = query::contact(at_a, &**a, at_b, &**b, 0.0).expect("the pair is supported");
+        contact.map(|contact| double(-contact.dist))
     }
 }
 
