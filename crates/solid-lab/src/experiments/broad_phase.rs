@@ -27,7 +27,7 @@ enum Sizes {
     Two,
 }
 
-/// One box in so many is large, where there are two sizes: with these there are about as many pairs as with one size.
+/// One box in so many is large, where there are two sizes.
 const LARGE_EVERY: usize = 50;
 
 /// The side of a large box.

@@ -17,7 +17,7 @@ pub struct Polytope {
     /// Made when first asked for: only solid polytopes have them.
     edges: OnceLock<Edges>,
     /// Made when first asked for.
-    bsp_tree: OnceLock<BspTree>,
+    bsp_tree: OnceLock<Box<BspTree>>,
 }
 
 impl Polytope {
@@ -61,7 +61,7 @@ impl Polytope {
     /// The planes of the facets as a tree.
     pub(super) fn bsp_tree(&self) -> &BspTree {
         let corners = |t: &[u32; 3]| t.map(|v| self.vertices[v as usize]);
-        self.bsp_tree.get_or_init(|| BspTree::of_triangles(self.triangles.iter().map(corners)))
+        self.bsp_tree.get_or_init(|| Box::new(BspTree::of_triangles(self.triangles.iter().map(corners))))
     }
 
     /// The vertices joined to one by an edge.
