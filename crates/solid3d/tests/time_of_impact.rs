@@ -179,7 +179,7 @@ fn a_ball_against_a_spinning_box_is_never_missed() {
     let (mut hits, mut short, cases) = (0, 0, 1500);
     let (ball, block) = (Shape::sphere(0.1).unwrap(), Shape::cuboid([2.0, 0.2, 0.6]).unwrap());
     for case in 0..cases {
-        let turn = direction(&mut rng) * rng.random_range(1.0..3.14);
+        let turn = direction(&mut rng) * rng.random_range(1.0..3.1);
         let spinning = Rigid { from: placement_rigid(&mut rng), turn, way: DVec3::ZERO };
         let start = direction(&mut rng) * rng.random_range(0.8..1.6);
         let way = (direction(&mut rng) * 0.6 - start) * rng.random_range(0.5..1.5);

@@ -115,7 +115,7 @@ fn find(function: &impl Trilinear, options: &Options) -> Result<Option<Impact>> 
     }
     .map(|(cell, near)| {
         let [_, u, v] = cell.middle();
-        Impact { time: cell.least[0], parameters: [u, v], near }
+        Impact { time: cell.earliest, parameters: [u, v], near }
     }))
 }
 

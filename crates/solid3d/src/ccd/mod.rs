@@ -6,8 +6,9 @@
 //! Jiang, Attene, Panozzo, *A Large Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision Detection*, 2021). So
 //! no contact is ever missed, nor the time given too late; what comes nearer than a tolerance may pass for a contact.
 //!
-//! Deviations: boxes are taken in the order of their earliest time, so the first that passes is the answer, and the tolerance is
-//! relative to the size of the data.
+//! Deviations: boxes are taken in the order of their earliest time, so the first that passes is the answer; that time is that of the
+//! function's linear bounds rather than of the box; a normal is looked at beside the axes; and the tolerance is relative to the
+//! size of the data.
 //!
 //! For whole meshes see [`query::time_of_impact_deforming`](crate::query::time_of_impact_deforming), which works with the distance of
 //! primitives instead.

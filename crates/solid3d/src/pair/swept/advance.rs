@@ -50,6 +50,15 @@ pub(super) struct Span {
     pub to: f64,
 }
 
+/// Directions that are tried before the closest points are looked for: most pairs of primitives whose boxes overlap on the whole way
+/// stay apart along an axis in what is left of it.
+const AXES: [DVec3; 6] = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
+
+/// A lower bound on the gap along a direction from `B` to `A`, after a time from that of the bodies.
+fn gap(a: &Body, b: &Body, n: DVec3, s: f64) -> f64 {
+    -a.furthest(-n, s) - b.furthest(n, s) - 0.5 * s * s * (a.acceleration() + b.acceleration())
+}
+
 /// When two bodies first meet in a span of time; `None` when they do not. Never later than they do.
 pub(super) fn advance(a: &mut Body, b: &mut Body, span: Span, nearness: Nearness) -> Option<Arrival> {
     let Nearness { mut tolerance, least } = nearness;
@@ -57,6 +66,10 @@ pub(super) fn advance(a: &mut Body, b: &mut Body, span: Span, nearness: Nearness
     for step in 0..STEPS_MAX {
         a.seek(t);
         b.seek(t);
+        let apart = |n: &DVec3| [0.0, span.to - t].iter().all(|&s| gap(a, b, *n, s) >= 0.5 * tolerance);
+        if step == 0 && AXES.iter().any(apart) {
+            return None;
+        }
         let (v, point) = closest(a, b);
         let distance = v.length();
         met = Some(Arrival { time: t, normal, point });
@@ -72,11 +85,7 @@ pub(super) fn advance(a: &mut Body, b: &mut Body, span: Span, nearness: Nearness
         if distance <= tolerance {
             break;
         }
-        let sure = |s: f64| {
-            let acceleration = a.acceleration() + b.acceleration();
-            -a.furthest(-n, s) - b.furthest(n, s) - 0.5 * s * s * acceleration
-        };
-        let next = t + stride(sure, span.to - t, tolerance);
+        let next = t + stride(|s| gap(a, b, n, s), span.to - t, tolerance);
         if next >= span.to {
             return None;
         }
