@@ -156,7 +156,7 @@ fn bits(collision: &Collision) -> Bits {
         }
         Contact::Curve { point, ref curve } => {
             let points = curve.polylines.iter().flat_map(|polyline| polyline.path());
-            (3, of(&std::iter::once(point).chain(points).collect::<Vec<_>>()))
+            (4, of(&std::iter::once(point).chain(points).collect::<Vec<_>>()))
         }
         Contact::Depth { depth, normal, point_on_a, point_on_b } => {
             (3, of(&[DVec3::splat(depth), normal, point_on_a, point_on_b]))
@@ -317,7 +317,7 @@ impl Stage {
     }
 
     fn change_responses(&mut self) {
-        let response = RESPONSES[self.rng.random_range(0..5)];
+        let response = RESPONSES[self.rng.random_range(0..RESPONSES.len())];
         let (i, j) = (self.any(), self.any());
         let (a, b) = (self.model.things[i].id, self.model.things[j].id);
         let pair = (a.min(b), a.max(b));
@@ -534,7 +534,7 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
         );
         assert!(with_swept || events.iter().all(|&count| count > frames / 10), "{events:?}");
         assert!(busy > frames / 3, "most frames have collisions");
-        assert!((0..4).all(|kind| contacts.contains_key(&kind)), "every kind of contact comes up");
+        assert!((0..5).all(|kind| contacts.contains_key(&kind)), "every kind of contact comes up");
         let work: Vec<Statistics> = stage.worlds.iter().map(World::statistics).collect();
         assert_eq!(work[0], work[2], "the engines give the same candidates");
         assert_eq!(work[1], work[3]);

@@ -33,7 +33,7 @@ pub(super) fn intersects(a: Placed, b: Placed) -> Option<bool> {
 /// The radius of a ball, in its own space.
 fn radius(placed: Placed) -> Option<f64> {
     match placed.shape.simple()? {
-        Simple::Round { radius, half_height } if half_height == 0.0 => Some(radius),
+        Simple::Round { radius, half_height: 0.0 } => Some(radius),
         _ => None,
     }
 }

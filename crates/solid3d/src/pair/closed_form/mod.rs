@@ -146,5 +146,5 @@ impl Gap {
 
 /// A common point, or the closest points: of either shape in the space of the pair, then in the shape's own.
 fn witness([at_a, at_b]: [(&Similarity, DVec3); 2], [on_a, on_b]: [DVec3; 2]) -> Witness {
-    Witness { on_a: at_a.0.to_local(on_a - at_a.1), on_b: at_b.0.to_local(on_b - at_b.1) }
+    Witness { on_a: at_a.0.local(on_a - at_a.1), on_b: at_b.0.local(on_b - at_b.1) }
 }

@@ -59,7 +59,7 @@ impl<'a> Cores<'a> {
         if a.half_axis != DVec3::ZERO {
             return None;
         }
-        let local = b.at.to_local(a.center - b.center);
+        let local = b.at.local(a.center - b.center);
         // From the difference in the box's own space, which is exactly along its axes where the centre is beyond a face: as
         // an axis it must be right over the whole box, however near to it a small ball is.
         let v = b.at.apply(local - local.clamp(-b.half, b.half));

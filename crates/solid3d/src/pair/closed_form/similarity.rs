@@ -51,7 +51,7 @@ impl Similarity {
         self.linear.mul_transpose_vec3(vector).abs().dot(half)
     }
 
-    pub fn to_local(&self, displacement: DVec3) -> DVec3 {
+    pub fn local(&self, displacement: DVec3) -> DVec3 {
         self.linear.mul_transpose_vec3(displacement) / (self.stretch * self.stretch)
     }
 }
@@ -69,7 +69,7 @@ mod tests {
                 let similarity = Similarity::new(&(turn * scale)).unwrap();
                 assert!((similarity.stretch / scale.abs() - 1.0).abs() < 1e-14);
                 let point = DVec3::new(1.0, 2.0, 3.0);
-                assert!((similarity.to_local(similarity.apply(point)) - point).length() < 1e-13);
+                assert!((similarity.local(similarity.apply(point)) - point).length() < 1e-13);
             }
             for skew in
                 [DVec3::new(1.0, 1.0, 1.0 + 1e-13), DVec3::new(1.0, 2.0, 1.0), DVec3::new(1.0, 0.0, 1.0)]

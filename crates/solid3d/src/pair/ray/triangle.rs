@@ -92,8 +92,8 @@ impl Shear {
         for [i, j] in [[1, 2], [2, 0], [0, 1]] {
             let (x, y) = (points[i][0] * points[j][1], points[i][1] * points[j][0]);
             let (area, doubt) = (x - y, error * (x.abs() + y.abs()));
-            left = left | area.simd_gt(doubt);
-            right = right | (-area).simd_gt(doubt);
+            left |= area.simd_gt(doubt);
+            right |= (-area).simd_gt(doubt);
         }
         let missed = left & right;
         !(missed.to_bitmask() as u32) & ((1 << LANES) - 1)
