@@ -1,7 +1,5 @@
 //! What a pair keeps from frame to frame changes no answer, for all kinds of shapes.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 mod common;
 
 use common::{assert_rate, direction, in_cube, placement, random_complex, random_mesh};
