@@ -71,7 +71,7 @@ mod tests {
             };
             let (x, y) = ([point(), point(), point()], [point(), point(), point()]);
             // Brought together.
-            let shift = 0.2 * (x[0] + x[1] + x[2] - y[0] - y[1] - y[2]);
+            let shift = 0.1 * (x[0] + x[1] + x[2] - y[0] - y[1] - y[2]);
             let y = y.map(|corner| corner + shift);
             if !intersect(&x, &y) {
                 continue;
