@@ -4,12 +4,14 @@
 //! there already, the pair that was deepest. Deviation from SOLID 2.0, which takes the first pair found, and has no normal for
 //! shapes that met already.
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 use solid_convex::{Closest, Penetration, Support, Witness, gjk, unit_scale};
 
 use super::depth::{Deepest, of_common};
-use super::table::{PlacedConvex, axis, closest, closest_within, meetings, penetration};
-use super::{Placed, Scratch};
+use super::table::{PlacedConvex, axis, closest, closest_within, penetration};
+use super::{Placed, Scratch, meeting_primitives};
 use crate::shape::Class;
 
 /// How two shapes came together.
@@ -29,7 +31,7 @@ pub(crate) fn approach(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scra
     let ([a, b], solid) = (before, before.iter().any(is_solid));
     let nearest = pairs.iter().map(|&pair| (with_primitives(before, pair, closest_points), pair));
     let nearest = nearest.min_by(|(x, i), (y, j)| x.distance.total_cmp(&y.distance).then(i.cmp(j)));
-    match nearest {
+    let found = match nearest {
         // In a solid, what is apart from its surface is deep.
         Some((nearest, _)) if nearest.distance > 0.0 && (!solid || closest(a, b, scratch).distance > 0.0) => {
             apart(before, nearest)
@@ -40,7 +42,9 @@ pub(crate) fn approach(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scra
             deep(deepest.found().expect("there is a pair"))
         }
         _ => as_they_are(before, scratch),
-    }
+    };
+    scratch.meeting = pairs;
+    found
 }
 
 /// How near two shapes are to each other as they are, or how deep they are in each other; `None` when they are further apart than a bound.
@@ -51,12 +55,17 @@ pub(crate) fn proximity(a: Placed, b: Placed, bound: f64, scratch: &mut Scratch)
 /// The pairs of primitives that meet now. None when the whole shapes are to be looked at: they are convex, one is another than in the
 /// previous frame, one contains the other, or they met on the way.
 fn pairs_to_look_at(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch) -> Vec<[u32; 2]> {
+    let mut pairs = std::mem::take(&mut scratch.meeting);
+    pairs.clear();
     let convex = now.iter().all(|placed| matches!(placed.shape.class(), Class::Convex(_)));
     let same = || now.iter().zip(before).all(|(now, before)| now.shape.has_primitives_of(before.shape));
-    if convex || !same() {
-        return Vec::new();
+    if !convex && same() {
+        let _ = meeting_primitives(now[0], now[1], scratch, &mut |i, j| {
+            pairs.push([i, j]);
+            ControlFlow::Continue(())
+        });
     }
-    meetings(now[0], now[1], scratch).0
+    pairs
 }
 
 /// The same without a bound.

@@ -85,16 +85,15 @@ pub(crate) fn meeting_primitives(
             Relation::Separated { .. } => ControlFlow::Continue(()),
         },
         (Class::Complex(a), Class::Convex(b)) => {
-            let mut found = |i, _| found(a.owner(i), 0);
+            let mut found = |i, _| found(i, 0);
             complex_convex::meeting_primitives((a, at_a), (b, at_b), scratch, &mut found)
         }
         (Class::Convex(a), Class::Complex(b)) => {
-            let mut found = |j, _| found(0, b.owner(j));
+            let mut found = |j, _| found(0, j);
             complex_convex::meeting_primitives((b, at_b), (a, at_a), scratch, &mut found)
         }
         (Class::Complex(a), Class::Complex(b)) => {
-            let mut found = |i, j| found(a.owner(i), b.owner(j));
-            complex_complex::meeting_pairs((a, at_a), (b, at_b), scratch, &mut found)
+            complex_complex::meeting_pairs((a, at_a), (b, at_b), scratch, found)
         }
     }
 }

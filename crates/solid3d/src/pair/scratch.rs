@@ -24,6 +24,8 @@ pub(crate) struct Scratch {
     pub leaves: [Vec<PlacedPrimitive>; 2],
     /// The primitives of one complex shape that the other may meet on its way.
     pub on_the_way: Vec<u32>,
+    /// Pairs of primitives that meet.
+    pub meeting: Vec<[u32; 2]>,
     /// Tests of one primitive against another.
     pub primitive_tests: u64,
 }

@@ -1,7 +1,5 @@
 //! The table.
 
-use std::ops::ControlFlow;
-
 use glam::{DAffine3, DVec3};
 use solid_convex::{Closest, Penetration, Support};
 
@@ -109,43 +107,6 @@ pub(crate) fn penetration(a: Placed, b: Placed, scratch: &mut Scratch) -> Option
         convex_convex: depth::convex_convex,
         complex_convex: depth::complex_convex,
         complex_complex: depth::complex_complex,
-    };
-    ROW.apply(a, b, scratch)
-}
-
-/// The pairs of primitives that meet, in any order; a convex shape is its only one.
-pub(super) struct Meetings(pub Vec<[u32; 2]>);
-
-impl Mirror for Meetings {
-    fn mirrored(mut self) -> Self {
-        self.0.iter_mut().for_each(|pair| pair.reverse());
-        self
-    }
-}
-
-/// Which primitives meet.
-pub(super) fn meetings(a: Placed, b: Placed, scratch: &mut Scratch) -> Meetings {
-    const ROW: Row<Meetings> = Row {
-        convex_convex: |a, b, scratch| match convex_convex::intersection(a, b, scratch) {
-            Relation::Separated { .. } => Meetings(Vec::new()),
-            Relation::Common(_) => Meetings(vec![[0, 0]]),
-        },
-        complex_convex: |a, b, scratch| {
-            let mut pairs = Vec::new();
-            let _ = complex_convex::meeting_primitives(a, b, scratch, &mut |i, _| {
-                pairs.push([i, 0]);
-                ControlFlow::Continue(())
-            });
-            Meetings(pairs)
-        },
-        complex_complex: |a, b, scratch| {
-            let mut pairs = Vec::new();
-            let _ = complex_complex::meeting_pairs(a, b, scratch, &mut |i, j| {
-                pairs.push([i, j]);
-                ControlFlow::Continue(())
-            });
-            Meetings(pairs)
-        },
     };
     ROW.apply(a, b, scratch)
 }

@@ -123,6 +123,7 @@ pub fn intersecting_primitives(
     mut found: impl FnMut(u32, u32) -> ControlFlow<()>,
 ) -> Result<()> {
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let mut found = |i, j| found(a.shape.owner(i), b.shape.owner(j));
     let _ = pair::meeting_primitives(a, b, &mut Scratch::default(), &mut found);
     Ok(())
 }

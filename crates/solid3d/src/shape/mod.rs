@@ -359,6 +359,14 @@ impl Shape {
         }
     }
 
+    /// The primitive that the user gave, of which one of the shape's own is a part: what a result names.
+    pub(crate) fn owner(&self, primitive: u32) -> u32 {
+        match &self.geometry {
+            Geometry::Complex(complex) => complex.owner(primitive),
+            _ => primitive,
+        }
+    }
+
     pub(crate) fn class(&self) -> Class<'_> {
         match &self.geometry {
             Geometry::Sphere(shape) => Class::Convex(shape),
