@@ -1,5 +1,7 @@
 //! Where the polytope starts.
 
+use std::ops::Deref;
+
 use glam::DVec3;
 
 use super::HEIGHT_ERROR;
@@ -19,33 +21,62 @@ where
     {
         return Ok(polytope);
     }
-    let mut points = ended.to_vec();
+    let mut points = Points::new(ended);
     look_along(difference, &[DVec3::X, DVec3::Y, DVec3::Z], &mut points);
     let corners = spanned(difference, &mut points)?;
     let Some(mut polytope) = Polytope::tetrahedron(difference, corners) else {
         unreachable!("a corner with a height off the others is not in their plane")
     };
-    for p in points {
+    for &p in &*points {
         polytope.insert(difference, p);
     }
     Ok(polytope)
 }
 
+/// Support points, without memory of their own: those that GJK ended with, and of three, two and one axis, both ways.
+struct Points {
+    slots: [SupportPoint; POINTS_MAX],
+    count: usize,
+}
+
+const POINTS_MAX: usize = 4 + 2 * (3 + 2 + 1);
+
+impl Points {
+    fn new(points: &[SupportPoint]) -> Self {
+        let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
+        let mut all = Points { slots: [zero; POINTS_MAX], count: 0 };
+        points.iter().for_each(|&point| all.push(point));
+        all
+    }
+
+    fn push(&mut self, point: SupportPoint) {
+        self.slots[self.count] = point;
+        self.count += 1;
+    }
+}
+
+impl Deref for Points {
+    type Target = [SupportPoint];
+
+    fn deref(&self) -> &[SupportPoint] {
+        &self.slots[..self.count]
+    }
+}
+
 /// Adds the support points along some axes, both ways.
-fn look_along<A, B>(difference: &Difference<A, B>, axes: &[DVec3], points: &mut Vec<SupportPoint>)
+fn look_along<A, B>(difference: &Difference<A, B>, axes: &[DVec3], points: &mut Points)
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    points.extend(axes.iter().flat_map(|&axis| [axis, -axis]).map(|axis| difference.support_against(axis)));
+    for axis in axes.iter().flat_map(|&axis| [axis, -axis]) {
+        points.push(difference.support_against(axis));
+    }
 }
 
 /// Four of the points that are not coplanar; each time that those there are do not reach beyond the rounding error, support points
 /// across what they span are added. `Err` with the normal, when there are none.
-fn spanned<A, B>(
-    difference: &Difference<A, B>,
-    points: &mut Vec<SupportPoint>,
-) -> Result<[SupportPoint; 4], DVec3>
+fn spanned<A, B>(difference: &Difference<A, B>, points: &mut Points) -> Result<[SupportPoint; 4], DVec3>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
