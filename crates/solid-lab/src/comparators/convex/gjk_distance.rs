@@ -38,7 +38,7 @@ pub enum End {
     Repeated,
     /// Rounding left the sub-algorithm no subset.
     NoSubset,
-    /// After [`ITERATIONS_MAX`]: it would not have ended.
+    /// After the limit of iterations: it would not have ended.
     Limit,
 }
 
