@@ -11,7 +11,7 @@ use super::with_commas;
 use crate::inputs::{Mesh, PairPose, Pose, pairs_at_overlap, track_at_overlap};
 use crate::peers::bench::Unit;
 use crate::peers::contestants::parry::{double, single};
-use crate::peers::contestants::{Library, Ours, Thesis, each};
+use crate::peers::contestants::{AllPairs, Library, Ours, Thesis, each};
 use crate::peers::{Bench, Kind, Peer};
 
 /// As for convex polyhedra.
@@ -139,21 +139,31 @@ fn judge(bench: &mut Bench, name: &str, torus: &Mesh, poses: &[PairPose]) {
         let at = pose.affine();
         torus.vertices.iter().map(|v| at.transform_point3(*v)).collect()
     };
-    let truths: Vec<Truth> = poses
+    let (truths, counts): (Vec<Truth>, Vec<usize>) = poses
         .iter()
         .map(|pair| {
             let [a, b] = pair.each_ref().map(placed);
-            let meet = !mesh_pairs(&a, &torus.triangles, &b, &torus.triangles).is_empty();
+            let count = mesh_pairs(&a, &torus.triangles, &b, &torus.triangles).len();
+            let meet = count > 0;
             let distance = if meet { 0.0 } else { mesh_distance(&a, &torus.triangles, &b, &torus.triangles) };
-            Truth { meet: Some(meet), distance: Some([distance; 2]) }
+            (Truth { meet: Some(meet), distance: Some([distance; 2]) }, count)
         })
-        .collect();
+        .unzip();
     let wrong = each!(wrong: Ours, Thesis, double::Parry, single::Parry; (torus, poses, &truths));
     for (i, question) in ["intersection", "distance"].into_iter().enumerate() {
         let figures: Vec<(Peer, f64)> = wrong.iter().map(|(peer, wrong)| (*peer, wrong[i] as f64)).collect();
         let work = format!("{name}, wrong answers to {question} of {}", truths.len());
         bench.figures(&work, Kind::Wrong, "wrong", &figures);
     }
+    let wrong = each!(wrong_counts: Ours, Thesis; (torus, poses, &counts));
+    let work = format!("{name}, wrong numbers of pairs of {}", counts.len());
+    bench.figures(&work, Kind::Wrong, "wrong", &wrong);
+}
+
+fn wrong_counts<L: AllPairs>(torus: &Mesh, poses: &[PairPose], truths: &[usize]) -> (Peer, f64) {
+    let scene = scene::<L>(torus, poses);
+    let found = scene.each().map(|([a, b], [at_a, at_b])| L::pair_count(a, at_a, b, at_b));
+    (L::PEER, found.zip(truths).filter(|(found, truth)| found != *truth).count() as f64)
 }
 
 fn wrong<L: Library>(torus: &Mesh, poses: &[PairPose], truths: &[Truth]) -> (Peer, [usize; 2]) {

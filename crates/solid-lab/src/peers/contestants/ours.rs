@@ -1,7 +1,8 @@
+use std::ops::ControlFlow;
+
 use solid3d::broad::{BroadPhase, DynamicTree};
-use solid3d::convex::{Outcome, Polytope, gjk};
 use solid3d::glam::{DAffine3, DVec3};
-use solid3d::query::{Ray, RayOptions};
+use solid3d::query::{PairCache, Ray, RayOptions};
 use solid3d::{Aabb, ObjectId, Response, Shape, World, WorldOptions, query};
 
 use super::{AllPairs, Boxes, Coherent, Depths, Library, Primitives, Rays, Simulator};
@@ -11,15 +12,9 @@ use crate::peers::Peer;
 /// The library.
 pub struct Ours;
 
-/// A shape, and for a polyhedron what the algorithms on convex shapes take, since a pair's cache is not to be had of shapes.
-pub struct Body {
-    shape: Shape,
-    polytope: Option<Polytope>,
-}
-
 impl Library for Ours {
     const PEER: Peer = Peer::Ours;
-    type Shape = Body;
+    type Shape = Shape;
     type Pose = DAffine3;
     type Buffers = (Vec<DVec3>, Vec<[u32; 3]>);
 
@@ -31,30 +26,30 @@ impl Library for Ours {
         (mesh.vertices.clone(), mesh.triangles.clone())
     }
 
-    fn polyhedron(polyhedron: &Polyhedron) -> Body {
-        Body { shape: polyhedron.shape(), polytope: Polytope::new(polyhedron.vertices.clone()) }
+    fn polyhedron(polyhedron: &Polyhedron) -> Shape {
+        polyhedron.shape()
     }
 
-    fn mesh((vertices, triangles): Self::Buffers) -> Body {
-        Body { shape: Shape::mesh(vertices, triangles).expect("the mesh is well formed"), polytope: None }
+    fn mesh((vertices, triangles): Self::Buffers) -> Shape {
+        Shape::mesh(vertices, triangles).expect("the mesh is well formed")
     }
 
-    fn deform(mesh: &mut Body, (vertices, _): &Self::Buffers) {
-        mesh.shape.deform(vertices).expect("the positions are finite");
+    fn deform(mesh: &mut Shape, (vertices, _): &Self::Buffers) {
+        mesh.deform(vertices).expect("the positions are finite");
     }
 
-    fn intersects(a: &Body, at_a: &DAffine3, b: &Body, at_b: &DAffine3) -> bool {
-        query::intersects(&a.shape, at_a, &b.shape, at_b).expect("the poses are valid")
+    fn intersects(a: &Shape, at_a: &DAffine3, b: &Shape, at_b: &DAffine3) -> bool {
+        query::intersects(a, at_a, b, at_b).expect("the poses are valid")
     }
 
-    fn distance(a: &Body, at_a: &DAffine3, b: &Body, at_b: &DAffine3) -> f64 {
-        query::distance(&a.shape, at_a, &b.shape, at_b).expect("the poses are valid").distance
+    fn distance(a: &Shape, at_a: &DAffine3, b: &Shape, at_b: &DAffine3) -> f64 {
+        query::distance(a, at_a, b, at_b).expect("the poses are valid").distance
     }
 }
 
 impl Depths for Ours {
-    fn depth(a: &Body, at_a: &DAffine3, b: &Body, at_b: &DAffine3) -> Option<f64> {
-        let found = query::penetration(&a.shape, at_a, &b.shape, at_b).expect("the poses are valid");
+    fn depth(a: &Shape, at_a: &DAffine3, b: &Shape, at_b: &DAffine3) -> Option<f64> {
+        let found = query::penetration(a, at_a, b, at_b).expect("the poses are valid");
         found.map(|found| found.depth)
     }
 }
@@ -66,39 +61,53 @@ impl Rays for Ours {
         Ray::new(origin, direction)
     }
 
-    fn closest(mesh: &Body, ray: &Ray) -> Option<f64> {
-        let hit = query::cast_ray(&mesh.shape, &DAffine3::IDENTITY, ray, &RayOptions::default());
+    fn closest(mesh: &Shape, ray: &Ray) -> Option<f64> {
+        let hit = query::cast_ray(mesh, &DAffine3::IDENTITY, ray, &RayOptions::default());
         hit.expect("the ray is valid").map(|hit| hit.t)
     }
 }
 
 impl Primitives for Ours {
-    fn primitive(primitive: Primitive) -> Body {
-        Body { shape: primitive.shape().expect("the sizes are valid"), polytope: None }
+    fn primitive(primitive: Primitive) -> Shape {
+        primitive.shape().expect("the sizes are valid")
     }
 }
 
 impl Coherent for Ours {
-    /// The separating axis.
-    type Memory = DVec3;
+    type Memory = Option<PairCache>;
 
-    fn intersects_again(axis: &mut DVec3, a: &Body, at_a: &DAffine3, b: &Body, at_b: &DAffine3) -> bool {
-        let (Some(a), Some(b)) = (&a.polytope, &b.polytope) else {
-            unreachable!("memory is kept for polyhedra only")
-        };
-        if gjk::separates(*axis, a, at_a, b, at_b) {
-            return false;
-        }
-        let outcome = gjk::intersection(a, at_a, b, at_b);
-        *axis = if let Outcome::Separated { axis } = outcome { axis } else { DVec3::ZERO };
-        *axis == DVec3::ZERO
+    fn intersects_again(
+        cache: &mut Option<PairCache>,
+        a: &Shape,
+        at_a: &DAffine3,
+        b: &Shape,
+        at_b: &DAffine3,
+    ) -> bool {
+        let cache = cache.get_or_insert_with(|| PairCache::new(a, b));
+        cache.intersects(at_a, at_b).expect("the poses are valid")
+    }
+
+    fn distance_again(
+        cache: &mut Option<PairCache>,
+        a: &Shape,
+        at_a: &DAffine3,
+        b: &Shape,
+        at_b: &DAffine3,
+    ) -> f64 {
+        let cache = cache.get_or_insert_with(|| PairCache::new(a, b));
+        cache.distance(at_a, at_b).expect("the poses are valid").distance
     }
 }
 
 impl AllPairs for Ours {
-    fn pair_count(a: &Body, at_a: &DAffine3, b: &Body, at_b: &DAffine3) -> usize {
-        let curve = query::intersection_curve(&a.shape, at_a, &b.shape, at_b).expect("meshes have facets");
-        curve.segments().count()
+    fn pair_count(a: &Shape, at_a: &DAffine3, b: &Shape, at_b: &DAffine3) -> usize {
+        let mut count = 0;
+        let counted = query::intersecting_primitives(a, at_a, b, at_b, |_, _| {
+            count += 1;
+            ControlFlow::Continue(())
+        });
+        counted.expect("the poses are valid");
+        count
     }
 }
 
