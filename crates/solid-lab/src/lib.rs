@@ -5,8 +5,10 @@
 //! - [`inputs`]: shapes, pairs and motions to measure on, from a seed.
 //! - [`experiments`]: the tables and figures of the thesis.
 //! - [`peers`]: the library, the thesis's design and parry, on the same inputs in one run.
+//! - [`document`]: where the results are put.
 
 pub mod comparators;
+pub mod document;
 pub mod experiments;
 pub mod inputs;
 pub mod peers;

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, Parser, Subcommand};
+use solid_lab::document;
 use solid_lab::experiments::{self, Experiment, Report, Settings};
 use solid_lab::inputs::SEED;
 use solid_lab::peers::{self, Effort};
@@ -22,41 +23,40 @@ struct Cli {
 enum Command {
     /// Names the experiments
     List,
-    /// Runs an experiment, or all
+    /// Runs an experiment, or all of them and the comparison with the peers
     Run {
         /// The name of an experiment, or `all`
         name: String,
-        /// Small samples: a minute for everything
-        #[arg(long)]
-        quick: bool,
-        /// Of all random numbers
-        #[arg(long, default_value_t = SEED)]
-        seed: u64,
+        #[command(flatten)]
+        measuring: Measuring,
         /// Where tables and charts go; the folder is made
-        #[arg(long, value_name = "FOLDER", default_value = "target/experiments")]
+        #[arg(long, value_name = "FOLDER", default_value = "target/experiments", conflicts_with = "docs")]
         out: PathBuf,
-        /// Put the results between the marks of this document
-        #[arg(long, value_name = "FILE")]
-        document: Option<PathBuf>,
+        /// Bring `experiments.md`, `peers.md` and their charts in this folder up to date
+        #[arg(long, value_name = "FOLDER")]
+        docs: Option<PathBuf>,
     },
     /// The library beside the thesis's design and parry
-    Peers(PeersArgs),
+    Peers {
+        #[command(flatten)]
+        measuring: Measuring,
+        /// Write the rows as JSON
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+        /// Draw the ratios, as SVG
+        #[arg(long, value_name = "FILE")]
+        chart: Option<PathBuf>,
+    },
 }
 
-#[derive(Debug, Args)]
-struct PeersArgs {
-    /// Small samples, and nothing that takes seconds to set up
+#[derive(Clone, Copy, Debug, Args)]
+struct Measuring {
+    /// Small samples, and nothing that takes seconds to set up: a minute for everything
     #[arg(long)]
     quick: bool,
     /// Of all random numbers
     #[arg(long, default_value_t = SEED)]
     seed: u64,
-    /// Write the rows as JSON
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// Draw the ratios, as SVG
-    #[arg(long, value_name = "FILE")]
-    chart: Option<PathBuf>,
 }
 
 fn main() -> Result<()> {
@@ -67,15 +67,23 @@ fn main() -> Result<()> {
             }
             Ok(())
         }
-        Command::Run { name, quick, seed, out, document } => {
-            let effort = if quick { experiments::Effort::Quick } else { experiments::Effort::Full };
-            run(&name, &Settings { effort, seed, out_dir: out }, document.as_deref())
+        Command::Run { name, measuring, out, docs } => {
+            let out = docs.as_ref().map_or(out, |docs| docs.join("experiments"));
+            let effort = if measuring.quick { experiments::Effort::Quick } else { experiments::Effort::Full };
+            run(&name, &Settings { effort, seed: measuring.seed, out_dir: out }, docs.as_deref())?;
+            if name == "all" {
+                let chart = docs.as_ref().map(|docs| docs.join("peers.svg"));
+                compare(measuring, None, chart.as_deref(), docs.as_deref())?;
+            }
+            Ok(())
         }
-        Command::Peers(args) => compare(&args),
+        Command::Peers { measuring, json, chart } => {
+            compare(measuring, json.as_deref(), chart.as_deref(), None)
+        }
     }
 }
 
-fn run(name: &str, settings: &Settings, document: Option<&Path>) -> Result<()> {
+fn run(name: &str, settings: &Settings, docs: Option<&Path>) -> Result<()> {
     let chosen: Vec<&Experiment> =
         experiments::all().iter().filter(|experiment| name == "all" || experiment.name == name).collect();
     if chosen.is_empty() {
@@ -89,7 +97,8 @@ fn run(name: &str, settings: &Settings, document: Option<&Path>) -> Result<()> {
         if settings.effort == experiments::Effort::Full { "" } else { ", small samples" }
     );
     let start = Instant::now();
-    let mut found = Vec::new();
+    let mut results = Vec::new();
+    let mut differing = 0;
     for experiment in chosen {
         let begun = Instant::now();
         let report = (experiment.run)(settings)?;
@@ -100,35 +109,45 @@ fn run(name: &str, settings: &Settings, document: Option<&Path>) -> Result<()> {
             begun.elapsed().as_secs_f64()
         );
         println!("{}", report.text());
-        found.push((experiment, report));
+        differing += differences(&report);
+        results.push((experiment.name, report.markdown()));
     }
     println!("\ntables and charts are in {}; {:.1} s", out.display(), start.elapsed().as_secs_f64());
-    if let Some(document) = document {
-        experiments::write_summary(document, &found)?;
-    }
-    let differing: usize = found.iter().map(|(_, report)| differences(report)).sum();
     println!("{differing} counts differ from the thesis's");
-    Ok(())
+    match docs {
+        Some(docs) => document::fill(&docs.join("experiments.md"), &results),
+        None => Ok(()),
+    }
 }
 
 fn differences(report: &Report) -> usize {
     report.claims.iter().filter(|claim| claim.agrees() == Some(false)).count()
 }
 
-fn compare(args: &PeersArgs) -> Result<()> {
-    let effort = if args.quick { Effort::Quick } else { Effort::Full };
-    eprintln!("seed {}", args.seed);
+fn compare(
+    measuring: Measuring,
+    json: Option<&Path>,
+    chart: Option<&Path>,
+    docs: Option<&Path>,
+) -> Result<()> {
+    let effort = if measuring.quick { Effort::Quick } else { Effort::Full };
+    eprintln!("seed {}", measuring.seed);
     let start = Instant::now();
-    let report = peers::run(effort, args.seed, |name| {
+    let report = peers::run(effort, measuring.seed, |name| {
         eprintln!("{:5.1} s: {name}", start.elapsed().as_secs_f64());
     });
     println!("{}", peers::table(&report));
-    if let Some(path) = &args.json {
+    eprintln!("{:5.1} s", start.elapsed().as_secs_f64());
+    if let Some(path) = json {
         let json = serde_json::to_string_pretty(&report)?;
         fs::write(path, json).with_context(|| format!("cannot write {}", path.display()))?;
     }
-    if let Some(path) = &args.chart {
+    if let Some(path) = chart {
         peers::draw(&report, path).with_context(|| format!("cannot draw {}", path.display()))?;
+    }
+    if let Some(docs) = docs {
+        document::fill(&docs.join("peers.md"), &[("peers", peers::table(&report))])?;
+        document::fill(&docs.join("experiments.md"), &[("shortfalls", peers::shortfalls(&report))])?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "a seed is printed")]
 
 use solid_lab::inputs::SEED;
-use solid_lab::peers::{Effort, Kind, Peer, TARGETS, draw, run, table};
+use solid_lab::peers::{Effort, Kind, Peer, TARGETS, draw, run, shortfalls, table};
 
 #[test]
 fn every_case_runs_and_every_target_has_its_row() {
@@ -33,6 +33,8 @@ fn every_case_runs_and_every_target_has_its_row() {
         assert!(row.get(key).is_some(), "no {key} in {row}");
     }
     assert!(table(&report).contains("I-COLLIDE, 10,000 polyhedra"));
+    let missed = report.rows.iter().filter(|row| row.target.is_some() && row.met == Some(false)).count();
+    assert_eq!(shortfalls(&report).lines().count(), missed + 2, "a head of two lines, and a line each");
     let folder = tempfile::tempdir().expect("a temporary folder");
     let chart = folder.path().join("peers.svg");
     draw(&report, &chart).expect("there is something to draw");

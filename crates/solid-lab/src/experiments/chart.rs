@@ -1,4 +1,5 @@
 use anyhow::{Result, anyhow};
+use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 
 use super::Settings;
@@ -29,20 +30,42 @@ pub struct Labels<'a> {
 /// A name and its points.
 pub type Series = (String, Vec<(f64, f64)>);
 
-/// Lines over numbers.
+/// Lines over numbers, from zero.
 pub fn lines(settings: &Settings, file: &str, labels: &Labels, series: &[Series]) -> Result<()> {
+    let [(_, x), (_, y)] = ranges(series);
+    draw(settings, file, labels, 0.0..x, 0.0..y * 1.08, None, |area| line_series(area, series))
+}
+
+/// Lines over positive numbers, on scales where equal steps are equal ratios.
+pub fn lines_of_ratios(settings: &Settings, file: &str, labels: &Labels, series: &[Series]) -> Result<()> {
+    let [x, y] = ranges(series).map(|(least, greatest)| (least / 1.5..greatest * 1.5).log_scale());
+    draw(settings, file, labels, x, y, None, |area| line_series(area, series))
+}
+
+/// The least and the greatest of both coordinates.
+fn ranges(series: &[Series]) -> [(f64, f64); 2] {
     let points = || series.iter().flat_map(|(_, points)| points);
-    let (x_max, y_max) = points().fold((0.0, 0.0), |(x, y): (f64, f64), p| (x.max(p.0), y.max(p.1)));
-    draw(settings, file, labels, [x_max, y_max], None, |area| {
-        for (k, (name, points)) in series.iter().enumerate() {
-            let colour = COLOURS[k % COLOURS.len()];
-            area.draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(2)))?
-                .label(name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
-            area.draw_series(points.iter().map(|p| Circle::new(*p, 3, colour.filled())))?;
-        }
-        Ok(())
-    })
+    let range = |of: fn(&(f64, f64)) -> f64| {
+        points()
+            .map(of)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+    };
+    [range(|point| point.0), range(|point| point.1)]
+}
+
+fn line_series<X, Y>(area: &mut Area<X, Y>, series: &[Series]) -> Drawn
+where
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
+{
+    for (k, (name, points)) in series.iter().enumerate() {
+        let colour = COLOURS[k % COLOURS.len()];
+        area.draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(2)))?
+            .label(name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
+        area.draw_series(points.iter().map(|p| Circle::new(*p, 3, colour.filled())))?;
+    }
+    Ok(())
 }
 
 /// Groups of bars, one bar of each series in each group.
@@ -54,7 +77,7 @@ pub fn bars(
     series: &[(String, Vec<f64>)],
 ) -> Result<()> {
     let y_max = series.iter().flat_map(|(_, values)| values).fold(0.0, |max: f64, y| max.max(*y));
-    draw(settings, file, labels, [groups.len() as f64, y_max], Some(groups), |area| {
+    draw(settings, file, labels, 0.0..groups.len() as f64, 0.0..y_max * 1.08, Some(groups), |area| {
         let width = 0.8 / series.len() as f64;
         for (k, (name, values)) in series.iter().enumerate() {
             let colour = COLOURS[k % COLOURS.len()];
@@ -70,22 +93,25 @@ pub fn bars(
     })
 }
 
-type Area<'a, 'b> = ChartContext<
-    'a,
-    SVGBackend<'b>,
-    Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
->;
+type Area<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;
 
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-fn draw(
+fn draw<X, Y>(
     settings: &Settings,
     file: &str,
     labels: &Labels,
-    [x_max, y_max]: [f64; 2],
+    x: X,
+    y: Y,
     groups: Option<&[String]>,
-    series: impl FnOnce(&mut Area) -> Drawn,
-) -> Result<()> {
+    series: impl FnOnce(&mut Area<X::CoordDescType, Y::CoordDescType>) -> Drawn,
+) -> Result<()>
+where
+    X: AsRangedCoord<Value = f64>,
+    Y: AsRangedCoord<Value = f64>,
+    X::CoordDescType: ValueFormatter<f64>,
+    Y::CoordDescType: ValueFormatter<f64>,
+{
     let path = settings.out_dir.join(file);
     let picture = || -> Drawn {
         let root = SVGBackend::new(&path, SIZE).into_drawing_area();
@@ -95,7 +121,7 @@ fn draw(
             .margin(10)
             .x_label_area_size(40)
             .y_label_area_size(70)
-            .build_cartesian_2d(0.0..x_max, 0.0..y_max * 1.08)?;
+            .build_cartesian_2d(x, y)?;
         let group = |x: &f64| match groups {
             // The name of a group stands at its middle.
             Some(groups) if x.fract() == 0.5 => groups.get(*x as usize).cloned().unwrap_or_default(),

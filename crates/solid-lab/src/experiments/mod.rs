@@ -29,7 +29,6 @@ use anyhow::Result;
 #[cfg(test)]
 pub(crate) use polygons::star;
 pub use report::{Claim, Kind, Report};
-pub use summary::write_summary;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

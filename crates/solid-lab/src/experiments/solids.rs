@@ -5,7 +5,7 @@ use anyhow::Result;
 use serde::Serialize;
 use solid3d::glam::{DAffine3, DVec3};
 
-use super::chart::{Labels, Series, lines};
+use super::chart::{Labels, Series, lines_of_ratios};
 use super::clock::seconds;
 use super::output::write_csv;
 use super::random::stream;
@@ -227,12 +227,12 @@ fn charts(settings: &Settings, convex: &[ConvexRow], tori: &[TorusRow]) -> Resul
     let series: Vec<Series> = tests.iter().map(of).collect();
     let title = "Two convex polyhedra, half of the pairs intersecting";
     let labels = Labels { title, x: "vertices", y: "microseconds a test" };
-    lines(settings, "solids-convex.svg", &labels, &series)?;
+    lines_of_ratios(settings, "solids-convex.svg", &labels, &series)?;
     let of = |name: &str, value: fn(&TorusRow) -> f64| -> Series {
         (name.to_owned(), tori.iter().map(|row| (row.triangles as f64, value(row))).collect())
     };
     let tori_title = "Two tori, half of the pairs intersecting";
-    lines(
+    lines_of_ratios(
         settings,
         "solids-tori.svg",
         &Labels { title: tori_title, x: "triangles", y: "microseconds a test" },

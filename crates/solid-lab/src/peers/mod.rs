@@ -24,7 +24,7 @@ pub use chart::draw;
 pub use contestants::{Library, Ours, Simulator};
 pub use effort::Effort;
 pub use report::{Kind, Peer, Report, Row};
-pub use table::table;
+pub use table::{shortfalls, table};
 pub use targets::{TARGETS, Target};
 
 /// Measures everything. `progress` is told the name of each group of cases before its turn.

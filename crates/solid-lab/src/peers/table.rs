@@ -1,3 +1,5 @@
+use std::fmt::Write;
+
 use comfy_table::presets::ASCII_MARKDOWN;
 use comfy_table::{CellAlignment, Table};
 
@@ -37,6 +39,16 @@ pub fn table(report: &Report) -> String {
         report.date,
         report.seed
     )
+}
+
+/// The works for which a target is missed, with the ratios and those asked for: a table in Markdown.
+pub fn shortfalls(report: &Report) -> String {
+    let mut text = String::from("| work | peer | ratio | target |\n|---|---|---|---|");
+    for row in report.rows.iter().filter(|row| row.target.is_some() && row.met == Some(false)) {
+        let [ratio, target] = [row.ratio, row.target].map(|x| x.map_or("-".to_owned(), figure));
+        let _ = write!(text, "\n| {} | {} | {ratio} | {target} |", row.work, row.peer.name());
+    }
+    text
 }
 
 /// The median, and half of the distance of the quartiles in percent of it.

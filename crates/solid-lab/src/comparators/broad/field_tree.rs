@@ -5,6 +5,7 @@ use solid3d::Aabb;
 use solid3d::glam::{DVec3, IVec3};
 
 use super::BroadTest;
+use super::filing::{Filing, pairs_by_query};
 
 /// A fieldtree in three dimensions: a hierarchy of grids, each with half the cells' side of the one above it and shifted by half of its
 /// own, so that no two levels have a boundary in common (thesis, section 5.1.4). Each box is in the smallest cell, or field, that
@@ -93,13 +94,6 @@ impl FieldTree {
         self.visits.set(self.visits.get() + 1);
     }
 
-    fn enter(&mut self, index: u32) {
-        let key = self.smallest(&self.boxes[index as usize]);
-        self.make(key);
-        self.fields.get_mut(&key).expect("it was made").members.push(index);
-        self.field_of[index as usize] = key;
-    }
-
     /// Makes a field and all above it that overlap it: at most eight on each level.
     fn make(&mut self, key: FieldKey) {
         self.visit();
@@ -111,12 +105,6 @@ impl FieldTree {
             self.make(parent);
             self.fields.get_mut(&parent).expect("it was made").children.push(key);
         }
-    }
-
-    fn leave(&mut self, index: u32) {
-        let key = self.field_of[index as usize];
-        self.fields.get_mut(&key).expect("the box entered this field").members.retain(|&i| i != index);
-        self.prune(key);
     }
 
     /// Removes a field with nothing in or below it, and then those above it for which the same holds.
@@ -190,24 +178,36 @@ fn place(level: u32, p: DVec3) -> IVec3 {
     (p * f64::from(1u32 << level) - 0.5).floor().as_ivec3()
 }
 
+impl Filing for FieldTree {
+    fn boxes(&mut self) -> &mut [Aabb] {
+        &mut self.boxes
+    }
+
+    fn enter(&mut self, index: u32) {
+        let key = self.smallest(&self.boxes[index as usize]);
+        self.make(key);
+        self.fields.get_mut(&key).expect("it was made").members.push(index);
+        self.field_of[index as usize] = key;
+    }
+
+    fn leave(&mut self, index: u32) {
+        let key = self.field_of[index as usize];
+        self.fields.get_mut(&key).expect("the box entered this field").members.retain(|&i| i != index);
+        self.prune(key);
+    }
+}
+
 impl BroadTest for FieldTree {
     fn name(&self) -> &'static str {
         "fieldtree"
     }
 
     fn update(&mut self, moved: &[(u32, Aabb)]) {
-        for &(index, bounds) in moved {
-            self.leave(index);
-            self.boxes[index as usize] = bounds;
-            self.enter(index);
-        }
+        self.refile(moved);
     }
 
     fn pairs(&self) -> Vec<(u32, u32)> {
-        let of = |j: u32| self.partners(j).into_iter().map(move |i| (i, j));
-        let mut pairs: Vec<(u32, u32)> = (0..self.boxes.len() as u32).flat_map(of).collect();
-        pairs.sort_unstable();
-        pairs
+        pairs_by_query(self.boxes.len(), |j| self.partners(j))
     }
 
     fn steps(&self) -> u64 {

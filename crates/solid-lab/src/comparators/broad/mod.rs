@@ -2,6 +2,7 @@
 
 mod baraff;
 mod field_tree;
+mod filing;
 mod linked_sweep;
 mod order;
 mod space_tree;

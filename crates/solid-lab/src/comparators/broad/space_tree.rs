@@ -4,6 +4,7 @@ use solid3d::Aabb;
 use solid3d::glam::DVec3;
 
 use super::BroadTest;
+use super::filing::{Filing, pairs_by_query};
 
 /// How a cell of a [`SpaceTree`] is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,32 +57,6 @@ impl SpaceTree {
         tree
     }
 
-    fn enter(&mut self, index: u32) {
-        let bounds = self.boxes[index as usize];
-        let mut cell = 0;
-        for _ in 0..DEPTH_MAX {
-            self.visits.set(self.visits.get() + 1);
-            let parts = self.cells[cell].parts(self.cut);
-            let Some(k) = parts.iter().position(|part| part.contains(&bounds)) else { break };
-            cell = match self.cells[cell].children[k] {
-                Some(child) => child as usize,
-                None => {
-                    let child = self.cells.len();
-                    self.cells.push(SpaceCell::new(parts[k], self.cut));
-                    self.cells[cell].children[k] = Some(child as u32);
-                    child
-                }
-            };
-        }
-        self.cells[cell].members.push(index);
-        self.cell_of[index as usize] = cell as u32;
-    }
-
-    fn leave(&mut self, index: u32) {
-        let members = &mut self.cells[self.cell_of[index as usize] as usize].members;
-        members.retain(|&i| i != index);
-    }
-
     /// The boxes of smaller number that overlap one, by a range query.
     fn partners(&self, index: u32) -> Vec<u32> {
         let bounds = self.boxes[index as usize];
@@ -131,6 +106,38 @@ impl SpaceCell {
     }
 }
 
+impl Filing for SpaceTree {
+    fn boxes(&mut self) -> &mut [Aabb] {
+        &mut self.boxes
+    }
+
+    fn enter(&mut self, index: u32) {
+        let bounds = self.boxes[index as usize];
+        let mut cell = 0;
+        for _ in 0..DEPTH_MAX {
+            self.visits.set(self.visits.get() + 1);
+            let parts = self.cells[cell].parts(self.cut);
+            let Some(k) = parts.iter().position(|part| part.contains(&bounds)) else { break };
+            cell = match self.cells[cell].children[k] {
+                Some(child) => child as usize,
+                None => {
+                    let child = self.cells.len();
+                    self.cells.push(SpaceCell::new(parts[k], self.cut));
+                    self.cells[cell].children[k] = Some(child as u32);
+                    child
+                }
+            };
+        }
+        self.cells[cell].members.push(index);
+        self.cell_of[index as usize] = cell as u32;
+    }
+
+    fn leave(&mut self, index: u32) {
+        let members = &mut self.cells[self.cell_of[index as usize] as usize].members;
+        members.retain(|&i| i != index);
+    }
+}
+
 impl BroadTest for SpaceTree {
     fn name(&self) -> &'static str {
         match self.cut {
@@ -140,18 +147,11 @@ impl BroadTest for SpaceTree {
     }
 
     fn update(&mut self, moved: &[(u32, Aabb)]) {
-        for &(index, bounds) in moved {
-            self.leave(index);
-            self.boxes[index as usize] = bounds;
-            self.enter(index);
-        }
+        self.refile(moved);
     }
 
     fn pairs(&self) -> Vec<(u32, u32)> {
-        let of = |j: u32| self.partners(j).into_iter().map(move |i| (i, j));
-        let mut pairs: Vec<(u32, u32)> = (0..self.boxes.len() as u32).flat_map(of).collect();
-        pairs.sort_unstable();
-        pairs
+        pairs_by_query(self.boxes.len(), |j| self.partners(j))
     }
 
     fn steps(&self) -> u64 {

@@ -5,6 +5,7 @@ use solid3d::Aabb;
 use solid3d::glam::{DVec3, IVec3};
 
 use super::BroadTest;
+use super::filing::Filing;
 use super::order::ordered;
 
 /// A voxel grid: each box is listed in all cells that it touches (thesis, section 5.1.1). Cells are kept in a hash table, so the space
@@ -47,6 +48,12 @@ impl VoxelGrid {
             (from.y..=to.y).flat_map(move |y| (from.z..=to.z).map(move |z| IVec3::new(x, y, z)))
         })
     }
+}
+
+impl Filing for VoxelGrid {
+    fn boxes(&mut self) -> &mut [Aabb] {
+        &mut self.boxes
+    }
 
     fn enter(&mut self, index: u32) {
         for cell in self.span(&self.boxes[index as usize]) {
@@ -73,11 +80,7 @@ impl BroadTest for VoxelGrid {
     }
 
     fn update(&mut self, moved: &[(u32, Aabb)]) {
-        for &(index, bounds) in moved {
-            self.leave(index);
-            self.boxes[index as usize] = bounds;
-            self.enter(index);
-        }
+        self.refile(moved);
     }
 
     /// Two boxes may share many cells: the pairs go through a set, which is the drawback that the thesis names.
