@@ -22,11 +22,11 @@ mod curve;
 mod depth;
 mod fixed_box;
 mod frame;
-
 mod ray;
 mod reach;
 mod row;
 mod scratch;
+mod surface;
 pub(crate) mod swept;
 mod table;
 
@@ -47,6 +47,7 @@ pub(crate) use ray::{Hits, Wanted, entry, ray_hits};
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};
+pub(crate) use surface::{SurfacePoint, surface_point};
 pub use swept::Path;
 pub(crate) use table::{axis, closest, closest_within, intersection, intersects, penetration};
 

@@ -18,6 +18,8 @@ mod pair_cache;
 mod penetration;
 mod point;
 mod ray;
+mod surface;
+
 use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
@@ -41,6 +43,7 @@ pub use pair_cache::PairCache;
 pub use penetration::{Penetration, penetration};
 pub use point::{ClosestPoint, closest_point, contains_point, winding_number};
 pub use ray::{cast_ray, cast_ray_all, ray_meets};
+pub use surface::{SignedDistance, signed_distance};
 
 /// The distance of two placed shapes, with their closest points.
 #[derive(Clone, Copy, Debug, PartialEq)]

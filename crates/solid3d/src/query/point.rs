@@ -25,7 +25,7 @@ pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Resu
 }
 
 /// The point of a placed shape that is closest to a point, and their distance: of solids 0 inside, where the point itself is the
-/// closest. Cost and error are those of [`distance`].
+/// closest; [`signed_distance`](super::signed_distance) is that to the surface. Cost and error are those of [`distance`].
 ///
 /// ```
 /// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
@@ -98,7 +98,7 @@ fn half_solid_angle(corners: [DVec3; 3]) -> f64 {
 }
 
 /// A point as a shape, which is placed.
-fn as_shape(point: DVec3) -> Result<(Shape, DAffine3)> {
+pub(super) fn as_shape(point: DVec3) -> Result<(Shape, DAffine3)> {
     bounded("point", point)?;
     Ok((Shape::convex_hull(&[DVec3::ZERO])?, DAffine3::from_translation(point)))
 }

@@ -6,6 +6,7 @@
 
 mod balls;
 mod boxes;
+mod point;
 mod round;
 mod similarity;
 #[cfg(test)]
@@ -17,6 +18,7 @@ use solid_convex::{Closest, Witness, unit_scale};
 use super::{Mirror, Placed, Relation};
 use crate::shape::Simple;
 use boxes::PlacedBox;
+pub(super) use point::surface_point;
 use round::{Cores, PlacedRound};
 use similarity::Similarity;
 

@@ -1,0 +1,136 @@
+//! A point and a body that its placement leaves what it is: how far the point is from the surface, on either side of it.
+//!
+//! A turned body is a turned profile. Cylinders and cones are figures of the half plane of the distance to the axis and the height,
+//! so that each is decided by two edges.
+
+use glam::{DAffine3, DVec2, DVec3};
+use solid_convex::unit_scale;
+
+use super::similarity::Similarity;
+use crate::pair::{Placed, SurfacePoint};
+use crate::shape::{Body, ShapeKind};
+
+/// Where a surface is nearest to a point, in the space of the surface.
+struct Foot<V> {
+    /// Negative inside.
+    distance: f64,
+    /// Outward, of length one.
+    normal: V,
+}
+
+/// The point of the surface of a ball, box, cone, cylinder or capsule nearest to a point of the world; `None` for other shapes,
+/// and for placements that are not a rotation with a uniform scale.
+pub(in crate::pair) fn surface_point(shape: Placed, point: DVec3) -> Option<SurfacePoint> {
+    if matches!(shape.shape.kind(), ShapeKind::ConvexHull) {
+        return None; // before its facets are made
+    }
+    let body = shape.shape.body()?;
+    let DAffine3 { matrix3, translation } = shape.placement;
+    let at = Similarity::new(matrix3)?;
+    let offset = point - *translation;
+    // In a unit of length near the size of the data, so that squares neither overflow nor underflow.
+    let scale = unit_scale(extent(&body)? * at.stretch + offset.abs().element_sum());
+    let units = at.units();
+    let p = DVec3::from(units.map(|axis| axis.dot(offset * scale)));
+    let foot = of_body(&body, at.stretch * scale, p)?;
+    let normal: DVec3 = units.into_iter().zip(foot.normal.to_array()).map(|(axis, n)| axis * n).sum();
+    let distance = foot.distance / scale;
+    Some(SurfacePoint { distance, point: point - normal * distance, normal })
+}
+
+/// A bound on the coordinates of a body; `None` for a hull.
+fn extent(body: &Body) -> Option<f64> {
+    Some(match body {
+        Body::Sphere(shape) => shape.radius(),
+        Body::Cuboid(shape) => shape.size().max_element(),
+        Body::Cone(shape) => shape.radius() + shape.height(),
+        Body::Cylinder(shape) => shape.radius() + shape.height(),
+        Body::Capsule(shape) => shape.radius() + shape.height(),
+        Body::Hull { .. } | Body::Simplex { .. } => return None,
+    })
+}
+
+/// For a body that is `stretch` times its own size.
+fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
+    let half = |height: f64| 0.5 * height * stretch;
+    Some(match body {
+        Body::Sphere(shape) => of_capsule(shape.radius() * stretch, 0.0, p),
+        Body::Capsule(shape) => of_capsule(shape.radius() * stretch, half(shape.height()), p),
+        Body::Cuboid(shape) => of_box(shape.size() * (0.5 * stretch), p),
+        Body::Cylinder(shape) => {
+            turned(p, |q| of_rectangle(DVec2::new(shape.radius() * stretch, half(shape.height())), q))
+        }
+        Body::Cone(shape) => turned(p, |q| of_cone(shape.radius() * stretch, half(shape.height()), q)),
+        Body::Hull { .. } | Body::Simplex { .. } => return None,
+    })
+}
+
+fn of_capsule(radius: f64, half_height: f64, p: DVec3) -> Foot<DVec3> {
+    let core = DVec3::Y * p.y.clamp(-half_height, half_height);
+    let (length, normal) = polar(p - core, DVec3::X);
+    Foot { distance: length - radius, normal }
+}
+
+fn of_box(half: DVec3, p: DVec3) -> Foot<DVec3> {
+    let beyond = p.abs() - half;
+    if beyond.max_element() > 0.0 {
+        let (distance, normal) = polar(beyond.max(DVec3::ZERO), DVec3::X);
+        return Foot { distance, normal: normal.copysign(p) };
+    }
+    let axis = beyond.max_position();
+    Foot { distance: beyond[axis], normal: DVec3::AXES[axis] * 1f64.copysign(p[axis]) }
+}
+
+/// Of a body that turns about the axis y, by what its profile is nearest to.
+fn turned(p: DVec3, profile: impl Fn(DVec2) -> Foot<DVec2>) -> Foot<DVec3> {
+    let (radius, outward) = polar(DVec3::new(p.x, 0.0, p.z), DVec3::X);
+    let Foot { distance, normal } = profile(DVec2::new(radius, p.y));
+    Foot { distance, normal: outward * normal.x + DVec3::Y * normal.y }
+}
+
+/// The profile of a cylinder: symmetric, up to the corner `half`.
+fn of_rectangle(half: DVec2, p: DVec2) -> Foot<DVec2> {
+    let beyond = p.abs() - half;
+    let up = 1f64.copysign(p.y);
+    if beyond.x > 0.0 && beyond.y > 0.0 {
+        let (distance, normal) = polar(DVec3::new(beyond.x, beyond.y * up, 0.0), DVec3::X);
+        Foot { distance, normal: normal.truncate() }
+    } else if beyond.x >= beyond.y {
+        Foot { distance: beyond.x, normal: DVec2::X }
+    } else {
+        Foot { distance: beyond.y, normal: DVec2::Y * up }
+    }
+}
+
+/// The profile of a cone: the base at `-half_height`, the apex above.
+fn of_cone(radius: f64, half_height: f64, p: DVec2) -> Foot<DVec2> {
+    let (apex, rim) = (DVec2::new(0.0, half_height), DVec2::new(radius, -half_height));
+    let (length, side) = polar(DVec3::new(2.0 * half_height, radius, 0.0), DVec3::X);
+    let side = side.truncate();
+    let (beyond_side, below) = (side.dot(p - apex), -half_height - p.y);
+    // How far down the side the foot is.
+    let down = DVec2::new(side.y, -side.x).dot(p - apex);
+    let inside = beyond_side <= 0.0 && below <= 0.0;
+    let over_side = beyond_side > 0.0 && (0.0..=length).contains(&down);
+    let under_base = below > 0.0 && p.x <= radius;
+    if over_side || (inside && beyond_side >= below) {
+        Foot { distance: beyond_side, normal: side }
+    } else if under_base || inside {
+        Foot { distance: below, normal: DVec2::NEG_Y }
+    } else {
+        let corner = if down < 0.0 { apex } else { rim };
+        let (distance, normal) = polar((p - corner).extend(0.0), DVec3::X);
+        Foot { distance, normal: normal.truncate() }
+    }
+}
+
+/// The length of a vector and its direction, which for zero is another.
+fn polar(v: DVec3, of_zero: DVec3) -> (f64, DVec3) {
+    let largest = v.abs().max_element();
+    if largest == 0.0 {
+        return (0.0, of_zero);
+    }
+    // Dividing first, for the squares of a short vector underflow.
+    let (unit, length) = (v / largest).normalize_and_length();
+    (length * largest, unit)
+}

@@ -1,0 +1,82 @@
+//! The point of the surface of a shape that is nearest to a point, on whichever side of it.
+//!
+//! A signed distance is a distance outside and a penetration depth inside, both of which the table has: of a convex body the way out is
+//! the shortest translation of the point that leaves the two touching. Bodies that stay what they are have a closed form. A solid mesh
+//! is its surface, on which the nearest triangle is looked for, with the side that the winding number gives.
+
+mod solid;
+
+use glam::{DAffine3, DVec3};
+use solid_convex::gjk::TOUCHING_ERROR;
+
+use super::reach::image_reach;
+use super::{Placed, Scratch, closed_form, closest, penetration};
+use crate::shape::{Class, ShapeKind};
+
+/// Where the surface of a shape is nearest to a point. Space: world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SurfacePoint {
+    /// The distance: negative inside.
+    pub distance: f64,
+    /// The nearest point.
+    pub point: DVec3,
+    /// The outward normal there, of length one.
+    pub normal: DVec3,
+}
+
+/// How near to a surface the way from its nearest point is no longer a normal: rounding then has half of its digits, or more.
+/// Relative to the size of the data.
+const NEAR: f64 = 4.0 * TOUCHING_ERROR;
+
+/// The point of the surface of `shape` nearest to `point`, a shape of one point.
+pub(crate) fn surface_point(shape: Placed, point: Placed, scratch: &mut Scratch) -> SurfacePoint {
+    let p = point.placement.translation;
+    if let Some(found) = closed_form::surface_point(shape, p) {
+        return found;
+    }
+    match shape.shape.class() {
+        Class::Complex(mesh) if mesh.is_solid() => solid::surface_point((mesh, shape.placement), p, scratch),
+        _ => of_union(shape, point, scratch),
+    }
+}
+
+/// Of a convex shape, or a union of such.
+fn of_union(shape: Placed, point: Placed, scratch: &mut Scratch) -> SurfacePoint {
+    if let Some(found) = penetration(point, shape, scratch) {
+        let on_surface = shape.placement.transform_point3(found.points.on_b);
+        // A surface has no inside, whatever rounding makes of its thickness; and 0 is not -0.
+        let has_inside = shape.shape.kind() != ShapeKind::Mesh && found.depth > 0.0;
+        let distance = if has_inside { -found.depth } else { 0.0 };
+        return SurfacePoint { distance, point: on_surface, normal: found.direction };
+    }
+    let closest = closest(shape, point, scratch);
+    // Not from points of the world, whose rounding is that of their coordinates.
+    let offset = point.placement.translation - shape.placement.translation;
+    let way = offset - shape.placement.matrix3 * closest.points.on_a;
+    let on_surface = shape.placement.transform_point3(closest.points.on_a);
+    let normal = if closest.distance > NEAR * (reach(shape) + offset.abs().max_element()) {
+        away(way)
+    } else {
+        let foot = DAffine3::from_translation(on_surface);
+        let touching = penetration(Placed { placement: &foot, ..point }, shape, scratch);
+        let normal = touching.map_or_else(|| away(way), |found| found.direction);
+        // What is flat has two sides.
+        if normal.dot(way) < 0.0 { -normal } else { normal }
+    };
+    SurfacePoint { distance: closest.distance, point: on_surface, normal }
+}
+
+/// The direction of a vector; of zero any.
+fn away(v: DVec3) -> DVec3 {
+    let largest = v.abs().max_element();
+    if largest > 0.0 { (v / largest).normalize() } else { DVec3::X }
+}
+
+/// How far a shape reaches from its origin.
+fn reach(shape: Placed) -> f64 {
+    let reach = match shape.shape.class() {
+        Class::Convex(convex) => convex.reach(),
+        Class::Complex(complex) => complex.reach(),
+    };
+    image_reach(&shape.placement.matrix3, reach).max_element()
+}

@@ -1,0 +1,168 @@
+//! The nearest point of the surface of a solid mesh: that of the nearest triangle, with the side of the point by the winding number.
+
+use fearless_simd::Simd;
+use glam::{DAffine3, DVec3};
+use solid_convex::simd::level;
+use solid_convex::{Points, gjk};
+
+use super::{NEAR, SurfacePoint, away};
+use crate::bounds::Aabb;
+use crate::pair::Scratch;
+use crate::pair::containment::PlacedSolid;
+use crate::pair::frame::Frame;
+use crate::pair::table::PlacedComplex;
+use crate::tree::{NearLeaves, PairMetric};
+use crate::triangle_triangle::Triangle;
+
+/// Nearer to a face, its own normal is better than the way from the nearest point, of which rounding has that part. In the common
+/// frame, where the size of the data is from 1 to 2.
+const NEAR_FACE: f64 = 1.0 / (1u64 << 26) as f64;
+
+/// How far a closed form may be above the lower bound of a distance before GJK is asked. In the common frame: some rounding errors.
+const CONFIRMED: f64 = 1.0 / (1u64 << 48) as f64;
+
+/// How far beside a triangle it is tested which side of it is outside, in parts of its size.
+const BESIDE: f64 = 1e-6;
+
+pub(super) fn surface_point((mesh, at): PlacedComplex, point: DVec3, scratch: &mut Scratch) -> SurfacePoint {
+    let at_point = DAffine3::from_translation(point);
+    let frame = Frame::new(at, mesh.reach(), &at_point, DVec3::ZERO);
+    let [to_common, point_to_common] = &frame.common;
+    let p = point_to_common.translation;
+    let solid = PlacedSolid::new(mesh, to_common).expect("the caller saw that it is solid");
+    let inside = solid.contains(p, scratch);
+
+    let local = frame.relative.b_to_a.translation;
+    let query = Aabb::new(local, local).inflated(frame.relative.slack_in_a);
+    let [of_mesh, _] = &frame.stretch;
+    let metric = PairMetric {
+        facet_a: of_mesh.facets,
+        sigma_min_a: of_mesh.least,
+        facet_b: DVec3::ZERO,
+        sigma_min_b: 0.0,
+    };
+    let Scratch { traversal, primitive_tests, .. } = scratch;
+    let mut nearest = Nearest {
+        corners: |primitive| {
+            let indices = mesh.primitive(primitive);
+            [0, 1, 2].map(|i| to_common.transform_point3(mesh.vertices()[indices[i] as usize]))
+        },
+        p,
+        primitive_tests,
+        found: None,
+    };
+    let mut best = f64::INFINITY;
+    mesh.tree().nearest_on(level(), &query, &metric, &mut best, traversal, &mut nearest);
+    let (triangle, foot) = nearest.found.expect("a mesh has a triangle, and every distance is finite");
+
+    let from = p - foot.point;
+    let side = if inside { -1.0 } else { 1.0 };
+    let across = across(&triangle);
+    let normal = match across {
+        // The way there is no direction.
+        Some(front) if foot.distance <= if foot.is_inner { NEAR_FACE } else { NEAR } => {
+            let size = (triangle[1] - triangle[0]).abs().max((triangle[2] - triangle[0]).abs()).max_element();
+            let middle = triangle.into_iter().sum::<DVec3>() / 3.0;
+            let outside = |normal: DVec3, scratch: &mut Scratch| {
+                !solid.contains(middle + normal * (BESIDE * size), scratch)
+            };
+            // Where both sides are inside, as where parts overlap, the front.
+            if !outside(front, scratch) && outside(-front, scratch) { -front } else { front }
+        }
+        _ => away(from) * side,
+    };
+    SurfacePoint {
+        distance: if foot.distance > 0.0 { side * foot.distance / frame.scale } else { 0.0 },
+        point: at.translation + foot.point / frame.scale,
+        normal,
+    }
+}
+
+/// The front of a triangle; `None` for one without.
+fn across([a, b, c]: &Triangle) -> Option<DVec3> {
+    let (u, v) = (*b - *a, *c - *a);
+    let largest = u.abs().max(v.abs()).max_element();
+    if largest == 0.0 {
+        return None;
+    }
+    (u / largest).cross(v / largest).try_normalize()
+}
+
+/// Looks for the triangle nearest to a point.
+struct Nearest<'s, C> {
+    /// The corners of a triangle in the common frame.
+    corners: C,
+    p: DVec3,
+    primitive_tests: &'s mut u64,
+    found: Option<(Triangle, Foot)>,
+}
+
+impl<C: Fn(u32) -> Triangle> NearLeaves for Nearest<'_, C> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, _: S, leaf: &[u32], best: &mut f64) {
+        for &primitive in leaf {
+            *self.primitive_tests += 1;
+            let triangle = (self.corners)(primitive);
+            let foot = Foot::of(&triangle, self.p);
+            if foot.distance < *best {
+                *best = foot.distance;
+                self.found = Some((triangle, foot));
+            }
+        }
+    }
+}
+
+/// The point of a triangle nearest to another.
+#[derive(Clone, Copy)]
+struct Foot {
+    distance: f64,
+    point: DVec3,
+    /// Whether it is off the edges.
+    is_inner: bool,
+}
+
+impl Foot {
+    /// By the face and the edges; where the plane across the way does not confirm that, as may be of slivers, by GJK.
+    fn of(triangle: &Triangle, p: DVec3) -> Foot {
+        let foot = Foot::on_face(triangle, p).unwrap_or_else(|| Foot::on_edges(triangle, p));
+        let from = p - foot.point;
+        let least = triangle.iter().map(|&corner| (p - corner).dot(from)).fold(f64::INFINITY, f64::min);
+        if foot.distance * foot.distance - least <= CONFIRMED * foot.distance {
+            return foot;
+        }
+        let points = Points::new(triangle).expect("a triangle has corners");
+        let (here, at) = (DAffine3::IDENTITY, DAffine3::from_translation(p));
+        let one = Points::new(&[DVec3::ZERO]).expect("there is a point");
+        let closest = gjk::closest_points(&points, &here, &one, &at);
+        Foot { distance: closest.distance, point: closest.points.on_a, is_inner: foot.is_inner }
+    }
+
+    fn on_face(triangle: &Triangle, p: DVec3) -> Option<Foot> {
+        let [a, b, c] = *triangle;
+        let normal = across(triangle)?;
+        let is_left = |u: DVec3, v: DVec3| (v - u).cross(p - u).dot(normal) > 0.0;
+        if !(is_left(a, b) && is_left(b, c) && is_left(c, a)) {
+            return None;
+        }
+        let height = (p - a).dot(normal);
+        Some(Foot { distance: height.abs(), point: p - normal * height, is_inner: true })
+    }
+
+    fn on_edges([a, b, c]: &Triangle, p: DVec3) -> Foot {
+        let feet = [[a, b], [b, c], [c, a]].map(|[u, v]| {
+            let (edge, from) = (*v - *u, p - *u);
+            let largest = edge.abs().max_element();
+            let part = if largest == 0.0 {
+                0.0
+            } else {
+                let unit = edge / largest;
+                (unit.dot(from) / (unit.length_squared() * largest)).clamp(0.0, 1.0)
+            };
+            let point = *u + edge * part;
+            Foot { distance: (p - point).length(), point, is_inner: false }
+        });
+        let [first, rest @ ..] = feet;
+        rest.into_iter()
+            .fold(first, |nearest, foot| if foot.distance < nearest.distance { foot } else { nearest })
+    }
+}
