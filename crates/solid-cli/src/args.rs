@@ -5,6 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use solid3d::Response;
 use solid3d::convex::MAGNITUDE_MAX;
+use solid3d::glam::DVec3;
+
+use crate::rays::vector;
 
 /// Frames per second when nothing else is asked for.
 pub const FPS_DEFAULT: f64 = 30.0;
@@ -22,7 +25,7 @@ Objects:
   unless --solid declares the mesh solid.
 
 Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any characters, `?` for one.
-    default = \"witness\"             # ignore, simple, witness, smart, curve or depth
+    default = \"witness\"             # ignore, simple, witness, smart, curve, depth or contacts
     solid = [\"tank*\"]               # as --solid
     clearance = 0.05                # as --clearance
 
@@ -35,6 +38,11 @@ Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any char
     b = \"sweeper\"
     response = \"smart\"
     clearance = 0.2                 # optional: of this pair alone
+
+    [[ray]]                         # as --ray, under a name
+    name = \"barrier\"
+    origin = [0, 0.5, 2]
+    to = [0, 0.5, -2]               # the end of a segment; or, without end: direction = [0, 0, -1]
   A rule for the pair overrides one for an object, which overrides the default; of two objects with rules the first
   in the scene decides. Of the rules of one level the last that matches holds. A rule for a pair also holds on a root
   path. --response overrides the default, --clearance the clearance that is not of a pair.
@@ -46,10 +54,23 @@ Clearance (--clearance DISTANCE):
   are not looked at. The table tells of each pair where it is nearest, and when. The JSON of a frame then also has
   \"near\", and of CSV the rows with a distance are these; a pair that collides has a row of each.
 
+Rays (--ray ORIGIN DIRECTION, each X,Y,Z):
+  What a ray meets in each frame: of every object on its way, whatever its response, the first point, the triangle, the normal on
+  the side that the ray comes from, and the distance from the origin. Where a ray starts inside of a solid there is no normal.
+  The table tells of each ray and object where they meet nearest, and when. The JSON of a frame then also has \"rays\", nearest first;
+  of CSV the rows with a ray are these, the object in column a. Rays do not change the exit status.
+
 Depth (--response depth):
   How deep two objects are in each other: the shortest translation that leaves them touching. The normal says where the
   first is to go; the points are those of each that are deepest in the other. The JSON of such a collision has \"depth\",
   \"point_a\" and \"point_b\"; the table tells the greatest. Of surfaces it is that of the deepest pair of triangles; a solid counts as its convex hull.
+
+Contacts (--response contacts):
+  Every point where two objects are in contact. The JSON of such a collision has \"contacts\", a list of regions of one
+  normal, which points from the second object to the first, each with its points: \"point_a\" and \"point_b\" on the two
+  surfaces, \"depth\", \"primitives\" (the triangle of each) and \"features\" (the vertex, edge or face of each), which stay the
+  same from frame to frame while the same parts are in contact. The table tells how many points there are at most, and the
+  greatest depth; point, normal and depth of CSV are those of the deepest contact.
 
 Curves (--response curve):
   Where the surfaces of two objects meet: meshes, complex shapes, boxes and convex hulls. The JSON of such a collision
@@ -145,6 +166,10 @@ pub struct CheckArgs {
     #[arg(long, value_name = "DISTANCE", value_parser = clearance, allow_negative_numbers = true)]
     pub clearance: Option<f64>,
 
+    /// Cast a ray from a point in a direction, in every frame, and report what it meets; may be repeated
+    #[arg(long, num_args = 2, value_names = ["ORIGIN", "DIRECTION"], value_parser = vector, allow_hyphen_values = true)]
+    pub ray: Vec<DVec3>,
+
     /// What to find out about colliding pairs [default: witness]
     #[arg(long, value_name = "RESPONSE")]
     pub response: Option<ResponseArg>,
@@ -179,6 +204,8 @@ pub enum ResponseArg {
     Curve,
     /// How deep they are in each other, the shortest way out, and the deepest points
     Depth,
+    /// All points of contact, with normals and depths (in JSON), and the deepest
+    Contacts,
 }
 
 impl From<ResponseArg> for Response {
@@ -189,6 +216,7 @@ impl From<ResponseArg> for Response {
             ResponseArg::Smart => Response::Smart,
             ResponseArg::Curve => Response::Curve,
             ResponseArg::Depth => Response::Depth,
+            ResponseArg::Contacts => Response::Contacts,
         }
     }
 }

@@ -12,6 +12,7 @@
 //! | `check` | a scene, played and tested |
 //! | `placements` | a motion from a table of placements, in place of the scene's own |
 //! | `rules` | the response table from a TOML file |
+//! | `rays` | what is cast in every frame |
 //! | `record` | what becomes of the collisions: JSON, CSV, pairs |
 //! | `info` | what is in the files |
 //! | `output` | writing to files and pipes |
@@ -22,6 +23,7 @@ mod info;
 mod output;
 mod placements;
 mod progress;
+mod rays;
 mod record;
 mod rules;
 mod scene;

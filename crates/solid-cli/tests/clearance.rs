@@ -1,4 +1,4 @@
-//! `--clearance` and `--response depth`, from the outside.
+//! `--clearance`, `--response depth` and `--response contacts`, from the outside.
 
 #![allow(clippy::unwrap_used, reason = "a test that can't go on shall stop")]
 
@@ -147,10 +147,49 @@ fn depth_tells_how_deep_and_which_way_out() {
 }
 
 #[test]
+fn contacts_are_all_told_and_the_deepest_twice() {
+    let desk = passing();
+    let json = desk.run(&format!("{CHECK} --response contacts --json -")).assert_status(1).json();
+    let hit = &json["frames"][3]["collisions"][0];
+    let regions = hit["contacts"].as_array().unwrap();
+    assert!(regions.len() == 1 && is(&regions[0]["normal"][0], -1.0), "{hit}");
+    let points = regions[0]["points"].as_array().unwrap();
+    assert_eq!(points.len(), 4, "{hit}");
+    for point in points {
+        // Face on face, as deep at all corners of what they have in common.
+        assert!(is(&point["depth"], 0.5) && is(&point["point_a"][0], 1.0), "{point}");
+        assert!(is(&point["point_b"][0], 0.5), "{point}");
+        let features = point["features"].as_array().unwrap();
+        let known =
+            |feature: &Value| ["vertex", "edge", "face"].iter().any(|kind| feature.get(kind).is_some());
+        assert!(features.len() == 2 && features.iter().all(known), "{point}");
+        assert_eq!(point["primitives"].as_array().unwrap().len(), 2, "{point}");
+    }
+    assert!(is(&hit["depth"], 0.5) && is(&hit["normal"][0], -1.0) && is(&hit["point"][0], 0.75), "{hit}");
+
+    // By rules, in the table and in CSV.
+    let desk = desk.file("r.toml", "default = \"contacts\"");
+    let run = desk.run(&format!("{CHECK} --rules r.toml"));
+    assert!(run.stdout.starts_with("a  b  first [s]  last [s]  frames  contacts  deepest  where"), "{run:?}");
+    let row: Vec<_> = run.stdout.lines().nth(1).unwrap().split_whitespace().collect();
+    assert_eq!(row[5..7], ["4", "0.5"]);
+    let run = desk.run(&format!("{CHECK} --rules r.toml --csv -"));
+    let row: Vec<_> = run.stdout.lines().nth(1).unwrap().split(',').collect();
+    let expected = [(7, -1.0), (11, 0.5), (12, 1.0), (15, 0.5)];
+    for (column, value) in expected {
+        assert!((row[column].parse::<f64>().unwrap() - value).abs() < 1e-12, "{run:?}");
+    }
+    // Other responses have none.
+    let json = desk.run(&format!("{CHECK} --json -")).json();
+    assert!(json["frames"][3]["collisions"][0].get("contacts").is_none(), "{json}");
+}
+
+#[test]
 fn the_help_and_the_statistics_tell_of_it() {
     let desk = passing();
     let help = desk.run("check --help").stdout;
     assert!(help.contains("--clearance <DISTANCE>") && help.contains("--response depth"), "{help}");
+    assert!(help.contains("--response contacts"), "{help}");
     let stats = desk.run(&format!("{CHECK} --stats")).stdout;
     assert!(stats.lines().any(|line| line.starts_with("examined  ")), "{stats}");
 }

@@ -58,7 +58,7 @@ fn mistakes_name_file_and_line() {
     run("default = \"loud\"", "").assert_fails(&[
         "r.toml:1: ",
         "`loud`",
-        "`ignore`, `simple`, `witness`, `smart`, `curve`, `depth`",
+        "`ignore`, `simple`, `witness`, `smart`, `curve`, `depth`, `contacts`",
     ]);
     run("\n\n[[objects]]\n", "").assert_fails(&["r.toml:3: ", "`objects`", "`object`"]);
     run("[[object]]\nname = \"a\"\nresponse = \"simple\"\ncolour = 1\n", "")

@@ -93,10 +93,10 @@ fn gltf_scenes_are_valid() {
     }
 }
 
-/// But for the robot cell, where the next part comes.
+/// But for the robot cell, where the next part comes, and the shooting range, where the next shot is fired.
 #[test]
 fn a_scene_ends_as_it_began() {
-    for name in ["naval_warfare.wrl", "cloth.wrl", "deform.gltf"] {
+    for name in ["naval_warfare.wrl", "cloth.wrl", "deform.gltf", "blocks.wrl"] {
         let scene = Scene::load(&[folder().join(name)], &LoadOptions::default()).unwrap();
         let mut poses = [Pose::default(), Pose::default()];
         scene.sample(0.0, &mut poses[0]);
@@ -169,4 +169,25 @@ fn cloth() {
 fn deform() {
     let objects = ["wall", "block", "beam", "drumskin", "spike", "frame"];
     check("deform.gltf", 4.0, &objects, &[("block", "beam"), ("drumskin", "spike")]);
+}
+
+#[test]
+fn shooting_range() {
+    // The glass is hit between frames.
+    let objects = ["pane_1", "pane_2", "bottle", "plate", "bullet"];
+    check("shooting_range.wrl", 2.0, &objects, &[("plate", "bullet")]);
+}
+
+#[test]
+fn blocks() {
+    let objects = ["floor", "block", "pillar", "plank", "ball", "rafter"];
+    let pairs = [
+        ("floor", "block"),
+        ("floor", "pillar"),
+        ("floor", "ball"),
+        ("floor", "rafter"),
+        ("block", "plank"),
+        ("pillar", "plank"),
+    ];
+    check("blocks.wrl", 4.0, &objects, &pairs);
 }

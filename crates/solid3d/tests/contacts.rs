@@ -15,7 +15,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
 use solid3d::query::{self, ContactOptions, ContactPoint, Feature, Manifold};
-use solid3d::{Shape, World, glam};
+use solid3d::{Motion, Response, Shape, When, World, WorldOptions, glam};
 
 const SEED: u64 = 20_262;
 
@@ -501,4 +501,55 @@ fn a_world_has_contacts() {
     assert_flat(&found[0], DVec3::NEG_Y, 0.01, 4);
     assert!(world.contacts(ground, ground, &ContactOptions::default()).is_err());
     assert!(world.contacts(ground, block, &within(f64::NAN)).is_err());
+}
+
+/// Law: `Response::Contacts` tells what `query::contacts` says, under names that stay while a block slides.
+#[test]
+fn a_test_tells_contacts_by_names_that_persist() {
+    let ground = floor(10);
+    let run = |caching: bool| {
+        let default_response = Response::Contacts;
+        let mut world =
+            World::with_options(&WorldOptions { caching, default_response, ..WorldOptions::default() });
+        world.add(&ground, DAffine3::IDENTITY).unwrap();
+        let block = world.add(&cube(), at(0.0, 0.49, 0.0)).unwrap();
+        let mut frames = Vec::new();
+        for frame in 0..60 {
+            // Within one square of the floor, then over its edge.
+            let here = at(0.51 + 0.01 * f64::from(frame), 0.49, 0.52);
+            world.set_placement(block, here).unwrap();
+            let collisions = world.test();
+            let expected =
+                query::contacts(&ground, &DAffine3::IDENTITY, &cube(), &here, &ContactOptions::default());
+            let found = collisions[0].manifolds().unwrap();
+            assert_eq!(**found, expected.unwrap()[..], "frame {frame}");
+            assert_flat(&found[0], DVec3::NEG_Y, 0.01, 4);
+            frames.push(names(&found[0]));
+            world.proceed();
+        }
+        frames
+    };
+    let frames = run(true);
+    assert_eq!(frames, run(false));
+    let changes = frames.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    assert!(
+        (1..=4).contains(&changes),
+        "names change {changes} times, where a corner comes onto another square"
+    );
+}
+
+/// What is apart now has no contacts, but a point of the way.
+#[test]
+fn on_the_way_there_are_no_contacts() {
+    let (motion, default_response) = (Motion::Swept, Response::Contacts);
+    let mut world =
+        World::with_options(&WorldOptions { motion, default_response, ..WorldOptions::default() });
+    world.add(&floor(10), DAffine3::IDENTITY).unwrap();
+    let block = world.add(&cube(), at(0.0, 2.0, 0.0)).unwrap();
+    world.proceed();
+    world.set_placement(block, at(0.0, -2.0, 0.0)).unwrap();
+    let collisions = world.test();
+    assert_eq!((collisions.len(), collisions[0].when), (1, When::OnTheWay));
+    assert!(collisions[0].manifolds().unwrap().is_empty() && collisions[0].point().is_some());
+    assert_eq!((collisions[0].depth(), collisions[0].normal()), (None, None));
 }

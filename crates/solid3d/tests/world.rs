@@ -18,6 +18,7 @@ use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::Convex;
 use solid_oracle::generate::{Regime, random_pair, random_shape, seeded};
+use solid3d::query::{ContactOptions, ContactPoint};
 use solid3d::{
     Boxes, BroadPhaseKind, Collision, Contact, Error, Event, EventKind, Motion, ObjectId, Response, Shape,
     Statistics, When, World, WorldOptions, glam, query,
@@ -136,6 +137,17 @@ impl Model {
                     None => assert_eq!(depth, 0.0),
                 }
             }
+            Contact::Contacts { point, ref manifolds } => {
+                let options = ContactOptions::default();
+                let expected = query::contacts(&a.shape, &a.placement, &b.shape, &b.placement, &options);
+                assert_eq!(**manifolds, expected.unwrap()[..]);
+                let all = || manifolds.iter().flat_map(|manifold| &manifold.points);
+                let greatest = all().map(|contact| contact.depth).reduce(f64::max);
+                assert_eq!(collision.depth(), greatest);
+                let middle = |contact: &ContactPoint| 0.5 * contact.point_on_a + 0.5 * contact.point_on_b;
+                let deepest = all().find(|contact| Some(contact.depth) == greatest);
+                assert!(deepest.is_none_or(|contact| middle(contact) == point));
+            }
             _ => panic!("{collision:?}"),
         }
     }
@@ -161,6 +173,13 @@ fn bits(collision: &Collision) -> Bits {
         Contact::Depth { depth, normal, point_on_a, point_on_b } => {
             (3, of(&[DVec3::splat(depth), normal, point_on_a, point_on_b]))
         }
+        Contact::Contacts { point, ref manifolds } => {
+            let depth = |contact: &ContactPoint| DVec3::splat(contact.depth);
+            let contact = |c: &ContactPoint| [c.point_on_a, c.point_on_b, depth(c)];
+            let points = manifolds.iter().flat_map(|manifold| manifold.points.iter().flat_map(contact));
+            let normals = manifolds.iter().map(|manifold| manifold.normal);
+            (5, of(&std::iter::once(point).chain(normals).chain(points).collect::<Vec<_>>()))
+        }
         _ => panic!("{collision:?}"),
     };
     (collision.a, collision.b, kind, numbers)
@@ -185,13 +204,14 @@ struct Stage {
     room: f64,
 }
 
-const RESPONSES: [Response; 6] = [
+const RESPONSES: [Response; 7] = [
     Response::Ignore,
     Response::Simple,
     Response::Witness,
     Response::Smart,
     Response::Depth,
     Response::Curve,
+    Response::Contacts,
 ];
 
 fn world(broad_phase: BroadPhaseKind, caching: bool) -> World {
@@ -534,7 +554,7 @@ fn worlds_in_lock_step_agree_to_the_bit_and_with_the_model() {
         );
         assert!(with_swept || events.iter().all(|&count| count > frames / 10), "{events:?}");
         assert!(busy > frames / 3, "most frames have collisions");
-        assert!((0..5).all(|kind| contacts.contains_key(&kind)), "every kind of contact comes up");
+        assert!((0..6).all(|kind| contacts.contains_key(&kind)), "every kind of contact comes up");
         let work: Vec<Statistics> = stage.worlds.iter().map(World::statistics).collect();
         assert_eq!(work[0], work[2], "the engines give the same candidates");
         assert_eq!(work[1], work[3]);

@@ -19,6 +19,7 @@ use solid3d::Response;
 use crate::args::CheckArgs;
 use crate::output::{self, is_stdout};
 use crate::placements::Placements;
+use crate::rays::{self, NamedRay};
 use crate::record::{CsvColumns, CsvRecorder, JsonRecorder, Recorder};
 use crate::rules::{self, Objects, Rules};
 use crate::table::Style;
@@ -36,6 +37,7 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let (mut clock, mut times) = (Clock::start(), Times::default());
     let mut rules = args.rules.as_deref().map(Rules::read).transpose()?.unwrap_or_default();
     rules.declare_solid(&args.solid);
+    let rays: Vec<NamedRay> = [rays::of_arguments(&args.ray)?.as_slice(), rules.rays()].concat();
     let scene = scene::load(&args.scene)?;
     scene::warnings(&scene).for_each(|warning| complain("warning", warning));
     let placements = placements(args, &scene)?;
@@ -51,14 +53,18 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let mut stage = Stage::new(&scene, &shapes, motion, tested, timeline.time(0))?;
     let has_clearance = set_rules(&rules, args, &scene, &mut stage)?;
     let tells_distances = has_clearance || rules.tell_depth(args.response.map(Response::from));
-    let columns = CsvColumns { distances: tells_distances, contact_time: args.continuous };
+    let has_rays = !rays.is_empty();
+    let columns =
+        CsvColumns { distances: tells_distances || has_rays, rays: has_rays, contact_time: args.continuous };
     let recorders = recorders(args, columns, &scene)?;
     clock.lap(&mut times.load);
 
-    let mut player = Player { scene: &scene, stage, has_clearance, recorders, clock, times };
+    let mut player = Player { scene: &scene, stage, has_clearance, rays, recorders, clock, times };
     let findings = player.play(&timeline)?;
     let statistics = player.stage.statistics();
-    print(args, &Report { scene: &scene, findings: &findings, statistics, times: player.times })?;
+    let report =
+        Report { scene: &scene, findings: &findings, rays: &player.rays, statistics, times: player.times };
+    print(args, &report)?;
     let summary = findings.summary();
     let near = summary.near.is_some_and(|near| near.near_pairs > 0);
     Ok(if near || summary.collisions > 0 { Verdict::Collisions } else { Verdict::Clean })

@@ -7,7 +7,8 @@ use super::clock::{Clock, Times};
 use super::stage::Stage;
 use super::timeline::Timeline;
 use crate::progress::Progress;
-use crate::record::{Frame, NearRecorder, PairRecorder, Recorder, Summary};
+use crate::rays::NamedRay;
+use crate::record::{Frame, NearRecorder, PairRecorder, RayRecorder, Recorder, Summary};
 
 /// What it takes to play a scene.
 pub struct Player<'a> {
@@ -15,6 +16,8 @@ pub struct Player<'a> {
     pub stage: Stage<'a>,
     /// Whether some pair has a clearance.
     pub has_clearance: bool,
+    /// What is cast in every frame.
+    pub rays: Vec<NamedRay>,
     /// What else records the frames than the pairs.
     pub recorders: Vec<Box<dyn Recorder>>,
     pub clock: Clock,
@@ -27,22 +30,27 @@ pub struct Findings {
     pub pairs: PairRecorder,
     /// What came nearer than its clearance, if there was any clearance.
     pub near: Option<NearRecorder>,
+    /// What rays meet, if any is cast.
+    pub rays: Option<RayRecorder>,
 }
 
 impl Findings {
     /// All of it in numbers.
     pub fn summary(&self) -> Summary {
-        Summary { near: self.near.as_ref().map(NearRecorder::summary), ..self.pairs.summary() }
+        let near = self.near.as_ref().map(NearRecorder::summary);
+        let rays = self.rays.as_ref().map(RayRecorder::summary);
+        Summary { near, rays, ..self.pairs.summary() }
     }
 }
 
 impl Player<'_> {
     /// Plays all frames.
     pub fn play(&mut self, timeline: &Timeline) -> Result<Findings> {
-        let Player { scene, stage, has_clearance, recorders, clock, times } = self;
+        let Player { scene, stage, has_clearance, rays, recorders, clock, times } = self;
         let near = has_clearance.then(NearRecorder::default);
-        let mut findings = Findings { near, ..Findings::default() };
-        let mut passes = Vec::new();
+        let of_rays = (!rays.is_empty()).then(RayRecorder::default);
+        let mut findings = Findings { near, rays: of_rays, ..Findings::default() };
+        let (mut passes, mut sightings) = (Vec::new(), Vec::new());
         let mut progress = Progress::new(timeline.frames());
         let mut hits = Vec::new();
         for number in 0..timeline.frames() {
@@ -53,11 +61,13 @@ impl Player<'_> {
                 stage.near(&mut passes);
             }
             stage.test(&mut hits);
+            stage.cast(rays, &mut sightings);
             clock.lap(&mut times.testing);
             let near = has_clearance.then_some(passes.as_slice());
-            let frame = Frame { number, time, hits: &hits, near };
+            let frame = Frame { number, time, hits: &hits, near, rays, sightings: &sightings };
             findings.pairs.frame(scene, &frame)?;
             findings.near.iter_mut().try_for_each(|near| near.frame(scene, &frame))?;
+            findings.rays.iter_mut().try_for_each(|rays| rays.frame(scene, &frame))?;
             recorders.iter_mut().try_for_each(|recorder| recorder.frame(scene, &frame))?;
             progress.done(number + 1);
             clock.lap(&mut times.writing);

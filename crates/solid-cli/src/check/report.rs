@@ -5,7 +5,8 @@ use solid3d::Statistics;
 
 use super::clock::Times;
 use super::player::Findings;
-use crate::record::NearSummary;
+use crate::rays::NamedRay;
+use crate::record::{NearSummary, RaySummary};
 use crate::table::Style;
 use crate::{scene, words};
 
@@ -13,6 +14,7 @@ use crate::{scene, words};
 pub struct Report<'a> {
     pub scene: &'a Scene,
     pub findings: &'a Findings,
+    pub rays: &'a [NamedRay],
     pub statistics: Statistics,
     pub times: Times,
 }
@@ -35,6 +37,10 @@ impl Report<'_> {
         if let Some(near) = &self.findings.near {
             tables += &near.table(self.scene, style);
             verdicts = format!("{verdicts}\n{}", nearness(&near.summary(), &frames));
+        }
+        if let Some(rays) = &self.findings.rays {
+            tables += &rays.table(self.scene, self.rays, style);
+            verdicts = format!("{verdicts}\n{}", view(&rays.summary(), self.rays.len(), &frames));
         }
         format!("{tables}{verdicts}\n{amount}, {frames}, {tests}, {rate} frames/s\n")
     }
@@ -73,4 +79,15 @@ fn nearness(summary: &NearSummary, frames: &str) -> String {
     format!(
         "{pairs} {are} nearer than the clearance, in {near_frames} of {frames}; the least distance is {least}"
     )
+}
+
+/// What rays meet, in words.
+fn view(summary: &RaySummary, rays: usize, frames: &str) -> String {
+    let RaySummary { ray_frames, ray_meetings } = summary;
+    let meet = if rays == 1 { "meets" } else { "meet" };
+    let rays = words::count(words::size(rays), "ray");
+    match ray_meetings {
+        0 => format!("{rays} {meet} nothing"),
+        _ => format!("{rays} {meet} something, in {ray_frames} of {frames}"),
+    }
 }

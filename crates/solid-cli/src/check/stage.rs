@@ -1,14 +1,15 @@
 //! The scene in a world, moved from frame to frame.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use anyhow::{Result, anyhow};
 use solid_scene::{ObjectPose, Pose, Scene};
-use solid3d::query::{ImpactOptions, Path};
+use solid3d::query::{ImpactOptions, Path, RayOptions};
 use solid3d::{Collision, Contact, Near, ObjectId, Shape, Statistics, When, World, WorldOptions};
 
 use super::motion::Motion;
-use crate::record::{Depth, Hit, Pass};
+use crate::rays::NamedRay;
+use crate::record::{Depth, Hit, Pass, Sighting};
 use crate::words;
 
 /// A world with the objects of a scene.
@@ -95,6 +96,26 @@ impl<'a> Stage<'a> {
         self.world.proceed();
     }
 
+    /// What rays meet in the frame: of each object the first point.
+    pub fn cast(&self, rays: &[NamedRay], sightings: &mut Vec<Sighting>) {
+        sightings.clear();
+        let mut met = HashSet::new();
+        for (place, NamedRay { ray, .. }) in rays.iter().enumerate() {
+            let hits = self.world.cast_ray_all(ray, &RayOptions::default(), |_| true);
+            met.clear();
+            let length = ray.direction.length();
+            let hits = hits.expect("the ray was checked when it was read").into_iter();
+            sightings.extend(hits.filter(|found| met.insert(found.object)).map(|found| Sighting {
+                ray: place,
+                object: self.places[&found.object],
+                primitive: found.hit.surface.map_or(0, |surface| surface.primitive),
+                distance: found.hit.t * length,
+                point: found.hit.point,
+                normal: found.hit.surface.map(|surface| surface.normal),
+            }));
+        }
+    }
+
     /// The work done so far.
     pub fn statistics(&self) -> Statistics {
         self.world.statistics()
@@ -126,14 +147,9 @@ impl<'a> Stage<'a> {
 
     fn hit(&self, collision: &Collision) -> Hit {
         let [a, b] = [collision.a, collision.b].map(|id| self.places[&id]);
-        let depth = match collision.contact {
-            Contact::Depth { depth, point_on_a, point_on_b, .. } => {
-                Some(Depth { depth, points: [point_on_a, point_on_b] })
-            }
-            _ => None,
-        };
-        let curve = collision.curve().cloned();
-        Hit { a, b, point: collision.point(), normal: collision.normal(), curve, depth, contact_time: None }
+        let (point, normal, curve) = (collision.point(), collision.normal(), collision.curve().cloned());
+        let (depth, contacts) = (depth(collision), collision.manifolds().cloned());
+        Hit { a, b, point, normal, curve, depth, contacts, contact_time: None }
     }
 
     fn pass(&self, near: &Near) -> Pass {
@@ -167,4 +183,19 @@ impl<'a> Stage<'a> {
         let (place, name) = (self.motion.place(object), self.scene.objects()[object].name());
         anyhow!("{place}: object {name:?} at {} s: {error}", words::seconds(time))
     }
+}
+
+/// How deep the objects of a collision are in each other, with the deepest points, if its response tells.
+fn depth(collision: &Collision) -> Option<Depth> {
+    let depth = collision.depth()?;
+    let points = match &collision.contact {
+        Contact::Depth { point_on_a, point_on_b, .. } => [*point_on_a, *point_on_b],
+        Contact::Contacts { manifolds, .. } => {
+            let mut contacts = manifolds.iter().flat_map(|manifold| &manifold.points);
+            let deepest = contacts.find(|contact| contact.depth == depth)?;
+            [deepest.point_on_a, deepest.point_on_b]
+        }
+        _ => return None,
+    };
+    Some(Depth { depth, points })
 }

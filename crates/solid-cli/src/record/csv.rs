@@ -12,6 +12,8 @@ use super::{Frame, Recorder, Summary};
 const HEADER: [&str; 10] = ["frame", "time", "a", "b", "px", "py", "pz", "nx", "ny", "nz"];
 /// What there is of clearances and depths.
 const DISTANCES: [&str; 8] = ["distance", "depth", "ax", "ay", "az", "bx", "by", "bz"];
+/// What there is of rays.
+const RAYS: [&str; 2] = ["ray", "primitive"];
 /// What there is of tests between frames.
 const CONTACT_TIME: [&str; 1] = ["contact_time"];
 
@@ -20,12 +22,15 @@ const CONTACT_TIME: [&str; 1] = ["contact_time"];
 pub struct CsvColumns {
     /// Distances and depths, with the points of each object.
     pub distances: bool,
+    /// Rays, and the primitives that they meet; with the distances.
+    pub rays: bool,
     /// When the two first touch.
     pub contact_time: bool,
 }
 
-/// Writes `frame,time,a,b,px,py,pz,nx,ny,nz`, perhaps also `distance,depth,ax,ay,az,bx,by,bz`, perhaps also `contact_time`, with empty
-/// fields for what is not known. Rows with a distance are pairs that are near, the others collisions.
+/// Writes `frame,time,a,b,px,py,pz,nx,ny,nz`, perhaps also `distance,depth,ax,ay,az,bx,by,bz`, `ray,primitive` and
+/// `contact_time`, with empty fields for what is not known. Rows with a ray tell of an object that it meets, `a`; others with a
+/// distance are pairs that are near, the rest collisions.
 pub struct CsvRecorder<W: Write> {
     writer: Writer<W>,
     columns: CsvColumns,
@@ -33,35 +38,43 @@ pub struct CsvRecorder<W: Write> {
 
 /// What a row may tell beside the frame and the names.
 #[derive(Default)]
-struct Known {
+struct Known<'a> {
     point: Option<DVec3>,
     normal: Option<DVec3>,
     distance: Option<f64>,
     depth: Option<f64>,
     points: Option<[DVec3; 2]>,
     contact_time: Option<f64>,
+    /// A ray and a primitive.
+    ray: Option<(&'a str, u32)>,
 }
 
 impl<W: Write> CsvRecorder<W> {
     pub fn new(writer: W, columns: CsvColumns) -> Result<Self> {
         let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(writer);
         let distances: &[&str] = if columns.distances { &DISTANCES } else { &[] };
+        let rays: &[&str] = if columns.rays { &RAYS } else { &[] };
         let contact_time: &[&str] = if columns.contact_time { &CONTACT_TIME } else { &[] };
-        writer.write_record(HEADER.iter().chain(distances).chain(contact_time))?;
+        writer.write_record(HEADER.iter().chain(distances).chain(rays).chain(contact_time))?;
         Ok(CsvRecorder { writer, columns })
     }
 
     fn row(&mut self, frame: &Frame, [a, b]: [&str; 2], known: &Known) -> Result<()> {
         let [point, normal] = [known.point, known.normal].map(coordinates);
-        let mut more = Vec::new();
+        let (mut distances, mut rays, mut contact_time) = (Vec::new(), Vec::new(), Vec::new());
         if self.columns.distances {
-            more.extend([known.distance, known.depth]);
-            more.extend(of_each(known.points).as_flattened());
+            distances.extend([known.distance, known.depth]);
+            distances.extend(of_each(known.points).as_flattened());
+        }
+        if self.columns.rays {
+            let ray = known.ray.map(|(ray, primitive)| [ray.to_owned(), primitive.to_string()]);
+            rays.extend(ray.unwrap_or_default());
         }
         if self.columns.contact_time {
-            more.push(known.contact_time);
+            contact_time.push(known.contact_time);
         }
-        Ok(self.writer.serialize((frame.number, frame.time, a, b, point, normal, more))?)
+        let row = (frame.number, frame.time, a, b, point, normal, distances, rays, contact_time);
+        Ok(self.writer.serialize(row)?)
     }
 }
 
@@ -75,7 +88,7 @@ impl<W: Write> Recorder for CsvRecorder<W> {
                 depth: hit.depth.map(|depth| depth.depth),
                 points: hit.depth.map(|depth| depth.points),
                 contact_time: hit.contact_time,
-                distance: None,
+                ..Known::default()
             };
             self.row(frame, names(hit.a, hit.b), &known)?;
         }
@@ -87,6 +100,16 @@ impl<W: Write> Recorder for CsvRecorder<W> {
                 ..Known::default()
             };
             self.row(frame, names(pass.a, pass.b), &known)?;
+        }
+        for sighting in frame.sightings {
+            let known = Known {
+                point: Some(sighting.point),
+                normal: sighting.normal,
+                distance: Some(sighting.distance),
+                ray: Some((&frame.rays[sighting.ray].name, sighting.primitive)),
+                ..Known::default()
+            };
+            self.row(frame, [scene.objects()[sighting.object].name(), ""], &known)?;
         }
         Ok(())
     }

@@ -4,18 +4,22 @@ mod csv;
 mod json;
 mod near;
 mod pairs;
+mod rays;
 
 use std::sync::Arc;
 
 use anyhow::Result;
 use solid_scene::Scene;
 use solid3d::glam::DVec3;
-use solid3d::query::IntersectionCurve;
+use solid3d::query::{IntersectionCurve, Manifold};
 
 pub use self::csv::{CsvColumns, CsvRecorder};
 pub use json::JsonRecorder;
 pub use near::NearRecorder;
 pub use pairs::PairRecorder;
+pub use rays::RayRecorder;
+
+use crate::rays::NamedRay;
 
 /// A collision, of objects by their place in the scene; `a` comes before `b`.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +34,8 @@ pub struct Hit {
     pub curve: Option<Arc<IntersectionCurve>>,
     /// How deep they are in each other, if the response tells, with the deepest points.
     pub depth: Option<Depth>,
+    /// All points of contact, if the response tells. Space: world.
+    pub contacts: Option<Arc<[Manifold]>>,
     /// When they first touch, from the previous frame on, if it was asked. Seconds from the start of the scene.
     pub contact_time: Option<f64>,
 }
@@ -56,6 +62,20 @@ pub struct Pass {
     pub normal: DVec3,
 }
 
+/// Where a ray first meets an object, by their places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    pub ray: usize,
+    pub object: usize,
+    pub primitive: u32,
+    /// From the origin of the ray. World units.
+    pub distance: f64,
+    /// Space: world.
+    pub point: DVec3,
+    /// On the side that the ray comes from; `None` where it starts inside of a solid. Space: world.
+    pub normal: Option<DVec3>,
+}
+
 /// A tested frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<'a> {
@@ -66,6 +86,10 @@ pub struct Frame<'a> {
     pub hits: &'a [Hit],
     /// What is nearer than its clearance, in the same order; `None` when no clearance is asked for.
     pub near: Option<&'a [Pass]>,
+    /// The rays that are cast.
+    pub rays: &'a [NamedRay],
+    /// What they meet, ray by ray, nearest first.
+    pub sightings: &'a [Sighting],
 }
 
 /// The whole, in numbers.
@@ -79,6 +103,18 @@ pub struct Summary {
     /// What is nearer than its clearance, if one is asked for.
     #[serde(flatten)]
     pub near: Option<NearSummary>,
+    /// What rays meet, if any is cast.
+    #[serde(flatten)]
+    pub rays: Option<RaySummary>,
+}
+
+/// What rays meet, in numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct RaySummary {
+    /// Frames in which some ray meets something.
+    pub ray_frames: u64,
+    /// Different pairs of a ray and an object that it meets at some time.
+    pub ray_meetings: u64,
 }
 
 /// What is nearer than its clearance, in numbers.

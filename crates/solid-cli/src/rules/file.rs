@@ -7,9 +7,12 @@ use anyhow::{Result, anyhow};
 use serde::Deserialize;
 use solid3d::Response;
 use solid3d::convex::MAGNITUDE_MAX;
+use solid3d::glam::DVec3;
+use solid3d::query::Ray;
 use toml::Spanned;
 
 use super::pattern::Pattern;
+use crate::rays::NamedRay;
 use crate::text;
 
 /// The rules of a file, in its order.
@@ -20,6 +23,7 @@ pub struct Rules {
     pub(super) clearance: Option<f64>,
     pub(super) objects: Vec<ObjectRule>,
     pub(super) pairs: Vec<PairRule>,
+    pub(super) rays: Vec<NamedRay>,
 }
 
 /// What is wanted of all pairs with some objects.
@@ -66,11 +70,17 @@ impl Rules {
         self.solid.extend(patterns.iter().map(names));
     }
 
-    /// Whether the response of some pair may be depth; `default` overrides that of the rules.
+    /// The rays that are to be cast in every frame.
+    pub fn rays(&self) -> &[NamedRay] {
+        &self.rays
+    }
+
+    /// Whether the response of some pair may tell a depth; `default` overrides that of the rules.
     pub fn tell_depth(&self, default: Option<Response>) -> bool {
         let of_objects = self.objects.iter().map(|rule| rule.response);
         let of_pairs = self.pairs.iter().map(|rule| rule.response);
-        default.or(self.default).into_iter().chain(of_objects).chain(of_pairs).any(|r| r == Response::Depth)
+        let all = default.or(self.default).into_iter().chain(of_objects).chain(of_pairs);
+        all.into_iter().any(|response| matches!(response, Response::Depth | Response::Contacts))
     }
 
     /// The rules of a text; `path` is where it is from, for messages.
@@ -98,6 +108,7 @@ impl Rules {
             solid: written.solid.into_iter().map(|text| source.names(text)).collect(),
             objects: written.object.into_iter().map(object).collect(),
             pairs: written.pair.into_iter().map(pair).collect(),
+            rays: written.ray.into_iter().map(|ray| source.ray(ray)).collect::<Result<_>>()?,
         })
     }
 }
@@ -123,6 +134,21 @@ impl Source<'_> {
         Err(anyhow!("{place}: clearance is {value}; expected a length from 0 to {MAGNITUDE_MAX:e}"))
     }
 
+    fn ray(&self, written: WrittenRay) -> Result<NamedRay> {
+        let WrittenRay { name, origin, direction, to } = written;
+        let place = self.place(name.span());
+        let origin = DVec3::from(origin);
+        let ray = match (direction, to) {
+            (Some(direction), None) => Ray::new(origin, direction.into()),
+            (None, Some(to)) => Ray::segment(origin, to.into()),
+            (Some(_), Some(_)) => {
+                return Err(anyhow!("{place}: a ray has a direction or an end (to), not both"));
+            }
+            (None, None) => return Err(anyhow!("{place}: a ray needs a direction or an end (to)")),
+        };
+        NamedRay::new(name.into_inner(), ray, &place)
+    }
+
     fn fault(&self, error: &toml::de::Error) -> anyhow::Error {
         let place = error.span().map_or_else(|| self.path.display().to_string(), |span| self.place(span));
         anyhow!("{place}: {}", error.message().replace('\n', "; "))
@@ -146,6 +172,8 @@ struct Written {
     object: Vec<WrittenObject>,
     #[serde(default)]
     pair: Vec<WrittenPair>,
+    #[serde(default)]
+    ray: Vec<WrittenRay>,
 }
 
 #[derive(Deserialize)]
@@ -164,6 +192,15 @@ struct WrittenPair {
     clearance: Option<Spanned<f64>>,
 }
 
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenRay {
+    name: Spanned<String>,
+    origin: [f64; 3],
+    direction: Option<[f64; 3]>,
+    to: Option<[f64; 3]>,
+}
+
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum WrittenResponse {
@@ -173,6 +210,7 @@ enum WrittenResponse {
     Smart,
     Curve,
     Depth,
+    Contacts,
 }
 
 impl From<WrittenResponse> for Response {
@@ -184,6 +222,7 @@ impl From<WrittenResponse> for Response {
             WrittenResponse::Smart => Response::Smart,
             WrittenResponse::Curve => Response::Curve,
             WrittenResponse::Depth => Response::Depth,
+            WrittenResponse::Contacts => Response::Contacts,
         }
     }
 }
@@ -220,7 +259,7 @@ mod tests {
             ),
             (
                 "\ncolour = 1",
-                "rules.toml:2: unknown field `colour`, expected one of `default`, `clearance`, `solid`, `object`, `pair`",
+                "rules.toml:2: unknown field `colour`, expected one of `default`, `clearance`, `solid`, `object`, `pair`, `ray`",
             ),
             ("[[object]]\nname = \"x\"", "rules.toml:1: missing field `response`"),
             ("[[pair]]\na = \"x\"\nb = 3\nresponse = \"simple\"", "rules.toml:3: invalid type: integer"),
@@ -231,8 +270,18 @@ mod tests {
                 "rules.toml:5: clearance is NaN; expected a length",
             ),
             ("object = 3", "rules.toml:1: invalid type: integer"),
+            ("[[ray]]\nname = \"x\"\norigin = [0, 0, 0]", "rules.toml:2: a ray needs a direction or an end"),
+            (
+                "[[ray]]\nname = \"x\"\norigin = [0, 0, 0]\nto = [1, 0, 0]\ndirection = [1, 0, 0]",
+                "rules.toml:2: a ray has a direction or an end (to), not both",
+            ),
+            (
+                "[[ray]]\nname = \"x\"\norigin = [0, 0, 0]\ndirection = [0, 0, 0]",
+                "rules.toml:2: ray.direction is (0.0, 0.0, 0.0)",
+            ),
+            ("[[ray]]\nname = \"x\"\norigin = [0, 0]\nto = [0, 0, 1]", "rules.toml:3: invalid length 2"),
         ] {
-            let error = parse(text).expect_err(text).to_string();
+            let error = format!("{:#}", parse(text).expect_err(text));
             assert!(error.starts_with(expected) && !error.contains('\n'), "{text}: {error}");
         }
     }

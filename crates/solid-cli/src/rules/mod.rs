@@ -1,7 +1,7 @@
 //! The response table: which pairs matter, and what is wanted of them, by the names of the objects.
 //!
 //! ```toml
-//! default = "witness"        # ignore, simple, witness, smart, curve or depth
+//! default = "witness"        # ignore, simple, witness, smart, curve, depth or contacts
 //! solid = ["ship*"]          # closed meshes that are to be solid
 //! clearance = 0.05           # pairs that come nearer are reported
 //!
@@ -14,6 +14,11 @@
 //! b = "sweeper"
 //! response = "smart"
 //! clearance = 0.2            # of this pair alone
+//!
+//! [[ray]]                    # cast in every frame
+//! name = "barrier"
+//! origin = [0, 0.5, 2]
+//! to = [0, 0.5, -2]          # of a segment; or `direction`
 //! ```
 //!
 //! `*` stands for any characters, `?` for one. As in the thesis (section 6.2), a rule for the pair overrides one for an

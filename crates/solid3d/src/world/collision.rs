@@ -6,7 +6,9 @@ use glam::DVec3;
 use solid_convex::Witness;
 
 use super::{ObjectId, Response, When};
-use crate::pair::{self, Approach, IntersectionCurve, Placed, Scratch};
+use crate::pair::{
+    self, Approach, ContactOptions, ContactPoint, IntersectionCurve, Manifold, Placed, Scratch,
+};
 
 /// Two objects that collide.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,6 +86,14 @@ pub enum Contact {
         /// The point of `b` that is deepest in `a`. Space: world.
         point_on_b: DVec3,
     },
+    /// All points of contact ([`Response::Contacts`]).
+    Contacts {
+        /// The middle of the points of the deepest contact; a common point, also of two ways, when there is no contact. Space: world.
+        point: DVec3,
+        /// The contacts, as [`query::contacts`](crate::query::contacts) gives them, with no margin. Empty
+        /// [on the way](When::OnTheWay).
+        manifolds: Arc<[Manifold]>,
+    },
 }
 
 impl Contact {
@@ -128,30 +138,53 @@ impl Contact {
         let point = curve.first_point().unwrap_or_else(|| pair::midpoint(a, b, witness));
         Contact::Curve { point, curve: Arc::new(curve) }
     }
+
+    /// The contacts of two objects; a common point is known.
+    pub(super) fn contacts(a: Placed, b: Placed, witness: &Witness, scratch: &mut Scratch) -> Contact {
+        let manifolds = pair::contacts(a, b, &ContactOptions::default(), scratch);
+        let point = match deepest(&manifolds) {
+            Some((_, contact)) => 0.5 * contact.point_on_a + 0.5 * contact.point_on_b,
+            None => pair::midpoint(a, b, witness),
+        };
+        Contact::Contacts { point, manifolds: manifolds.into() }
+    }
+}
+
+/// The deepest contact, and the manifold that it is of; of equal ones the first.
+fn deepest(manifolds: &[Manifold]) -> Option<(&Manifold, &ContactPoint)> {
+    let all =
+        manifolds.iter().flat_map(|manifold| manifold.points.iter().map(move |point| (manifold, point)));
+    all.reduce(|best, next| if next.1.depth > best.1.depth { next } else { best })
 }
 
 impl Collision {
-    /// Where: the common point of a witness, the middle of the closest points of smart response, or of the deepest points, the first
-    /// point of a curve; in the world.
+    /// Where: the common point of a witness, the middle of the closest points of smart response, or of the deepest points or the
+    /// deepest contact, the first point of a curve; in the world.
     pub fn point(&self) -> Option<DVec3> {
         match self.contact {
             Contact::Simple => None,
-            Contact::Witness { point, .. } | Contact::Curve { point, .. } => Some(point),
+            Contact::Witness { point, .. }
+            | Contact::Curve { point, .. }
+            | Contact::Contacts { point, .. } => Some(point),
             Contact::Smart { point_on_a, point_on_b, .. } | Contact::Depth { point_on_a, point_on_b, .. } => {
                 Some(0.5 * point_on_a + 0.5 * point_on_b)
             }
         }
     }
 
-    /// The approximate normal of the contact, a unit vector from `b` to `a`: of smart response, and of depth.
+    /// The approximate normal of the contact, a unit vector from `b` to `a`: of smart response, of depth, and of the deepest contact.
     pub fn normal(&self) -> Option<DVec3> {
         match self.contact {
             Contact::Smart { normal, .. } | Contact::Depth { normal, .. } => Some(normal),
+            Contact::Contacts { ref manifolds, .. } => {
+                deepest(manifolds).map(|(manifold, _)| manifold.normal)
+            }
             Contact::Simple | Contact::Witness { .. } | Contact::Curve { .. } => None,
         }
     }
 
-    /// How deep the objects are in each other, if the response asked for it ([`Response::Depth`]). World units.
+    /// How deep the objects are in each other, if the response asked for it ([`Response::Depth`]), or the depth of the deepest contact
+    /// ([`Response::Contacts`]). World units.
     ///
     /// ```
     /// use solid3d::{Response, Shape, World, glam::{DAffine3, DVec3}};
@@ -167,6 +200,35 @@ impl Collision {
     pub fn depth(&self) -> Option<f64> {
         match self.contact {
             Contact::Depth { depth, .. } => Some(depth),
+            Contact::Contacts { ref manifolds, .. } => deepest(manifolds).map(|(_, point)| point.depth),
+            _ => None,
+        }
+    }
+
+    /// All points of contact, if the response asked for them. Shared, to keep without copying.
+    ///
+    /// ```
+    /// use solid3d::{Response, Shape, World, glam::{DAffine3, DVec3}};
+    /// let mut world = World::new();
+    /// world.set_default_response(Response::Contacts);
+    /// let block = Shape::cuboid([2.0, 2.0, 2.0])?;
+    /// world.add(&block, DAffine3::IDENTITY)?;
+    /// let above = |z: f64| DAffine3::from_translation(DVec3::new(0.5, 1.75, z));
+    /// let upper = world.add(&block, above(0.25))?;
+    /// let names = |world: &mut World| {
+    ///     let collisions = world.test();
+    ///     let manifolds = collisions[0].manifolds().unwrap();
+    ///     assert_eq!((manifolds.len(), manifolds[0].normal), (1, DVec3::NEG_Y));
+    ///     manifolds[0].points.iter().map(|point| (point.primitives, point.features)).collect::<Vec<_>>()
+    /// };
+    /// let before = names(&mut world);
+    /// world.set_placement(upper, above(0.375))?;
+    /// assert_eq!((before.len(), &before), (4, &names(&mut world))); // they persist
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn manifolds(&self) -> Option<&Arc<[Manifold]>> {
+        match &self.contact {
+            Contact::Contacts { manifolds, .. } => Some(manifolds),
             _ => None,
         }
     }
@@ -199,6 +261,7 @@ impl Collision {
             Contact::Smart { .. } => Response::Smart,
             Contact::Curve { .. } => Response::Curve,
             Contact::Depth { .. } => Response::Depth,
+            Contact::Contacts { .. } => Response::Contacts,
         }
     }
 }

@@ -63,7 +63,7 @@ impl Findings {
     /// Takes out a collision that is no more.
     pub fn remove(&mut self, id: FindingId) {
         let Finding { key, collision } = &mut self.findings[id as usize];
-        // What a curve holds is not kept in an unused place.
+        // What a curve or contacts hold is not kept in an unused place.
         collision.contact = Contact::Simple;
         self.order.remove(*key);
         if self.began.remove(*key).is_none() {

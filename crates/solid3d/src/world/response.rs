@@ -28,6 +28,10 @@ pub enum Response {
     /// How deep they are in each other as they are now, the shortest way out, and the deepest points
     /// ([`query::penetration`](crate::query::penetration)).
     Depth,
+    /// All points of contact as they are now, with normals, depths, and the parts of the shapes that they are of, which stay the same
+    /// from frame to frame ([`query::contacts`](crate::query::contacts)): what a simulation resolves collisions with. Of surfaces all
+    /// pairs of primitives are examined, as for curves.
+    Contacts,
 }
 
 /// Responses by default, per object and per pair.

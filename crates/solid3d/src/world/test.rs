@@ -261,6 +261,7 @@ impl World {
                     Response::Smart => smart([a, b], scratch),
                     Response::Curve => Contact::curve(a.placed(), b.placed(), &witness, scratch),
                     Response::Depth => Contact::depth(a.placed(), b.placed(), scratch),
+                    Response::Contacts => Contact::contacts(a.placed(), b.placed(), &witness, scratch),
                 };
                 (Some((When::Now, contact)), None)
             }
@@ -294,6 +295,7 @@ fn on_the_way(
         // As they are now, the surfaces do not meet.
         Response::Curve => Contact::Curve { point, curve: Arc::default() },
         Response::Depth => Contact::depth(a.placed(), b.placed(), scratch),
+        Response::Contacts => Contact::Contacts { point, manifolds: Arc::default() },
     };
     (Some((When::OnTheWay, contact)), None)
 }
