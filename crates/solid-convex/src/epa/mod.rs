@@ -10,7 +10,7 @@
 //! - It starts from GJK's tetrahedron when there is one. When GJK ended with less, as it does for shapes that touch or have
 //!   their middles in one place, the start is spanned by support points along the axes and then across what these span; a
 //!   difference without thickness is recognised there, and its depth is 0 along its normal.
-//! - Two boxes, however placed, need no search: the facets of their difference are known ([`zonotope`]).
+//! - Two boxes, however placed, need no search: the facets of their difference are known.
 //! - Spheres and capsules, unless they are stretched, are points and segments with a radius: what is searched is the depth or the
 //!   distance of these, and both are found exactly.
 //! - Every direction that was looked along gives an upper bound, the nearest face a lower one. Both are reported, so that an
