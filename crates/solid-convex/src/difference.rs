@@ -88,6 +88,20 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
         if v.abs().max_element() > SUPPORT_ERROR { v } else { DVec3::X }
     }
 
+    /// Of two parallelepipeds: the half edges of both, those of `A` first, in their local spaces and in that of the difference; and its middle.
+    pub fn half_edges(&self) -> Option<([DVec3; 6], [DVec3; 6], DVec3)> {
+        let ([a, b, c], [d, e, f]) = (self.a.half_edges()?, self.b.half_edges()?);
+        let (of_a, of_b) = (self.linear_a, self.linear_b);
+        let [at_a, at_b] = self.centers();
+        let placed = [of_a * a, of_a * b, of_a * c, of_b * d, of_b * e, of_b * f];
+        Some(([a, b, c, d, e, f], placed, self.point(at_a, at_b).w))
+    }
+
+    /// The centres of both objects, each in its local space.
+    pub fn centers(&self) -> [DVec3; 2] {
+        [self.a.center(), self.b.center()]
+    }
+
     /// Whether it is the hull of finitely many points.
     pub fn is_polytope(&self) -> bool {
         self.a.is_polytope() && self.b.is_polytope()

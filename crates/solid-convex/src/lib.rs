@@ -30,6 +30,8 @@ pub mod simd;
 mod simplex;
 mod size;
 mod support;
+#[cfg(test)]
+mod testing;
 
 pub use chord::{Chord, End, Line};
 pub use epa::Penetration;

@@ -25,6 +25,11 @@ pub trait Support: Send + Sync {
         false
     }
 
+    /// The three half edges of a parallelepiped around its [`center`](Support::center), when the object is one.
+    fn half_edges(&self) -> Option<[DVec3; 3]> {
+        None
+    }
+
     /// The object is all that is within this distance of its core; 0 for one that is its own core.
     fn core_radius(&self) -> f64 {
         0.0

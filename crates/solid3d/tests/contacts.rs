@@ -10,7 +10,7 @@ mod common;
 use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
-use common::{placement, random_complex, random_mesh, sheet};
+use common::{assert_rate, placement, random_complex, random_mesh, sheet};
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
@@ -333,6 +333,45 @@ fn ridges_have_normals() {
     normals.sort_by(f64::total_cmp);
     assert_eq!(found.len(), 2, "{found:#?}");
     assert!((normals[0] + 0.5f64.sqrt()).abs() < 1e-9 && (normals[1] - 0.5f64.sqrt()).abs() < 1e-9);
+}
+
+/// What stands on the upper floor of a step, and hangs over its edge, is held by that floor: not pushed off by the riser below it.
+#[test]
+fn a_step_pushes_nothing_aside_that_stands_on_it() {
+    // From left to right: the upper floor, the riser, the lower floor.
+    let profile = |u: f64| match 3.0 * u {
+        t if t <= 1.0 => DVec3::new(-5.0 + 5.0 * t, 1.0, 0.0),
+        t if t <= 2.0 => DVec3::new(0.0, 2.0 - t, 0.0),
+        t => DVec3::new(5.0 * (t - 2.0), 0.0, 0.0),
+    };
+    let step = sheet(13, 41, [false, false], |u, v| profile(u) + DVec3::Z * (10.0 * v - 5.0)).shape();
+    let (mut rng, mut over) = (seeded(SEED), 0);
+    for i in 0..400 {
+        let depth = [0.001, 0.01, 0.05][i % 3];
+        // So far over the edge that up is the shortest way out, and not so far that it would fall.
+        let beyond = rng.random_range(-0.4..0.45);
+        let turn = DAffine3::from_rotation_y(if i % 2 == 0 { 0.0 } else { rng.random_range(0.0..TAU) });
+        let tilt = rng.random_range(-0.002..0.002);
+        let tilted = DAffine3::from_axis_angle(common::direction(&mut rng), tilt);
+        let place = at(beyond - 0.5, 1.5 - depth, rng.random_range(-2.0..2.0)) * tilted * turn;
+        let reach = (0..8).map(|i| {
+            let corner = DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -0.5 } else { 0.5 }));
+            place.transform_point3(corner).x
+        });
+        let overhang = reach.fold(f64::NEG_INFINITY, f64::max);
+        if overhang > 0.0 && overhang < 4.0 * depth {
+            continue;
+        }
+        over += usize::from(overhang > 0.0);
+        let found = contacts(&cube(), &place, &step, &DAffine3::IDENTITY);
+        assert!(!found.is_empty(), "box {i}");
+        for manifold in &found {
+            assert!(manifold.normal.y > 0.99, "box {i}, {overhang} over the edge: {manifold:#?}");
+        }
+        let most = depth + 2.0 * tilt.abs();
+        assert!(deepest(&found) <= most, "box {i}, {depth} deep: {found:#?}");
+    }
+    assert_rate("boxes over the edge", over, 400);
 }
 
 /// Separate regions are reported apart.

@@ -3,8 +3,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod common;
+
 use std::collections::BTreeSet;
 
+use common::{each_pair, rescaled, try_shape_of};
 use glam::{DAffine3, DVec3};
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
 use solid_oracle::{Convex, Verdict, contains_within, distance_bounds, verdict, verify_axis};
@@ -14,25 +17,6 @@ use solid3d::{Shape, ShapeKind, query};
 /// 10 regimes of these make 1.2 * 10^5 pairs.
 const PAIRS: usize = 12_000;
 const SEED: u64 = 20_260;
-
-/// The oracle's shape as ours; a box or cylinder without thickness, which is bad input to us, as the hull of its corners
-/// or not at all.
-fn shape_of(convex: &Convex) -> Option<Shape> {
-    match convex {
-        Convex::Sphere { radius } => Shape::sphere(*radius),
-        Convex::Cuboid { half } if half.min_element() == 0.0 => {
-            let corner =
-                |i: u32| DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { half[k] } else { -half[k] }));
-            Shape::convex_hull(&(0..8).map(corner).collect::<Vec<_>>())
-        }
-        Convex::Cuboid { half } => Shape::cuboid(*half * 2.0),
-        Convex::Cone { radius, half_height } => Shape::cone(*radius, half_height * 2.0),
-        Convex::Cylinder { radius, half_height } => Shape::cylinder(*radius, half_height * 2.0),
-        Convex::Capsule { radius, half_height } => Shape::capsule(*radius, half_height * 2.0),
-        Convex::Hull { points } => Shape::convex_hull(points),
-    }
-    .ok()
-}
 
 /// The largest coordinate of the placed shape, seen from the placement's origin.
 fn extent(convex: &Convex, placement: &DAffine3) -> f64 {
@@ -119,26 +103,22 @@ fn mirrored(pair: &Pair) -> Pair {
 
 /// Runs a regime; `hits` is the share of intersecting pairs that it is meant to have, in percent.
 fn run(regime: Regime, hits: std::ops::RangeInclusive<usize>) {
-    let mut rng = seeded(SEED);
     let (mut certain, mut intersecting, mut tested) = (0, 0, 0);
     let mut kinds: BTreeSet<(ShapeKind, ShapeKind)> = BTreeSet::new();
-    for i in 0..PAIRS {
-        let pair = random_pair(&mut rng, regime);
-        let (Some(a), Some(b)) = (shape_of(&pair.a), shape_of(&pair.b)) else { continue };
-        let context = format!("{regime:?}, seed {SEED}, pair {i} ({} and {})", a.kind(), b.kind());
+    each_pair(regime, SEED, PAIRS, |i, pair, [a, b], context| {
         kinds.insert((a.kind(), b.kind()));
         tested += 1;
-        if let Some(hit) = judge(&pair, &a, &b, &context) {
+        if let Some(hit) = judge(pair, a, b, context) {
             certain += 1;
             intersecting += usize::from(hit);
         }
         if i % 4 == 0 {
-            judge_distance(&pair, &a, &b, &context);
+            judge_distance(pair, a, b, context);
         }
         if i % 8 == 0 {
-            judge(&mirrored(&pair), &b, &a, &format!("{context}, swapped"));
+            judge(&mirrored(pair), b, a, &format!("{context}, swapped"));
         }
-    }
+    });
     println!(
         "{regime:?}, seed {SEED}: {tested} pairs, {} kinds, {certain} certain, {intersecting} intersect",
         kinds.len()
@@ -204,17 +184,13 @@ fn near_touching_by_1e_12() {
 #[test]
 fn powers_of_two_change_nothing() {
     let mut rng = seeded(SEED);
-    let scaled = |placement: &DAffine3, factor: f64| DAffine3 {
-        matrix3: placement.matrix3 * factor,
-        translation: placement.translation * factor,
-    };
     for i in 0..2_000 {
         let regime = [Regime::Random, Regime::NearTouching { relative_gap: 1e-12 }, Regime::SizeRatio][i % 3];
         let Pair { a, pa, b, pb, .. } = random_pair(&mut rng, regime);
-        let (Some(a), Some(b)) = (shape_of(&a), shape_of(&b)) else { continue };
+        let (Ok(a), Ok(b)) = (try_shape_of(&a), try_shape_of(&b)) else { continue };
         let answers = |power: i32| {
             let factor = 2f64.powi(power);
-            let (pa, pb) = (scaled(&pa, factor), scaled(&pb, factor));
+            let (pa, pb) = (rescaled(&pa, factor), rescaled(&pb, factor));
             let closest = query::distance(&a, &pa, &b, &pb).unwrap();
             let axis = query::separating_axis(&a, &pa, &b, &pb).unwrap();
             let point = query::common_point(&a, &pa, &b, &pb).unwrap().map(|point| point / factor);

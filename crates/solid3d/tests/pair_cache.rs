@@ -53,6 +53,18 @@ fn what_is_kept_changes_no_answer() {
                 assert!((warm.distance - cold.distance).abs() < 1e-11, "{context}: {warm:?}, {cold:?}");
                 let between = warm.point_on_a.distance(warm.point_on_b);
                 assert!((between - warm.distance).abs() < 1e-11, "{context}: {between}, {warm:?}");
+                let (cold, warm) = (
+                    query::penetration(a, &at_a, b, &at_b).unwrap(),
+                    mixed.penetration(&at_a, &at_b).unwrap(),
+                );
+                assert_eq!(warm.is_some(), hit, "{context}");
+                if let (Some(cold), Some(warm)) = (cold, warm) {
+                    let meet = warm.depth_min <= cold.depth_max && cold.depth_min <= warm.depth_max;
+                    assert!(meet && warm.depth_min <= warm.depth, "{context}: {warm:?}, {cold:?}");
+                    let off = (warm.point_on_b - warm.point_on_a).distance(warm.normal * warm.depth);
+                    let cold_off = (cold.point_on_b - cold.point_on_a).distance(cold.normal * cold.depth);
+                    assert!(off <= 1e-3 * warm.depth + 1e-9 + cold_off, "{context}: {off:e}, {warm:?}");
+                }
                 hits += usize::from(hit);
                 frames += 1;
             }
@@ -69,5 +81,6 @@ fn bad_placements_are_errors_and_change_nothing() {
     assert!(pair.intersects(&here, &here).unwrap());
     assert!(pair.intersects(&here, &nowhere).is_err());
     assert!(pair.distance(&nowhere, &here).is_err());
+    assert!(pair.penetration(&nowhere, &here).is_err());
     assert!(pair.intersects(&here, &here).unwrap());
 }

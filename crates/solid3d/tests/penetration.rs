@@ -8,7 +8,7 @@
 
 mod common;
 
-use common::{placement, random_complex, random_mesh, rescaled};
+use common::{each_pair, placement, random_complex, random_mesh, rescaled};
 use glam::{DAffine3, DVec3};
 use rand::Rng;
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
@@ -48,24 +48,21 @@ struct Tally {
 }
 
 impl Tally {
-    fn judge(&mut self, pair: &Pair, context: &str) {
+    fn judge(&mut self, pair: &Pair, [a, b]: [&Shape; 2], context: &str) {
         let Pair { a: reference_a, pa, b: reference_b, pb, .. } = pair;
-        let (Ok(a), Ok(b)) = (common::try_shape_of(reference_a), common::try_shape_of(reference_b)) else {
-            return;
-        };
         self.tested += 1;
-        let found = query::penetration(&a, pa, &b, pb).unwrap();
-        let intersects = query::intersects(&a, pa, &b, pb).unwrap();
+        let found = query::penetration(a, pa, b, pb).unwrap();
+        let intersects = query::intersects(a, pa, b, pb).unwrap();
         assert_eq!(found.is_some(), intersects, "{context}");
         let Some(found) = found else { return };
         self.hits += 1;
-        let size = size_of(&a, pa, &b, pb);
+        let size = size_of(a, pa, b, pb);
         assert_is_consistent(&found, pa, pb, size, context);
         let stated = DEPTH_TOLERANCE * found.depth + TOUCHING_ERROR * size;
         let width = (found.depth_max - found.depth_min) / stated;
         self.widest = self.widest.max(width);
         self.wide += usize::from(width > 2.0);
-        assert_parts(pair, [&a, &b], &found, size, context);
+        assert_parts(pair, [a, b], &found, size, context);
         if let Some((lower, upper)) = penetration_bounds(reference_a, pa, reference_b, pb) {
             self.judged += 1;
             let error = TOUCHING_ERROR * size;
@@ -143,11 +140,10 @@ fn assert_parts(pair: &Pair, [a, b]: [&Shape; 2], found: &Penetration, size: f64
 }
 
 fn run(regime: Regime, hits: std::ops::RangeInclusive<usize>) {
-    let (mut rng, mut tally) = (seeded(SEED), Tally::default());
-    for i in 0..PAIRS {
-        let pair = random_pair(&mut rng, regime);
-        tally.judge(&pair, &format!("{regime:?}, seed {SEED}, pair {i}: {pair:?}"));
-    }
+    let mut tally = Tally::default();
+    each_pair(regime, SEED, PAIRS, |_, pair, shapes, context| {
+        tally.judge(pair, shapes, &format!("{context}: {pair:?}"));
+    });
     tally.finish(&format!("{regime:?}"), hits);
 }
 

@@ -101,8 +101,7 @@ impl Meeting {
 
     fn row(&self, scene: &Scene, rays: &[NamedRay]) -> Vec<String> {
         let Sighting { ray, object, distance, point, normal, .. } = self.nearest;
-        let [ray, object] =
-            [&rays[ray].name, scene.objects()[object].name()].map(|name| words::printable(name));
+        let [ray, object] = [rays[ray].name.as_str(), scene.objects()[object].name()].map(words::printable);
         let [first, last, time] = [self.first, self.last, self.time].map(words::seconds);
         let normal = normal.map_or("-".to_owned(), words::point);
         let (frames, distance) = (self.frames.to_string(), words::figure(distance));

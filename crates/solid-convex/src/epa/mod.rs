@@ -10,6 +10,7 @@
 //! - It starts from GJK's tetrahedron when there is one. When GJK ended with less, as it does for shapes that touch or have
 //!   their middles in one place, the start is spanned by support points along the axes and then across what these span; a
 //!   difference without thickness is recognised there, and its depth is 0 along its normal.
+//! - Two boxes, however placed, need no search: the facets of their difference are known.
 //! - Spheres and capsules, unless they are stretched, are points and segments with a radius: what is searched is the depth or the
 //!   distance of these, and both are found exactly.
 //! - Every direction that was looked along gives an upper bound, the nearest face a lower one. Both are reported, so that an
@@ -21,6 +22,7 @@ mod rounded;
 mod start;
 #[cfg(test)]
 mod tests;
+mod zonotope;
 
 use glam::{DAffine3, DVec3};
 
@@ -71,7 +73,8 @@ pub struct Penetration {
 ///
 /// The placements must be finite, with entries of at most [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX). The error is what `lower` and `upper`
 /// say: for polytopes some 1e-14 of the size of the data, for others [`DEPTH_TOLERANCE`] of the depth unless [`VERTICES_MAX`] ended
-/// the search. Cost: that of [`intersection`](crate::gjk::intersection), and some ten support points of each object, more the deeper they are.
+/// the search. Cost: of two boxes some hundred nanoseconds; of others that of [`intersection`](crate::gjk::intersection), and some ten support
+/// points of each object, more the deeper they are.
 ///
 /// ```
 /// use solid_convex::{Cuboid, epa};
@@ -89,15 +92,51 @@ where
     B: Support + ?Sized,
 {
     let difference = Difference::new(a, placement_a, b, placement_b);
+    if let found @ Some(_) = zonotope::penetration(&difference) {
+        return found;
+    }
     let descent = descend(&difference, Goal::Separation);
     if descent.end == End::Separated {
         return None;
     }
+    Some(search(&difference, a, placement_a, b, placement_b, &descent.simplex))
+}
+
+/// The same for objects that are known to intersect or touch, with a simplex of their difference that shows it.
+pub(crate) fn penetration_from<A, B>(
+    a: &A,
+    placement_a: &DAffine3,
+    b: &B,
+    placement_b: &DAffine3,
+    simplex: &Simplex,
+) -> Penetration
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let difference = Difference::new(a, placement_a, b, placement_b);
+    zonotope::penetration(&difference)
+        .unwrap_or_else(|| search(&difference, a, placement_a, b, placement_b, simplex))
+}
+
+/// The depth of objects without a closed form.
+fn search<A, B>(
+    difference: &Difference<A, B>,
+    a: &A,
+    placement_a: &DAffine3,
+    b: &B,
+    placement_b: &DAffine3,
+    simplex: &Simplex,
+) -> Penetration
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
     let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
     if core_a.radius() > 0.0 || core_b.radius() > 0.0 {
-        return Some(rounded::penetration(&core_a, placement_a, &core_b, placement_b));
+        return rounded::penetration(&core_a, placement_a, &core_b, placement_b);
     }
-    Some(deepen(&difference, &descent.simplex).penetration(difference.scale(), 0.0))
+    deepen(difference, simplex).penetration(difference.scale(), 0.0)
 }
 
 /// The depth of the origin in a difference, from the simplex around it that a descent ended with.

@@ -4,29 +4,11 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::polytope::Polytope;
 use super::start::start;
-use super::{DEPTH_TOLERANCE, Penetration, VERTICES_MAX, expand, penetration};
+use super::{DEPTH_TOLERANCE, Penetration, VERTICES_MAX, deepen, expand, penetration, zonotope};
 use crate::difference::Difference;
-use crate::gjk;
+use crate::gjk::{self, End, Goal, descend};
+use crate::testing::{placement, shapes};
 use crate::{Capsule, Cone, Cuboid, Cylinder, Points, Sphere, Support};
-
-fn shapes() -> Vec<Box<dyn Support>> {
-    vec![
-        Box::new(Sphere::new(0.7).unwrap()),
-        Box::new(Cuboid::new(DVec3::new(1.0, 0.5, 2.0)).unwrap()),
-        Box::new(Cone::new(0.5, 1.5).unwrap()),
-        Box::new(Cylinder::new(0.6, 1.0).unwrap()),
-        Box::new(Capsule::new(0.3, 1.2).unwrap()),
-    ]
-}
-
-/// Placements spread over orientations and distances by a low-discrepancy sequence.
-fn placement(i: u32) -> DAffine3 {
-    let part = |step: f64| (f64::from(i) * step).fract();
-    let rotation =
-        DQuat::from_xyzw(part(0.618) - 0.5, part(0.414) - 0.5, part(0.732) - 0.5, part(0.236) + 0.1);
-    let translation = DVec3::new(part(0.7549), part(0.5698), part(0.3247)) * 1.6 - 0.8;
-    DAffine3::from_rotation_translation(rotation.normalize(), translation)
-}
 
 fn at(x: f64, y: f64, z: f64) -> DAffine3 {
     DAffine3::from_translation(DVec3::new(x, y, z))
@@ -239,6 +221,59 @@ fn the_vertex_limit_is_honest() {
     let found = penetration(&ball, &egg, &ball, &egg).unwrap();
     assert!(found.lower <= 2.0 && 2.0 <= found.upper, "{found:?}");
     assert!(found.upper - found.lower < 0.05 && found.upper - found.lower > 2e-5, "{found:?}");
+}
+
+/// The closed form of two boxes says what the search says, wherever it says anything: for boxes at any angle, nearly or just in line,
+/// stretched and sheared, and of very different size.
+#[test]
+fn boxes_are_as_deep_as_the_search_says() {
+    let (mut deep, mut answered, mut count) = (0, 0, 0);
+    for k in 0..3_000 {
+        let part = |step: f64| (f64::from(k) * step).fract();
+        let small = [1.0, 1.0, 0.1, 1e-3][k as usize % 4];
+        let half_a = DVec3::new(0.2 + part(0.618), 0.2 + part(0.414), 0.2 + part(0.732)) * 0.7;
+        let half_b = DVec3::new(0.2 + part(0.236), 0.2 + part(0.7549), 0.2 + part(0.5698)) * 0.7 * small;
+        let (a, b) = (Cuboid::new(2.0 * half_a).unwrap(), Cuboid::new(2.0 * half_b).unwrap());
+        let at_a = placement(k);
+        let mut at_b = placement(5 * k + 1);
+        // Turned against each other by nothing, by little, or by anything.
+        let turn = [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1.0][k as usize % 8];
+        if turn < 1.0 {
+            let about = DQuat::from_axis_angle(placement(k + 3).translation.normalize(), turn);
+            at_b.matrix3 = at_a.matrix3 * DMat3::from_quat(about);
+        }
+        if k % 5 == 0 {
+            let shear = DMat3::from_cols(DVec3::X, DVec3::new(0.3, 1.5, 0.0), DVec3::new(0.0, -0.2, 0.7));
+            at_b.matrix3 *= shear;
+        }
+        count += 1;
+        let difference = Difference::new(&a, &at_a, &b, &at_b);
+        let descent = descend(&difference, Goal::Separation);
+        let found = zonotope::penetration(&difference);
+        if descent.end == End::Separated {
+            assert!(found.is_none(), "{k}: {found:?}");
+            continue;
+        }
+        deep += 1;
+        let Some(found) = found else { continue };
+        answered += 1;
+        assert_certain(&found, 3.0);
+        let searched = deepen(&difference, &descent.simplex).penetration(difference.scale(), 0.0);
+        assert!(
+            found.lower <= searched.upper && searched.lower <= found.upper,
+            "{k}: {found:?} {searched:?}"
+        );
+        assert!((found.depth - searched.depth).abs() <= 1e-13 * 3.0, "{k}: {found:?} {searched:?}");
+        // The points are of the boxes, and lie as far apart as the depth, along the normal.
+        for (point, half) in [(found.points.on_a, half_a), (found.points.on_b, half_b)] {
+            assert!((point.abs() - half).max_element() <= 1e-15, "{k}: {point} of {half}");
+        }
+        let way = at_b.transform_point3(found.points.on_b) - at_a.transform_point3(found.points.on_a);
+        let missed = way.distance(found.direction * found.depth);
+        assert!(missed <= 1e-12, "{k}: {missed:e}, {found:?}");
+    }
+    assert!((count * 3 / 10..count * 7 / 10).contains(&deep), "{deep} of {count}: not representative");
+    assert!(answered * 10 >= deep * 9, "{answered} of {deep} in closed form");
 }
 
 /// A support mapping that is none: it must not hang nor crash whoever asks it.

@@ -5,15 +5,15 @@ use glam::{DAffine3, DVec3};
 use super::descent::{End, Goal, descend, descend_from};
 use super::distance::DISTANCE_TOLERANCE;
 use super::{Closest, Witness, closest_points, separates};
-use crate::Support;
 use crate::difference::Difference;
 use crate::simplex::{Reduced, Simplex};
+use crate::{Support, epa};
 
 /// Two convex objects about which the same is asked frame after frame, as they move a little: what was found last is tried
 /// first (thesis, section 4.4.3, and for objects that intersect likewise).
 ///
-/// Whether they intersect is the same answer as from scratch, always. Their distance has the same error bound, but not
-/// always the same bits.
+/// Whether they intersect is the same answer as from scratch, always. Their distance and their depth have the same error bounds, but
+/// not always the same bits.
 ///
 /// ```
 /// use solid_convex::{Cuboid, gjk::{self, Coherent}};
@@ -73,17 +73,48 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
     /// [`Separated`](super::Outcome::Separated). Cost: while the axis that separated them does, one support point of each; while the
     /// four pairs of points that showed an overlap do, none.
     pub fn intersects(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> bool {
+        self.common_simplex(placement_a, placement_b).is_some()
+    }
+
+    /// How deep they are in each other, as [`epa::penetration`] within the same error; `None` exactly when that says so. Cost: while
+    /// the axis that separated them does, one support point of each; while the four pairs of points that showed an overlap do,
+    /// the search for the depth alone.
+    ///
+    /// ```
+    /// use solid_convex::{Cuboid, epa, gjk::Coherent};
+    /// use glam::{DAffine3, DVec3};
+    /// let block = Cuboid::new(DVec3::ONE)?;
+    /// let mut pair = Coherent::new(&block, &block);
+    /// for frame in 0..40 {
+    ///     let moved = DAffine3::from_translation(DVec3::new(1.5 - 0.03 * f64::from(frame), 0.0, 0.0));
+    ///     let depth = pair.penetration(&DAffine3::IDENTITY, &moved).map(|found| found.depth);
+    ///     assert_eq!(depth.is_some(), moved.translation.x <= 1.0);
+    ///     assert!(depth.is_none_or(|depth| (depth - (1.0 - moved.translation.x)).abs() < 1e-12));
+    /// }
+    /// # Ok::<(), solid_convex::SizeError>(())
+    /// ```
+    pub fn penetration(
+        &mut self,
+        placement_a: &DAffine3,
+        placement_b: &DAffine3,
+    ) -> Option<epa::Penetration> {
+        let simplex = self.common_simplex(placement_a, placement_b)?;
+        Some(epa::penetration_from(self.a, placement_a, self.b, placement_b, &simplex))
+    }
+
+    /// The simplex that shows that they intersect, or touch; `None` when they do not.
+    fn common_simplex(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Option<Simplex> {
         let Memory { axis, len, .. } = self.memory;
         if axis != DVec3::ZERO && separates(axis, self.a, placement_a, self.b, placement_b) {
-            return false;
+            return None;
         }
         let difference = Difference::new(self.a, placement_a, self.b, placement_b);
-        if len == 4 && self.tetrahedron(&difference).is_some() {
-            return true;
+        if let Some(simplex) = (len == 4).then(|| self.tetrahedron(&difference)).flatten() {
+            return Some(simplex);
         }
         let descent = descend(&difference, Goal::Separation);
         self.memory.keep(descent.end, descent.v, &descent.simplex);
-        descent.end != End::Separated
+        (descent.end != End::Separated).then_some(descent.simplex)
     }
 
     /// The closest points, as [`closest_points`](super::closest_points) within the same error. Cost: where the points lie on the same

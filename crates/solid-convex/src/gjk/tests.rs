@@ -7,26 +7,8 @@ use super::{
     Closest, Coherent, DISTANCE_TOLERANCE, Outcome, TOUCHING_ERROR, closest_points, intersection, separates,
 };
 use crate::difference::Difference;
+use crate::testing::{placement, shapes};
 use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
-
-fn shapes() -> Vec<Box<dyn Support>> {
-    vec![
-        Box::new(Sphere::new(0.7).unwrap()),
-        Box::new(Cuboid::new(DVec3::new(1.0, 0.5, 2.0)).unwrap()),
-        Box::new(Cone::new(0.5, 1.5).unwrap()),
-        Box::new(Cylinder::new(0.6, 1.0).unwrap()),
-        Box::new(Capsule::new(0.3, 1.2).unwrap()),
-    ]
-}
-
-/// Placements spread over orientations and distances by a low-discrepancy sequence.
-fn placement(i: u32) -> DAffine3 {
-    let part = |step: f64| (f64::from(i) * step).fract();
-    let rotation =
-        DQuat::from_xyzw(part(0.618) - 0.5, part(0.414) - 0.5, part(0.732) - 0.5, part(0.236) + 0.1);
-    let translation = DVec3::new(part(0.7549), part(0.5698), part(0.3247)) * 1.6 - 0.8;
-    DAffine3::from_rotation_translation(rotation.normalize(), translation)
-}
 
 #[test]
 fn swapping_negates_the_axis() {

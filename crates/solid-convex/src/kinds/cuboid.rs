@@ -42,4 +42,9 @@ impl Support for Cuboid {
     fn is_polytope(&self) -> bool {
         true
     }
+
+    fn half_edges(&self) -> Option<[DVec3; 3]> {
+        let DVec3 { x, y, z } = self.half;
+        Some([DVec3::X * x, DVec3::Y * y, DVec3::Z * z])
+    }
 }

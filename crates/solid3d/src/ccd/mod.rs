@@ -10,6 +10,9 @@
 //! function's linear bounds rather than of the box; a normal is looked at beside the axes; and the tolerance is relative to the
 //! size of the data.
 //!
+//! What passes is not looked at more closely: going on to 1e-12, in up to a thousand boxes more, excludes none of the 192 of 2,510 queries
+//! of the benchmark's hand-made set that come near and do not meet. They come nearer than rounding tells, and are for exact arithmetic.
+//!
 //! For whole meshes see [`query::time_of_impact_deforming`](crate::query::time_of_impact_deforming), which works with the distance of
 //! primitives instead.
 

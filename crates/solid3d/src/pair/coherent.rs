@@ -1,9 +1,9 @@
 //! The same two shapes, asked again and again: the table's answers, with what is kept from one question to the next.
 
 use solid_convex::gjk::{Coherent, Memory};
-use solid_convex::{Closest, Support};
+use solid_convex::{Closest, Penetration, Support};
 
-use super::{Placed, Scratch, closed_form, closest, intersects};
+use super::{Placed, Scratch, closed_form, closest, intersects, penetration};
 use crate::shape::Class;
 
 /// What [`intersects`] says, found faster. The memory must be of the same two shapes.
@@ -26,6 +26,20 @@ pub(crate) fn closest_again(a: Placed, b: Placed, memory: &mut Memory, scratch: 
         *memory = pair.memory();
         answer
     })
+}
+
+/// What [`penetration`] says within the same error, found faster. The memory must be of the same two shapes.
+pub(crate) fn penetration_again(
+    a: Placed,
+    b: Placed,
+    memory: &mut Memory,
+    scratch: &mut Scratch,
+) -> Option<Penetration> {
+    let Some((on_a, on_b)) = convex(a, b) else { return penetration(a, b, scratch) };
+    let mut pair = Coherent::with_memory(on_a, on_b, *memory);
+    let answer = pair.penetration(a.placement, b.placement);
+    *memory = pair.memory();
+    answer
 }
 
 fn convex<'a>(a: Placed<'a>, b: Placed<'a>) -> Option<(&'a dyn Support, &'a dyn Support)> {

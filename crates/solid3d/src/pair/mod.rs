@@ -36,7 +36,7 @@ use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
-pub(crate) use coherent::{closest_again, intersects_again};
+pub(crate) use coherent::{closest_again, intersects_again, penetration_again};
 pub(crate) use contact::contacts;
 pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};
 pub(crate) use curve::intersection_curve;

@@ -3,7 +3,7 @@
 use glam::DAffine3;
 use solid_convex::gjk::Memory;
 
-use super::{Distance, placed};
+use super::{Distance, Penetration, placed};
 use crate::error::Result;
 use crate::pair::{self, Scratch};
 use crate::shape::Shape;
@@ -54,5 +54,30 @@ impl PairCache {
         let Self { a, b, memory, scratch } = self;
         let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
         Ok(Distance::new(a, b, &pair::closest_again(a, b, memory, scratch)))
+    }
+
+    /// What [`penetration`](super::penetration) says, with the same error, but not always the same bits.
+    ///
+    /// ```
+    /// use solid3d::{Shape, query::PairCache, glam::{DAffine3, DVec3}};
+    /// let block = Shape::cuboid([1.0, 1.0, 1.0])?;
+    /// let mut pair = PairCache::new(&block, &block);
+    /// for frame in 0..30 {
+    ///     let moved = DAffine3::from_translation(DVec3::new(1.5 - 0.03 * f64::from(frame), 0.0, 0.0));
+    ///     let depth = pair.penetration(&DAffine3::IDENTITY, &moved)?.map(|found| found.depth);
+    ///     assert!(depth.is_none_or(|depth| (depth - (1.0 - moved.translation.x)).abs() < 1e-12));
+    ///     assert_eq!(depth.is_some(), moved.translation.x <= 1.0);
+    /// }
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn penetration(
+        &mut self,
+        placement_a: &DAffine3,
+        placement_b: &DAffine3,
+    ) -> Result<Option<Penetration>> {
+        let Self { a, b, memory, scratch } = self;
+        let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+        let found = pair::penetration_again(a, b, memory, scratch);
+        Ok(found.map(|found| Penetration::new(a, b, &found)))
     }
 }

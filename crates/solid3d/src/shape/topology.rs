@@ -19,6 +19,8 @@ pub(crate) struct Topology {
     /// The primitives at welded vertex `i` are `around[starts[i]..starts[i + 1]]`, ascending.
     starts: Vec<u32>,
     around: Vec<u32>,
+    /// Whether the surface around a welded vertex is flat, and without an edge there.
+    flat: Vec<bool>,
     /// 1 when the triangles of a closed mesh run around counter-clockwise seen from outside, -1 when clockwise, 0 when not closed.
     orientation: f64,
     /// The body that a closed convex mesh bounds, and which vertices its points are.
@@ -52,8 +54,10 @@ impl Topology {
                 next[corner] += 1;
             }
         }
-        let mut topology = Topology { welded, starts, around, orientation: 0.0, convex: None };
+        let mut topology =
+            Topology { welded, starts, around, flat: Vec::new(), orientation: 0.0, convex: None };
         if let Some(triangles) = triangles {
+            topology.flatten(vertices, triangles);
             topology.close(vertices, triangles);
         }
         topology
@@ -70,6 +74,11 @@ impl Topology {
         &self.around[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
+    /// Whether a primitive is a triangle whose surroundings are in its plane on all sides: such a surface has no other normal there.
+    pub fn is_flat(&self, corners: &[u32]) -> bool {
+        !self.flat.is_empty() && corners.iter().all(|&corner| self.flat[self.welded(corner) as usize])
+    }
+
     /// 1, -1 or 0; see the field.
     pub fn orientation(&self) -> f64 {
         self.orientation
@@ -78,6 +87,39 @@ impl Topology {
     /// The body that a closed convex mesh bounds, and which vertices its points are.
     pub fn convex(&self) -> Option<(&Hulled, &[u32])> {
         self.convex.as_ref().map(|(hull, vertices)| (hull, vertices.as_slice()))
+    }
+
+    /// Finds out where the surface is flat.
+    fn flatten(&mut self, vertices: &[DVec3], triangles: &[[u32; 3]]) {
+        let (mut before, mut after) = (Vec::new(), Vec::new());
+        let flat = (0u32..).zip(vertices).map(|(vertex, &here)| {
+            if self.welded(vertex) != vertex || self.around(vertex).is_empty() {
+                return false;
+            }
+            before.clear();
+            after.clear();
+            let mut plane = None;
+            for &triangle in self.around(vertex) {
+                let corners = triangles[triangle as usize].map(|i| self.welded(i));
+                // The triangle from this vertex on.
+                let Some(first) = corners.iter().position(|&corner| corner == vertex) else { return false };
+                let [next, last] = [1, 2].map(|step| corners[(first + step) % 3]);
+                after.push(next);
+                before.push(last);
+                let arms = [next, last].map(|corner| vertices[corner as usize] - here);
+                let across = arms[0].cross(arms[1]).normalize_or_zero();
+                let normal = *plane.get_or_insert(across);
+                let rises = |arm: &DVec3| normal.dot(*arm).abs() > FLATNESS * arm.length();
+                if normal.dot(across) <= 0.0 || arms.iter().any(rises) {
+                    return false;
+                }
+            }
+            // All around: what one triangle ends with another begins with.
+            before.sort_unstable();
+            after.sort_unstable();
+            before == after && before.windows(2).all(|pair| pair[0] != pair[1])
+        });
+        self.flat = flat.collect();
     }
 
     /// Finds out whether a mesh is closed, and convex.

@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::Convex;
-use solid_oracle::generate::{PlacementKind, random_placement};
+use solid_oracle::generate::{Pair, PlacementKind, Regime, random_pair, random_placement, seeded};
 use solid3d::{ComplexShapeBuilder, Shape, glam};
 
 /// A union of hulls of vertices, as the oracle sees it.
@@ -198,6 +198,22 @@ pub fn try_shape_of(convex: &Convex) -> solid3d::Result<Shape> {
         Convex::Cylinder { radius, half_height } => Shape::cylinder(*radius, 2.0 * half_height),
         Convex::Capsule { radius, half_height } => Shape::capsule(*radius, 2.0 * half_height),
         Convex::Hull { points } => Shape::convex_hull(points),
+    }
+}
+
+/// Random pairs of a regime, each with its number, as ours, and in words; without those that have a round shape without thickness.
+pub fn each_pair(
+    regime: Regime,
+    seed: u64,
+    count: usize,
+    mut judge: impl FnMut(usize, &Pair, [&Shape; 2], &str),
+) {
+    let mut rng = seeded(seed);
+    for i in 0..count {
+        let pair = random_pair(&mut rng, regime);
+        let (Ok(a), Ok(b)) = (try_shape_of(&pair.a), try_shape_of(&pair.b)) else { continue };
+        let context = format!("{regime:?}, seed {seed}, pair {i} ({} and {})", a.kind(), b.kind());
+        judge(i, &pair, [&a, &b], &context);
     }
 }
 

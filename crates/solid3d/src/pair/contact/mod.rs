@@ -239,17 +239,10 @@ impl Pair<'_> {
         Some(Meeting { normal, depth: -distance, on_a, on_b })
     }
 
-    /// The contacts of two bodies along their normal: of their faces, when one lies across it, else of their edges and corners.
+    /// The contacts of two bodies along their normal, the deepest point among them.
     fn touches(&self, a: &face::Placed, b: &face::Placed, meeting: &Meeting) -> Vec<Touch> {
         let Meeting { normal, depth, on_a, on_b } = *meeting;
-        let (mut face_a, mut face_b) = (a.face(-normal), b.face(normal));
-        let across = face_a.is_aligned() || face_b.is_aligned();
-        if !(across && face_a.is_faced()) {
-            face_a = face_a.slim(-normal);
-        }
-        if !(across && face_b.is_faced()) {
-            face_b = face_b.slim(normal);
-        }
+        let (face_a, face_b) = facing(a, b, normal);
         let mut touches = self.clipped(a, &face_a, b, &face_b, normal);
         let deepest = touches.iter().map(|touch| touch.depth).fold(f64::NEG_INFINITY, f64::max);
         if deepest < depth - SAME_DEPTH - DEPTH_ERROR * depth.abs() {
@@ -297,6 +290,19 @@ impl Pair<'_> {
         };
         corners.into_iter().filter_map(touch).collect()
     }
+}
+
+/// What of two bodies lies across a normal: their faces, when one is aligned with it, else their edges and corners.
+fn facing(a: &face::Placed, b: &face::Placed, normal: DVec3) -> (Face, Face) {
+    let (mut face_a, mut face_b) = (a.face(-normal), b.face(normal));
+    let across = face_a.is_aligned() || face_b.is_aligned();
+    if !(across && face_a.is_faced()) {
+        face_a = face_a.slim(-normal);
+    }
+    if !(across && face_b.is_faced()) {
+        face_b = face_b.slim(normal);
+    }
+    (face_a, face_b)
 }
 
 /// What a point within a face is of.

@@ -3,19 +3,24 @@
 //! A triangle in a surface is not alone: a box that slides over a floor is pushed up by each triangle under it, and by none of them aside,
 //! though aside may be the shortest way off that triangle. A normal is one of the surface when the part of the triangle that it touches
 //! is the highest along it of all that is around: the face always, an edge or a corner when the surface is convex there
-//! and the normal between those of the faces. Any other is replaced by the normal of the triangle.
+//! and the normal between those of the faces. Any other is replaced by the normal of the triangle, or by that of a face next to it that it
+//! shares an edge or a corner with, as a riser with the tread above it, where the way out along that is shorter.
+//!
+//! Where the surface is flat all around a triangle it has one normal only, and no penetration depth needs to be searched for.
 
 use std::ops::ControlFlow;
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::Support;
+use solid_convex::simd::level;
 
+use super::super::row::{Row, parted};
 use super::super::table::PlacedConvex;
-use super::super::{Scratch, complex_complex, complex_convex, table, triangle_triangle};
-use super::{Meeting, Pair, Part, Patch, Touch, face, plane_of};
+use super::super::{Scratch, complex_convex, table, triangle_triangle};
+use super::{Meeting, Pair, Part, Patch, Touch, face, facing, plane_of};
 use crate::shape::{Body, Complex};
-use crate::tree::pairs;
-use crate::triangle_triangle::Triangle;
+use crate::tree::{LeafPairs, bits, pairs_on};
 
 /// Heights along a normal that differ by less than this, in the unit of the pair, are the same.
 const LEVEL: f64 = 1e-9;
@@ -47,42 +52,42 @@ pub(super) fn soup_body(
     let (Part::Soup(complex), Part::Body(kind, support)) = (soup, body) else { return Vec::new() };
     let (placed_soup, placed_body) = if mirrored { (pair.b, pair.a) } else { (pair.a, pair.b) };
     let convex: PlacedConvex = (*support, placed_body.placement);
-    let (query, _) = complex_convex::convex_in_complex((complex, placed_soup.placement), convex);
     let [map_soup, map_body] =
         if mirrored { [pair.frame.common[1], pair.frame.common[0]] } else { pair.frame.common };
-    let query = query.inflated(pair.local_margin(usize::from(mirrored)));
     let body = face::Placed::new(kind, map_body);
-    let center = map_body.transform_point3(support.center());
-    let mut found = Vec::new();
-    let Scratch { traversal, primitive_tests, .. } = scratch;
-    let _ = complex.tree().overlapping(&query, traversal, |leaf| {
-        found.extend(leaf.iter().filter(|&&i| complex.primitive_bounds(i).overlaps(&query)));
-        ControlFlow::<()>::Continue(())
-    });
-    // In an order that does not depend on the tree.
-    found.sort_unstable();
-    *primitive_tests += found.len() as u64;
+    let other = Other { support: *support, map: map_body };
+    let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
     let patch = |primitive: u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
         let placed = face::Placed::new(&primitive_body, map_soup);
-        let side = Side { complex, primitive, body: placed, other: center };
-        let (meeting, primitives) = if mirrored {
-            (pair.meeting(*support, &hull, false)?, [0, primitive])
-        } else {
-            (pair.meeting(&hull, *support, false)?, [primitive, 0])
+        let side = Side { complex, primitive, body: placed, other };
+        let primitives = if mirrored { [0, primitive] } else { [primitive, 0] };
+        let over = |normal: DVec3| match mirrored {
+            true => pair.over(&body, &side.body, normal, false),
+            false => pair.over(&side.body, &body, -normal, true),
         };
-        let out = if mirrored { meeting.normal } else { -meeting.normal };
-        let corrected = side.corrected(out);
-        let touches = match corrected {
-            Corrected::Kept(_) if mirrored => {
-                pair.touches(&body, &side.body, &meeting.along(&corrected, 1.0))
+        let (out, touches) = match side.flat() {
+            Some(normal) => (normal, over(normal)),
+            None => {
+                let must = pair.margin == 0.0;
+                let meeting = match mirrored {
+                    true => pair.meeting(*support, &hull, must)?,
+                    false => pair.meeting(&hull, *support, must)?,
+                };
+                let corrected = side.corrected(if mirrored { meeting.normal } else { -meeting.normal });
+                let touches = match corrected {
+                    Corrected::Kept(_) if mirrored => {
+                        pair.touches(&body, &side.body, &meeting.along(&corrected, 1.0))
+                    }
+                    Corrected::Kept(_) => pair.touches(&side.body, &body, &meeting.along(&corrected, -1.0)),
+                    Corrected::Adopted(normal) if mirrored => pair.across(&body, &side.body, normal),
+                    Corrected::Adopted(normal) => pair.across(&side.body, &body, -normal),
+                    Corrected::Replaced(normal) => over(normal),
+                };
+                (corrected.normal(), touches)
             }
-            Corrected::Kept(_) => pair.touches(&side.body, &body, &meeting.along(&corrected, -1.0)),
-            Corrected::Replaced(normal) if mirrored => pair.over(&body, &side.body, normal, false),
-            Corrected::Replaced(normal) => pair.over(&side.body, &body, -normal, true),
         };
-        let out = corrected.normal();
         let is_inward = side.is_inward(out);
         (!touches.is_empty()).then_some(Patch {
             primitives,
@@ -94,10 +99,71 @@ pub(super) fn soup_body(
     found.into_iter().filter_map(patch).collect()
 }
 
-/// The placed corners of a primitive that is a triangle.
-fn corners(complex: &Complex, primitive: u32, map: &DAffine3) -> Option<Triangle> {
-    let corners = complex_complex::corners(complex, primitive)?;
-    Some(corners.map(|corner| map.transform_point3(corner)))
+/// The primitives of a soup that meet a body; with a margin, those whose boxes are as near. Ascending: in an order that does not
+/// depend on the tree.
+fn near_body(
+    pair: &Pair,
+    soup: (&Complex, &DAffine3),
+    body: PlacedConvex,
+    mirrored: bool,
+    scratch: &mut Scratch,
+) -> Vec<u32> {
+    let mut found = Vec::new();
+    if pair.margin == 0.0 {
+        let _ = complex_convex::meeting_primitives(soup, body, scratch, &mut |primitive, _| {
+            found.push(primitive);
+            ControlFlow::Continue(())
+        });
+    } else {
+        let (query, _) = complex_convex::convex_in_complex(soup, body);
+        let query = query.inflated(pair.local_margin(usize::from(mirrored)));
+        let Scratch { traversal, primitive_tests, .. } = scratch;
+        let _ = soup.0.tree().overlapping(&query, traversal, |leaf| {
+            found.extend(leaf.iter().filter(|&&i| soup.0.primitive_bounds(i).overlaps(&query)));
+            ControlFlow::<()>::Continue(())
+        });
+        *primitive_tests += found.len() as u64;
+    }
+    found.sort_unstable();
+    found
+}
+
+/// Looks for pairs of primitives that meet; with a margin, those whose boxes are as near.
+struct NearPairs<'s> {
+    soups: [&'s Complex; 2],
+    maps: &'s [DAffine3; 2],
+    margin: f64,
+    rows: &'s mut [Row; 2],
+    primitive_tests: &'s mut u64,
+    /// With whether they are known to meet.
+    found: Vec<([u32; 2], bool)>,
+}
+
+impl LeafPairs<()> for NearPairs<'_> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32]) -> ControlFlow<()> {
+        let [in_a, in_b] = &mut *self.rows;
+        in_a.place(simd, self.soups[0], leaf_a, &self.maps[0]);
+        in_b.place(simd, self.soups[1], leaf_b, &self.maps[1]);
+        for i in bits(in_a.overlapping(simd, &in_b.union(simd).inflated(self.margin))) {
+            let mut near = in_b.overlapping(simd, &in_a.bounds(i).inflated(self.margin));
+            *self.primitive_tests += u64::from(near.count_ones());
+            let x = in_a.triangle(i);
+            let triangles = if in_a.triangles() >> i & 1 == 1 { in_b.triangles() } else { 0 };
+            if self.margin == 0.0 && near & triangles != 0 {
+                near &= !(parted(simd, &x, in_b) & triangles);
+            }
+            for j in bits(near) {
+                // Of triangles it is decided exactly, as everywhere.
+                let known = triangles >> j & 1 == 1;
+                let meet = known && triangle_triangle::intersect(&x, &in_b.triangle(j));
+                if meet || !known || self.margin > 0.0 {
+                    self.found.push(([in_a.primitive(i), in_b.primitive(j)], meet));
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    }
 }
 
 /// The contacts of two soups.
@@ -106,41 +172,29 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     relative.slack_in_a += pair.local_margin(0);
     relative.slack_in_b += pair.local_margin(1);
     let [map_a, map_b] = pair.frame.common;
-    let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
-    let mut found: Vec<([u32; 2], bool)> = Vec::new();
-    let _ = pairs(a.tree(), b.tree(), &relative, traversal, |leaf_a, leaf_b| {
-        complex_complex::place(a, leaf_a, &map_a, in_a);
-        complex_complex::place(b, leaf_b, &map_b, in_b);
-        for x in &*in_a {
-            let reached = x.bounds.inflated(pair.margin);
-            for y in in_b.iter().filter(|y| reached.overlaps(&y.bounds)) {
-                // Of triangles it is decided exactly, as everywhere.
-                let [of_a, of_b] = [corners(a, x.primitive, &map_a), corners(b, y.primitive, &map_b)];
-                let meet = of_a.zip(of_b).map(|(x, y)| triangle_triangle::intersect(&x, &y));
-                if meet != Some(false) || pair.margin > 0.0 {
-                    found.push(([x.primitive, y.primitive], meet == Some(true)));
-                }
-            }
-        }
-        ControlFlow::<()>::Continue(())
-    });
+    let Scratch { traversal, rows, primitive_tests, .. } = scratch;
+    rows.iter_mut().for_each(Row::clear);
+    let (soups, maps, margin) = ([a, b], &pair.frame.common, pair.margin);
+    let mut near = NearPairs { soups, maps, margin, rows, primitive_tests, found: Vec::new() };
+    let _ = pairs_on(level(), a.tree(), b.tree(), &relative, traversal, &mut near);
+    let mut found = near.found;
     found.sort_unstable();
-    *primitive_tests += found.len() as u64;
     let patch = |(primitives, must): ([u32; 2], bool)| {
         let [i, j] = primitives;
         let (hull_a, hull_b) = (a.primitive_hull(i), b.primitive_hull(j));
         let meeting = pair.meeting(&hull_a, &hull_b, must)?;
-        let center =
-            |support: &dyn Support, of: usize| pair.frame.common[of].transform_point3(support.center());
         let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
         let (placed_a, placed_b) = (face::Placed::new(&body_a, map_a), face::Placed::new(&body_b, map_b));
-        let (center_a, center_b) = (center(&hull_a, 0), center(&hull_b, 1));
-        let of_a = Side { complex: a, primitive: i, body: placed_a, other: center_b };
-        let of_b = Side { complex: b, primitive: j, body: placed_b, other: center_a };
+        let (other_a, other_b) =
+            (Other { support: &hull_a, map: map_a }, Other { support: &hull_b, map: map_b });
+        let of_a = Side { complex: a, primitive: i, body: placed_a, other: other_b };
+        let of_b = Side { complex: b, primitive: j, body: placed_b, other: other_a };
         let (on_a, on_b) = (of_a.corrected(-meeting.normal), of_b.corrected(meeting.normal));
         let (normal, touches) = match (on_a, on_b) {
             (_, Corrected::Replaced(normal)) => (normal, pair.over(&of_a.body, &of_b.body, normal, false)),
             (Corrected::Replaced(normal), _) => (-normal, pair.over(&of_a.body, &of_b.body, -normal, true)),
+            (_, Corrected::Adopted(normal)) => (normal, pair.across(&of_a.body, &of_b.body, normal)),
+            (Corrected::Adopted(normal), _) => (-normal, pair.across(&of_a.body, &of_b.body, -normal)),
             (_, kept) => {
                 let meeting = meeting.along(&kept, 1.0);
                 (meeting.normal, pair.touches(&of_a.body, &of_b.body, &meeting))
@@ -172,6 +226,12 @@ impl Pair<'_> {
         self.margin / self.frame.stretch[of].least
     }
 
+    /// The contacts along a normal, given from `b` to `a`, that may not be that of the deepest point.
+    fn across(&self, a: &face::Placed, b: &face::Placed, normal: DVec3) -> Vec<Touch> {
+        let (face_a, face_b) = facing(a, b, normal);
+        self.clipped(a, &face_a, b, &face_b, normal)
+    }
+
     /// The contacts over a triangle along its own normal, given from `b` to `a`; `of_a` says whose it is.
     fn over(&self, a: &face::Placed, b: &face::Placed, normal: DVec3, of_a: bool) -> Vec<Touch> {
         let (mut face_a, mut face_b) = (a.face(-normal), b.face(normal));
@@ -191,13 +251,31 @@ impl Meeting {
     }
 }
 
-/// A primitive of a soup, and where the other is.
+/// What a primitive is in contact with, in the common frame.
+#[derive(Clone, Copy)]
+struct Other<'a> {
+    support: &'a dyn Support,
+    map: DAffine3,
+}
+
+impl Other<'_> {
+    fn center(&self) -> DVec3 {
+        self.map.transform_point3(self.support.center())
+    }
+
+    /// How far it reaches along a direction.
+    fn greatest(&self, direction: DVec3) -> f64 {
+        let furthest = self.support.support(self.map.matrix3.transpose() * direction);
+        direction.dot(self.map.transform_point3(furthest))
+    }
+}
+
+/// A primitive of a soup, and what it is in contact with.
 struct Side<'a> {
     complex: &'a Complex,
     primitive: u32,
     body: face::Placed<'a>,
-    /// The middle of the other. Space: common.
-    other: DVec3,
+    other: Other<'a>,
 }
 
 /// A normal out of a primitive.
@@ -205,6 +283,8 @@ struct Side<'a> {
 enum Corrected {
     /// One that the surface has.
     Kept(DVec3),
+    /// That of a face next to it, in place of another.
+    Adopted(DVec3),
     /// That of the triangle, in place of another.
     Replaced(DVec3),
 }
@@ -212,7 +292,7 @@ enum Corrected {
 impl Corrected {
     fn normal(&self) -> DVec3 {
         match *self {
-            Corrected::Kept(normal) | Corrected::Replaced(normal) => normal,
+            Corrected::Kept(normal) | Corrected::Adopted(normal) | Corrected::Replaced(normal) => normal,
         }
     }
 }
@@ -228,21 +308,68 @@ impl Side<'_> {
         if self.is_of_the_surface(out) {
             return Corrected::Kept(out);
         }
-        let first = self.complex.primitive(self.primitive)[0];
-        let corner = self.body.map.transform_point3(self.complex.vertices()[first as usize]);
         let side = if self.orientation() != 0.0 {
             self.orientation()
         } else if cosine.abs() > SIDE_COSINE {
             cosine
         } else {
-            normal.dot(self.other - corner)
+            normal.dot(self.other.center() - self.corner(0))
         };
-        Corrected::Replaced(normal * side.signum())
+        let own = normal * side.signum();
+        self.shorter_around(own).map_or(Corrected::Replaced(own), Corrected::Adopted)
     }
 
-    /// The normal of a triangle, by its order.
+    /// The normal of a triangle with a flat surface around it, to the side on which the way out is shorter.
+    fn flat(&self) -> Option<DVec3> {
+        let corners = self.complex.primitive(self.primitive);
+        let normal = self.complex.topology().is_flat(corners).then(|| self.plane())??;
+        Some(if self.depth(normal) <= self.depth(-normal) { normal } else { -normal })
+    }
+
+    /// The normal of a face next to the primitive that the surface has at the primitive, too, when the way out along it is shorter
+    /// than along the primitive's own: that of the shortest.
+    fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
+        let topology = self.complex.topology();
+        let orientation = self.orientation();
+        let (mut least, mut best) = (self.depth(own) - LEVEL, None);
+        for &corner in self.complex.primitive(self.primitive) {
+            for &neighbour in topology.around(corner) {
+                let Some(normal) = self.plane_of(neighbour) else { continue };
+                if normal.dot(own).abs() > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL {
+                    continue;
+                }
+                for out in [normal, -normal].into_iter().filter(|out| orientation * normal.dot(*out) >= 0.0) {
+                    let depth = self.depth(out);
+                    if depth < least && self.is_of_the_surface(out) {
+                        (least, best) = (depth, Some(out));
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// How far the other reaches back behind what of the primitive is furthest along a normal.
+    fn depth(&self, out: DVec3) -> f64 {
+        let count = self.complex.primitive(self.primitive).len();
+        let heights = (0..count).map(|i| out.dot(self.corner(i)));
+        heights.fold(f64::NEG_INFINITY, f64::max) + self.other.greatest(-out)
+    }
+
+    /// A corner of the primitive. Space: common.
+    fn corner(&self, corner: usize) -> DVec3 {
+        let vertex = self.complex.primitive(self.primitive)[corner];
+        self.body.map.transform_point3(self.complex.vertices()[vertex as usize])
+    }
+
+    /// The normal of the primitive when it is a triangle, by its order.
     fn plane(&self) -> Option<DVec3> {
-        let &[i, j, k] = self.complex.primitive(self.primitive) else { return None };
+        self.plane_of(self.primitive)
+    }
+
+    /// The same of any primitive.
+    fn plane_of(&self, primitive: u32) -> Option<DVec3> {
+        let &[i, j, k] = self.complex.primitive(primitive) else { return None };
         plane_of(&self.body.map, [i, j, k].map(|i| self.complex.vertices()[i as usize]))
     }
 
