@@ -45,6 +45,7 @@ pub(crate) struct Difference<'a, A: ?Sized, B: ?Sized> {
 pub(crate) const SUPPORT_ERROR: f64 = 64.0 / (1u64 << 53) as f64;
 
 impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
+    #[inline]
     pub fn new(a: &'a A, placement_a: &DAffine3, b: &'a B, placement_b: &DAffine3) -> Self {
         let offset = placement_b.translation - placement_a.translation;
         let size = extent(&placement_a.matrix3, a.reach())
@@ -59,13 +60,29 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
     /// Theorem 4.7 for each of the two objects.
     #[inline]
     pub fn support_against(&self, v: DVec3) -> SupportPoint {
-        let a = self.a.support(self.linear_a.mul_transpose_vec3(-v));
-        let b = self.b.support(self.linear_b.mul_transpose_vec3(v));
+        self.point_against(v, |d| self.a.support(d), |d| self.b.support(d))
+    }
+
+    /// The same with support mappings of the objects that are inlined.
+    #[inline(always)]
+    pub fn point_against(
+        &self,
+        v: DVec3,
+        support_a: impl Fn(DVec3) -> DVec3,
+        support_b: impl Fn(DVec3) -> DVec3,
+    ) -> SupportPoint {
+        let a = support_a(self.linear_a.mul_transpose_vec3(-v));
+        let b = support_b(self.linear_b.mul_transpose_vec3(v));
         self.point(a, b)
     }
 
+    /// The objects.
+    pub fn objects(&self) -> (&'a A, &'a B) {
+        (self.a, self.b)
+    }
+
     /// The point of the difference that a point of each object makes.
-    #[inline]
+    #[inline(always)]
     pub fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
         SupportPoint { w: self.linear_a * a - (self.linear_b * b + self.offset), a, b }
     }
@@ -114,6 +131,7 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
 }
 
 /// The largest coordinate of the image of a box of half extents `reach`.
+#[inline]
 fn extent(linear: &DMat3, reach: DVec3) -> f64 {
     let DMat3 { x_axis, y_axis, z_axis } = *linear;
     (x_axis.abs() * reach.x + y_axis.abs() * reach.y + z_axis.abs() * reach.z).max_element()

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::Support;
+use crate::{Polytope, Support};
 
 /// A placement turns balls into balls when its axes are as long as each other and at right angles up to this, relative to their
 /// length squared: what is left of a rotation and a scale when it is rounded. It is within the error that depths and distances
@@ -53,6 +53,11 @@ impl<S: Support + ?Sized> Support for Core<'_, S> {
 
     fn is_polytope(&self) -> bool {
         self.scale.is_some() || self.object.is_polytope()
+    }
+
+    fn as_polytope(&self) -> Option<&Polytope> {
+        // None is rounded.
+        self.object.as_polytope()
     }
 }
 

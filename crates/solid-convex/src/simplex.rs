@@ -62,7 +62,7 @@ const CLEARLY_INSIDE: f64 = 1e-6;
 
 /// A bound on the error of six times a volume as the sum of four triple products, and of each of these: coordinates are below 4,
 /// so that each of the 24 products of three is below 64, and takes part in less than 12 roundings of 2^-53.
-const VOLUME_ERROR: f64 = 24.0 * 64.0 * 12.0 / (1u64 << 53) as f64;
+pub(crate) const VOLUME_ERROR: f64 = 24.0 * 64.0 * 12.0 / (1u64 << 53) as f64;
 
 /// The square of the sine of the angle between two edges, beyond which their product is as good a normal as that of the two
 /// shortest edges: none of the three edges is then less than a quarter of the shorter of the two.
@@ -73,6 +73,13 @@ impl Simplex {
     pub fn new() -> Self {
         let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
         Simplex { slots: [zero; 4], members: Members { slots: [0; 4], len: 0, barycentric: [0.0; 4] } }
+    }
+
+    /// Up to four points, the oldest first; not reduced.
+    pub fn of(points: &[SupportPoint]) -> Self {
+        let mut simplex = Simplex::new();
+        points.iter().for_each(|p| simplex.push(*p));
+        simplex
     }
 
     /// The support points, the oldest first.
@@ -174,17 +181,10 @@ impl Simplex {
 
     fn edge(&self, [i, j]: [usize; 2]) -> Feature {
         let (p, q) = (self.w(i), self.w(j));
-        let pq = q - p;
-        let (from_p, from_q) = (-p.dot(pq), q.dot(pq));
-        if from_p <= 0.0 {
-            return self.vertex(i);
+        match within_edge([p, q]) {
+            Ok((v, [x, y])) => Feature { v, indices: [i, j, 0], weights: [x, y, 0.0], len: 2 },
+            Err(end) => self.vertex([i, j][end]),
         }
-        if from_q <= 0.0 {
-            return self.vertex(j);
-        }
-        let t = from_p / pq.length_squared();
-        let v = perpendicular(if p.length_squared() <= q.length_squared() { p } else { q }, pq);
-        Feature { v, indices: [i, j, 0], weights: [1.0 - t, t, 0.0], len: 2 }
     }
 
     /// The closest point of a face whose last point is the newest.
@@ -193,24 +193,16 @@ impl Simplex {
         // those of the others, and still its sign decides.
         let around = [[i, j, k], [j, k, i], [k, i, j]][self.nearest_of([i, j, k])];
         let [p, q, r] = around.map(|i| self.w(i));
-        let (pq, pr) = (q - p, r - p);
-        let n = pq.cross(pr);
-        let n_squared = n.length_squared();
-        if n_squared > SLIVER_SINE_SQUARED * pq.length_squared() * pr.length_squared() {
-            // -p = y pq + z pr + an offset along n; all times n^2.
-            let across = p.cross(n);
-            let (y, z) = (pr.dot(across), -pq.dot(across));
-            let x = n_squared - y - z;
-            if x > 0.0 && y > 0.0 && z > 0.0 {
-                let inverse = 1.0 / n_squared;
-                let weights = [x * inverse, y * inverse, z * inverse];
-                return Feature { v: n * (n.dot(p) * inverse), indices: around, weights, len: 3 };
-            }
-        } else {
-            let weights = weights([p, q, r], 1.0, DVec3::ZERO);
-            if weights.iter().all(|&weight| weight > 0.0) {
-                let n = normal([pq, r - q, -pr]);
-                return Feature { v: n * (n.dot(p) / n.length_squared()), indices: around, weights, len: 3 };
+        match within_face([p, q, r]) {
+            Within::Face(v, weights) => return Feature { v, indices: around, weights, len: 3 },
+            Within::Outside => {}
+            Within::Sliver => {
+                let weights = weights([p, q, r], 1.0, DVec3::ZERO);
+                if weights.iter().all(|&weight| weight > 0.0) {
+                    let n = normal([q - p, r - q, p - r]);
+                    let v = n * (n.dot(p) / n.length_squared());
+                    return Feature { v, indices: around, weights, len: 3 };
+                }
             }
         }
         // The newest point is part of the result (Theorem 4.8), whatever the weights of a sliver say.
@@ -220,15 +212,8 @@ impl Simplex {
     /// On which side of each of the [`FACES`] the origin is, six times the volume it makes with the face: positive inside,
     /// with exact signs. `None` for a flat tetrahedron.
     fn sides_of_origin(&self) -> Option<[f64; 4]> {
-        let [p, q, r, s] = [0, 1, 2, 3].map(|i| self.w(i));
-        let parts = [-p.cross(q).dot(s), -q.cross(r).dot(s), -r.cross(p).dot(s), p.cross(q).dot(r)];
-        let volume = parts[0] + parts[1] + parts[2] + parts[3];
-        // The least magnitude, for a single branch that is nearly always taken.
-        let least = parts.iter().fold(volume.abs(), |least, part| least.min(part.abs()));
-        if least > VOLUME_ERROR {
-            return Some(parts.map(|part| part * volume.signum()));
-        }
-        self.exact_sides_of_origin()
+        let (sides, least) = sides_of_origin([0, 1, 2, 3].map(|i| self.w(i)));
+        if least > VOLUME_ERROR { Some(sides) } else { self.exact_sides_of_origin() }
     }
 
     #[cold]
@@ -298,6 +283,66 @@ impl Simplex {
             .or_else(|| closest(newest().map(|(face, _)| self.face(face))))
             .unwrap_or_else(|| self.vertex(3))
     }
+}
+
+/// The point of an edge closest to the origin, with the weights of its ends; or the end that it is at, 0 or 1.
+#[inline]
+pub(crate) fn within_edge([p, q]: [DVec3; 2]) -> Result<(DVec3, [f64; 2]), usize> {
+    let pq = q - p;
+    let (from_p, from_q) = (-p.dot(pq), q.dot(pq));
+    if from_p <= 0.0 {
+        return Err(0);
+    }
+    if from_q <= 0.0 {
+        return Err(1);
+    }
+    let t = from_p / pq.length_squared();
+    let v = perpendicular(if p.length_squared() <= q.length_squared() { p } else { q }, pq);
+    Ok((v, [1.0 - t, t]))
+}
+
+/// Where the closest point of a face is.
+pub(crate) enum Within {
+    /// Inside of it: the point, and the weights of the corners.
+    Face(DVec3, [f64; 3]),
+    /// Not inside of it.
+    Outside,
+    /// Not known: the face is too thin for the usual means.
+    Sliver,
+}
+
+/// The point of a face closest to the origin, to which its first corner should be the nearest.
+#[inline]
+pub(crate) fn within_face([p, q, r]: [DVec3; 3]) -> Within {
+    let (pq, pr) = (q - p, r - p);
+    let n = pq.cross(pr);
+    let n_squared = n.length_squared();
+    if n_squared <= SLIVER_SINE_SQUARED * pq.length_squared() * pr.length_squared() {
+        return Within::Sliver;
+    }
+    // -p = y pq + z pr + an offset along n; all times n^2.
+    let across = p.cross(n);
+    let (y, z) = (pr.dot(across), -pq.dot(across));
+    let x = n_squared - y - z;
+    if x > 0.0 && y > 0.0 && z > 0.0 {
+        let inverse = 1.0 / n_squared;
+        Within::Face(n * (n.dot(p) * inverse), [x * inverse, y * inverse, z * inverse])
+    } else {
+        Within::Outside
+    }
+}
+
+/// On which side of each of the [`FACES`] of a tetrahedron the origin is, and the least magnitude of these and of the volume: for a
+/// single branch. When it is more than [`VOLUME_ERROR`], all signs are right.
+#[inline(always)]
+pub(crate) fn sides_of_origin([p, q, r, s]: [DVec3; 4]) -> ([f64; 4], f64) {
+    let (pq, qr, rp) = (p.cross(q), q.cross(r), r.cross(p));
+    let parts = [-pq.dot(s), -qr.dot(s), -rp.dot(s), pq.dot(r)];
+    let volume = parts[0] + parts[1] + parts[2] + parts[3];
+    let sign = 1f64.copysign(volume);
+    let [a, b, c, d] = parts;
+    let least = a.abs().min(b.abs()).min(c.abs().min(d.abs())).min(volume.abs());
+    ([a * sign, b * sign, c * sign, d * sign], least)
 }
 
 /// The point closest to the origin on the line through `p` along `edge`. `p` should be the nearer end of the edge, whose

@@ -1,6 +1,8 @@
 //! The support mapping.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+
+use crate::Polytope;
 
 /// A convex object, known by its support mapping. Space: the object's own.
 ///
@@ -30,6 +32,18 @@ pub trait Support: Send + Sync {
         None
     }
 
+    /// The least and the greatest coordinates of its image under a linear map, up to rounding: by six support points, where there
+    /// is nothing better.
+    fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
+        bounds_by_supports(self, linear)
+    }
+
+    /// The object as a polytope that is laid out for speed, if it is one: a search then finds its support points without a call.
+    /// They must be those that [`support`](Support::support) gives.
+    fn as_polytope(&self) -> Option<&Polytope> {
+        None
+    }
+
     /// The object is all that is within this distance of its core; 0 for one that is its own core.
     fn core_radius(&self) -> f64 {
         0.0
@@ -39,6 +53,17 @@ pub trait Support: Send + Sync {
     fn core_support(&self, direction: DVec3) -> DVec3 {
         self.support(direction)
     }
+}
+
+/// The least and the greatest coordinates of the image of an object under a linear map, by six support points.
+pub(crate) fn bounds_by_supports<S: Support + ?Sized>(object: &S, linear: &DMat3) -> [DVec3; 2] {
+    let transposed = linear.transpose();
+    let furthest = |axis: DVec3| axis.dot(linear.mul_vec3(object.support(transposed * axis)));
+    let along = |sign: f64| {
+        let (x, y, z) = (DVec3::X * sign, DVec3::Y * sign, DVec3::Z * sign);
+        sign * DVec3::new(furthest(x), furthest(y), furthest(z))
+    };
+    [along(-1.0), along(1.0)]
 }
 
 /// `-magnitude` for negative `sign`, else `magnitude`: the thesis's sgn, which is 1 at 0.

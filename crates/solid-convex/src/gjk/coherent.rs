@@ -2,11 +2,13 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::descent::{End, Goal, descend, descend_from};
-use super::distance::DISTANCE_TOLERANCE;
-use super::{Closest, Witness, closest_points, separates};
-use crate::difference::Difference;
-use crate::simplex::{Reduced, Simplex};
+use super::descent::{End, Goal, descend_robustly};
+use super::distance::{Measure, Measured, measure};
+use super::intersection::clearly_separates;
+use super::lean::{self, Lean, Search, Sure, Task};
+use super::{Closest, Witness, closest_points};
+use crate::difference::{Difference, SupportPoint};
+use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
 use crate::{Support, epa};
 
 /// Two convex objects about which the same is asked frame after frame, as they move a little: what was found last is tried
@@ -48,9 +50,9 @@ pub struct Memory {
 
 /// A point of each object, each in its local space.
 #[derive(Clone, Copy, Debug, Default)]
-struct Pair {
-    a: DVec3,
-    b: DVec3,
+pub(super) struct Pair {
+    pub a: DVec3,
+    pub b: DVec3,
 }
 
 impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
@@ -73,7 +75,30 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
     /// [`Separated`](super::Outcome::Separated). Cost: while the axis that separated them does, one support point of each; while the
     /// four pairs of points that showed an overlap do, none.
     pub fn intersects(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> bool {
-        self.common_simplex(placement_a, placement_b).is_some()
+        let found = lean::run(self.a, placement_a, self.b, placement_b, Again { memory: &self.memory });
+        let lean = match found {
+            Found::Separated => return false,
+            Found::Inside => return true,
+            Found::Unknown => None,
+            Found::Anew(lean) => Some(lean),
+        };
+        match lean {
+            Some(lean) if matches!(lean.sure, Sure::Separated | Sure::Inside) => {
+                self.memory.keep(lean.sure == Sure::Separated, lean.v, lean.points());
+                lean.sure == Sure::Inside
+            }
+            _ => self.intersects_robustly(&Difference::new(self.a, placement_a, self.b, placement_b)),
+        }
+    }
+
+    #[cold]
+    fn intersects_robustly(&mut self, difference: &Difference<A, B>) -> bool {
+        if self.memory.len == 4 && self.tetrahedron(difference).is_some() {
+            return true;
+        }
+        let descent = descend_robustly(difference, Goal::Separation);
+        self.memory.keep(descent.end == End::Separated, descent.v, descent.simplex.points());
+        descent.end != End::Separated
     }
 
     /// How deep they are in each other, as [`epa::penetration`] within the same error; `None` exactly when that says so. Cost: while
@@ -98,53 +123,33 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
         placement_a: &DAffine3,
         placement_b: &DAffine3,
     ) -> Option<epa::Penetration> {
-        let simplex = self.common_simplex(placement_a, placement_b)?;
-        Some(epa::penetration_from(self.a, placement_a, self.b, placement_b, &simplex))
-    }
-
-    /// The simplex that shows that they intersect, or touch; `None` when they do not.
-    fn common_simplex(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Option<Simplex> {
-        let Memory { axis, len, .. } = self.memory;
-        if axis != DVec3::ZERO && separates(axis, self.a, placement_a, self.b, placement_b) {
+        if !self.intersects(placement_a, placement_b) {
             return None;
         }
         let difference = Difference::new(self.a, placement_a, self.b, placement_b);
-        if let Some(simplex) = (len == 4).then(|| self.tetrahedron(&difference)).flatten() {
-            return Some(simplex);
-        }
-        let descent = descend(&difference, Goal::Separation);
-        self.memory.keep(descent.end, descent.v, &descent.simplex);
-        (descent.end != End::Separated).then_some(descent.simplex)
+        let kept = (self.memory.len == 4).then(|| self.tetrahedron(&difference)).flatten();
+        let simplex = kept.unwrap_or_else(|| descend_robustly(&difference, Goal::Separation).simplex);
+        Some(epa::penetration_from(self.a, placement_a, self.b, placement_b, &simplex))
     }
 
     /// The closest points, as [`closest_points`](super::closest_points) within the same error. Cost: where the points lie on the same
     /// features as before, two support points of each object.
     pub fn closest_points(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Closest {
-        let difference = Difference::new(self.a, placement_a, self.b, placement_b);
-        if let Some(simplex) = (self.memory.len == 4).then(|| self.tetrahedron(&difference)).flatten() {
-            return Closest { distance: 0.0, points: Witness::of(&simplex) };
-        }
         if self.a.core_radius() + self.b.core_radius() > 0.0 {
             // The cores, which are not what is kept, are as fast from scratch.
             return closest_points(self.a, placement_a, self.b, placement_b);
         }
-        let mut simplex = Simplex::new();
-        let mut v = None;
-        let nearest = if self.memory.len < 4 { usize::from(self.memory.len) } else { 0 };
-        for pair in &self.memory.pairs[..nearest] {
-            let p = difference.point(pair.a, pair.b);
-            if simplex.contains(&p) {
-                continue;
-            }
-            simplex.push(p);
-            if let Reduced::Closest(closest) = simplex.reduce() {
-                v = Some(closest);
+        if self.memory.len == 4 {
+            let difference = Difference::new(self.a, placement_a, self.b, placement_b);
+            if let Some(simplex) = self.tetrahedron(&difference) {
+                return Closest { distance: 0.0, points: Witness::of(&simplex) };
             }
         }
-        let start = v.filter(|v| v.is_finite() && *v != DVec3::ZERO).map(|v| (simplex, v));
-        let descent = descend_from(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE }, start);
-        self.memory.keep(descent.end, descent.v, &descent.simplex);
-        Closest::of(&descent, &difference)
+        let task = Measure { bound: f64::INFINITY, warm: self.memory.nearest() };
+        let found = measure(self.a, placement_a, self.b, placement_b, task);
+        let Measured { closest, v, points, len } = found.expect("every distance is finite");
+        self.memory.keep(closest.distance > 0.0, v, &points[..len]);
+        closest
     }
 
     /// The tetrahedron of the four kept pairs, when it still contains the origin: then no axis separates the objects.
@@ -158,12 +163,62 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
 }
 
 impl Memory {
-    fn keep(&mut self, end: End, v: DVec3, simplex: &Simplex) {
-        self.axis = if end == End::Separated { v.normalize_or_zero() } else { DVec3::ZERO };
+    fn keep<'p>(&mut self, separated: bool, v: DVec3, points: impl IntoIterator<Item = &'p SupportPoint>) {
+        self.axis = if separated { v.normalize_or_zero() } else { DVec3::ZERO };
         self.len = 0;
-        for p in simplex.points() {
-            self.pairs[usize::from(self.len)] = Pair { a: p.a, b: p.b };
+        for (pair, p) in self.pairs.iter_mut().zip(points) {
+            *pair = Pair { a: p.a, b: p.b };
             self.len += 1;
         }
+    }
+
+    /// The pairs between which the closest point was.
+    fn nearest(&self) -> &[Pair] {
+        let len = if self.len < 4 { self.len } else { 0 };
+        &self.pairs[..usize::from(len)]
+    }
+}
+
+/// Whether two objects intersect, by what is kept of them, else from scratch.
+struct Again<'m> {
+    memory: &'m Memory,
+}
+
+/// What [`Again`] found.
+#[expect(clippy::large_enum_variant, reason = "it is looked at where it is made, and never stored")]
+enum Found {
+    /// The kept axis clearly separates them.
+    Separated,
+    /// The kept tetrahedron contains the origin.
+    Inside,
+    /// The kept tetrahedron is too close to tell.
+    Unknown,
+    /// What is kept is of no use any more.
+    Anew(Lean),
+}
+
+impl Task for Again<'_> {
+    type Found = Found;
+
+    #[inline(always)]
+    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Found
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let Memory { axis, pairs, len } = self.memory;
+        if *axis != DVec3::ZERO && clearly_separates(*axis, against(*axis).w) {
+            return Found::Separated;
+        }
+        if *len == 4 {
+            let (sides, least) = sides_of_origin(pairs.map(|pair| difference.point(pair.a, pair.b).w));
+            if least <= VOLUME_ERROR {
+                return Found::Unknown;
+            }
+            if sides.iter().all(|&side| side > 0.0) {
+                return Found::Inside;
+            }
+        }
+        Found::Anew(Search { goal: Goal::Separation, warm: &[] }.run(difference, against))
     }
 }

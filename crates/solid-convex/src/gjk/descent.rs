@@ -2,8 +2,10 @@
 
 use glam::DVec3;
 
+use super::lean::{self, Lean, Search, Sure};
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
+use crate::simd;
 use crate::simplex::{Reduced, Simplex, normal, perpendicular};
 
 /// When a descent may stop.
@@ -65,26 +67,40 @@ const BOUND_MARGIN: f64 = 2.0 * SUPPORT_ERROR;
 /// How often a descent may restart from a recomputed normal: each time it must find a new support point.
 const REFINEMENTS_MAX: usize = 8;
 
-/// Runs a descent. `v` starts along the initial direction; the objects' own support points take over from there.
+/// Runs a descent: the lean one, and where that is not sure the robust one.
 pub(crate) fn descend<A, B>(difference: &Difference<A, B>, goal: Goal) -> Descent
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    descend_from(difference, goal, None)
+    let lean = lean::run_on(simd::level(), difference, Search { goal, warm: &[] });
+    finished(&lean, goal).unwrap_or_else(|| descend_robustly(difference, goal))
 }
 
-/// Runs a descent from a simplex in the difference and a point of its hull near the origin, or from none.
-pub(super) fn descend_from<A, B>(
-    difference: &Difference<A, B>,
-    goal: Goal,
-    start: Option<(Simplex, DVec3)>,
-) -> Descent
+/// What a lean descent was sure of, as the robust descent would leave it.
+fn finished(lean: &Lean, goal: Goal) -> Option<Descent> {
+    let mut simplex = lean.simplex();
+    let (end, v) = match lean.sure {
+        Sure::Nothing => return None,
+        Sure::Separated | Sure::Beyond => (End::Separated, lean.v),
+        Sure::Inside => simplex.reduce_if_inside().then_some((End::Inside, DVec3::ZERO))?,
+        Sure::Near(mu) => match simplex.reduce() {
+            // Measured again by more careful means.
+            Reduced::Closest(v) if goal.is_within_tolerance(v.length(), mu) => (End::Separated, v),
+            _ => return None,
+        },
+    };
+    Some(Descent { end, v, simplex, beyond: lean.sure == Sure::Beyond })
+}
+
+/// Runs the robust descent. `v` starts along the initial direction; the objects' own support points take over from there.
+#[cold]
+pub(super) fn descend_robustly<A, B>(difference: &Difference<A, B>, goal: Goal) -> Descent
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    descend_within(difference, goal, start, ITERATIONS_MAX)
+    descend_within(difference, goal, ITERATIONS_MAX)
 }
 
 /// Runs a descent of at most so many iterations. One that has to stop is undecided, whatever the objects do: it claims
@@ -92,7 +108,6 @@ where
 pub(super) fn descend_within<A, B>(
     difference: &Difference<A, B>,
     goal: Goal,
-    start: Option<(Simplex, DVec3)>,
     iterations_max: usize,
 ) -> Descent
 where
@@ -101,7 +116,7 @@ where
 {
     // v: the point of conv(W) closest to the origin; w: a support point of A - B against v; W: `simplex`;
     // mu: the greatest lower bound of the distance so far.
-    let (mut simplex, mut v) = start.unwrap_or_else(|| (Simplex::new(), difference.initial_direction()));
+    let (mut simplex, mut v) = (Simplex::new(), difference.initial_direction());
     let mut mu = 0.0;
     let mut refinements = 0;
     for _ in 0..iterations_max {
@@ -158,22 +173,32 @@ where
 impl Goal {
     /// Whether the support point `p` against `v` ends the search; keeps the lower bound of the distance.
     fn reached(self, v: DVec3, p: &SupportPoint, mu: &mut f64, v_in_difference: bool) -> bool {
-        let mut near_enough = |tolerance: f64| {
+        let mut near_enough = || {
             let length = v.length();
             if certifies(v, p.w) {
                 *mu = mu.max(v.dot(p.w) / length);
             }
-            v_in_difference && *mu > 0.0 && length - *mu <= tolerance * length
+            v_in_difference && *mu > 0.0 && self.is_within_tolerance(length, *mu)
         };
         match self {
             Goal::Separation => certifies(v, p.w),
-            Goal::Distance { tolerance } => near_enough(tolerance),
-            Goal::DistanceWithin { tolerance, .. } => near_enough(tolerance) || self.is_exceeded(*mu),
+            Goal::Distance { .. } => near_enough(),
+            Goal::DistanceWithin { .. } => near_enough() || self.is_exceeded(*mu),
+        }
+    }
+
+    /// Whether a distance is known well enough, by a lower bound of it.
+    pub(super) fn is_within_tolerance(self, length: f64, mu: f64) -> bool {
+        match self {
+            Goal::Separation => true,
+            Goal::Distance { tolerance } | Goal::DistanceWithin { tolerance, .. } => {
+                length - mu <= tolerance * length
+            }
         }
     }
 
     /// Whether a lower bound of the distance is more than was asked for.
-    fn is_exceeded(self, mu: f64) -> bool {
+    pub(super) fn is_exceeded(self, mu: f64) -> bool {
         matches!(self, Goal::DistanceWithin { bound, .. } if mu > bound + BOUND_MARGIN)
     }
 }

@@ -1,11 +1,13 @@
 //! Distance and closest points: Algorithm 4.1 of the thesis.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use super::Witness;
-use super::descent::{Descent, End, Goal, descend};
+use super::coherent::Pair;
+use super::descent::{Descent, End, Goal, descend_robustly};
+use super::lean::{self, Lean, Search, Sure, Task};
 use crate::Support;
-use crate::difference::Difference;
+use crate::difference::{Difference, SupportPoint};
 use crate::rounded::Core;
 
 /// The closest points of two placed convex objects.
@@ -41,13 +43,8 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
-    if core_a.radius() + core_b.radius() > 0.0 {
-        return of_rounded((&core_a, placement_a), (&core_b, placement_b));
-    }
-    let difference = Difference::new(a, placement_a, b, placement_b);
-    let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
-    Closest::of(&descent, &difference)
+    let closest = closest_points_within(a, placement_a, b, placement_b, f64::INFINITY);
+    closest.expect("every distance is finite")
 }
 
 /// The closest points of two placed convex objects, if they are at most `bound` apart, in world units; `None` if they are further.
@@ -77,14 +74,101 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let difference = Difference::new(a, placement_a, b, placement_b);
-    let goal = Goal::DistanceWithin { tolerance: DISTANCE_TOLERANCE, bound: bound * difference.scale() };
-    let descent = descend(&difference, goal);
+    let closest = if a.core_radius() + b.core_radius() == 0.0 {
+        measure(a, placement_a, b, placement_b, Measure { bound, warm: &[] })?.closest
+    } else {
+        let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
+        of_rounded((&core_a, placement_a), (&core_b, placement_b), bound)?
+    };
+    (closest.distance <= bound).then_some(closest)
+}
+
+/// The closest points are sought, up to a bound in world units; from what is known of them.
+pub(super) struct Measure<'w> {
+    pub bound: f64,
+    /// As for [`Search`].
+    pub warm: &'w [Pair],
+}
+
+impl Measure<'_> {
+    fn goal(&self, scale: f64) -> Goal {
+        Goal::DistanceWithin { tolerance: DISTANCE_TOLERANCE, bound: self.bound * scale }
+    }
+}
+
+impl Task for Measure<'_> {
+    type Found = (Lean, f64);
+
+    #[inline(always)]
+    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> (Lean, f64)
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let goal = self.goal(difference.scale());
+        (Search { goal, warm: self.warm }.run(difference, against), difference.scale())
+    }
+}
+
+/// What measuring gave: with the points of the difference between which the closest one is, up to three, or four that have the origin
+/// between them.
+pub(super) struct Measured {
+    pub closest: Closest,
+    /// From the closest point of `B` to that of `A`, in the difference's unit; zero when they meet.
+    pub v: DVec3,
+    pub points: [SupportPoint; 4],
+    pub len: usize,
+}
+
+/// The closest points of two placed objects; `None` when they are further apart than the bound.
+#[inline]
+pub(super) fn measure<A, B>(
+    a: &A,
+    placement_a: &DAffine3,
+    b: &B,
+    placement_b: &DAffine3,
+    task: Measure,
+) -> Option<Measured>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let bound = task.bound;
+    let (lean, scale) = lean::run(a, placement_a, b, placement_b, task);
+    let goal = Measure { bound, warm: &[] }.goal(scale);
+    let (closest, v) = match lean.sure {
+        Sure::Beyond => return None,
+        Sure::Inside => (Closest { distance: 0.0, points: lean.common_point() }, DVec3::ZERO),
+        Sure::Near(mu) => match lean.closest_point() {
+            Some((v, points)) if goal.is_within_tolerance(v.length(), mu) => {
+                (Closest { distance: v.length() / scale, points }, v)
+            }
+            _ => return measure_robustly(&Difference::new(a, placement_a, b, placement_b), goal),
+        },
+        Sure::Separated | Sure::Nothing => {
+            return measure_robustly(&Difference::new(a, placement_a, b, placement_b), goal);
+        }
+    };
+    Some(Measured { closest, v, points: lean.points, len: lean.points().len() })
+}
+
+#[cold]
+fn measure_robustly<A, B>(difference: &Difference<A, B>, goal: Goal) -> Option<Measured>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let descent = descend_robustly(difference, goal);
     if descent.beyond {
         return None;
     }
-    let closest = Closest::of(&descent, &difference);
-    (closest.distance <= bound).then_some(closest)
+    let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
+    let (mut points, mut len) = ([zero; 4], 0);
+    for (place, p) in points.iter_mut().zip(descent.simplex.points()) {
+        *place = *p;
+        len += 1;
+    }
+    Some(Measured { closest: Closest::of(&descent, difference), v: descent.v, points, len })
 }
 
 impl Closest {
@@ -107,21 +191,24 @@ impl Closest {
 fn of_rounded<A, B>(
     (core_a, placement_a): (&Core<A>, &DAffine3),
     (core_b, placement_b): (&Core<B>, &DAffine3),
-) -> Closest
+    bound: f64,
+) -> Option<Closest>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let difference = Difference::new(core_a, placement_a, core_b, placement_b);
-    let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
-    let Closest { distance: between, mut points } = Closest::of(&descent, &difference);
     let radii = core_a.radius() + core_b.radius();
-    if between > 0.0 {
-        let axis = descent.v.normalize();
+    // Of cores that are nearly as far apart as the bound, the distance says.
+    let of_cores = (bound + radii) * (1.0 + DISTANCE_TOLERANCE);
+    let task = Measure { bound: of_cores, warm: &[] };
+    let Measured { closest, v, .. } = measure(core_a, placement_a, core_b, placement_b, task)?;
+    let Closest { distance: between, mut points } = closest;
+    if between > 0.0 && radii > 0.0 {
+        let axis = v.normalize();
         // All the way to the surfaces, or to where they meet before.
         let part = (between / radii).min(1.0);
         points.on_a -= part * core_a.to_surface(placement_a, axis);
         points.on_b += part * core_b.to_surface(placement_b, axis);
     }
-    Closest { distance: (between - radii).max(0.0), points }
+    Some(Closest { distance: (between - radii).max(0.0), points })
 }

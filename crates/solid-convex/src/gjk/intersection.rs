@@ -2,9 +2,10 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::descent::{End, Goal, descend};
+use super::descent::{End, Goal, descend_robustly};
+use super::lean::{self, Search, Sure, Task};
 use crate::Support;
-use crate::difference::Difference;
+use crate::difference::{Difference, SupportPoint};
 use crate::simplex::Simplex;
 
 /// Whether two placed convex objects intersect, with the evidence.
@@ -69,13 +70,112 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let difference = Difference::new(a, placement_a, b, placement_b);
-    let descent = descend(&difference, Goal::Separation);
+    let lean = lean::run(a, placement_a, b, placement_b, SEARCH);
+    match lean.sure {
+        Sure::Separated => Outcome::Separated { axis: lean.v.normalize() },
+        Sure::Inside => Outcome::Intersecting(lean.common_point()),
+        Sure::Nothing | Sure::Near(_) | Sure::Beyond => {
+            robust_intersection(&Difference::new(a, placement_a, b, placement_b))
+        }
+    }
+}
+
+/// What [`intersection`] says of a pair of which the lean descent is not sure.
+#[cold]
+fn robust_intersection<A, B>(difference: &Difference<A, B>) -> Outcome
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let descent = descend_robustly(difference, Goal::Separation);
     match descent.end {
         End::Separated => Outcome::Separated { axis: descent.v.normalize() },
         End::Undecided => Outcome::Touching(Witness::of(&descent.simplex)),
         End::Inside => Outcome::Intersecting(Witness::of(&descent.simplex)),
     }
+}
+
+/// The search for an axis, from nothing.
+const SEARCH: Search = Search { goal: Goal::Separation, warm: &[] };
+
+/// Whether two placed convex objects have a point in common: exactly when [`intersection`] does not say
+/// [`Separated`](Outcome::Separated), for less work.
+///
+/// ```
+/// use solid_convex::{Sphere, gjk};
+/// use glam::{DAffine3, DVec3};
+/// let ball = Sphere::new(1.0)?;
+/// let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+/// assert!(gjk::intersects(&ball, &at(0.0), &ball, &at(2.0)));
+/// assert!(!gjk::intersects(&ball, &at(0.0), &ball, &at(2.000001)));
+/// # Ok::<(), solid_convex::SizeError>(())
+/// ```
+pub fn intersects<A, B>(a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3) -> bool
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    match lean::run(a, placement_a, b, placement_b, SEARCH).sure {
+        Sure::Separated => false,
+        Sure::Inside => true,
+        Sure::Nothing | Sure::Near(_) | Sure::Beyond => {
+            robust_intersection(&Difference::new(a, placement_a, b, placement_b)).witness().is_some()
+        }
+    }
+}
+
+/// The axis that [`intersection`] gives, a unit vector from `B` to `A`; `None` where the objects intersect or touch. No common point
+/// is computed.
+///
+/// ```
+/// use solid_convex::{Cuboid, gjk};
+/// use glam::{DAffine3, DVec3};
+/// let block = Cuboid::new(DVec3::ONE)?;
+/// let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+/// assert_eq!(gjk::separating_axis(&block, &at(3.0), &block, &at(0.0)), Some(DVec3::X));
+/// assert_eq!(gjk::separating_axis(&block, &at(1.0), &block, &at(0.0)), None);
+/// # Ok::<(), solid_convex::SizeError>(())
+/// ```
+pub fn separating_axis<A, B>(a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3) -> Option<DVec3>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let lean = lean::run(a, placement_a, b, placement_b, SEARCH);
+    match lean.sure {
+        Sure::Separated => Some(lean.v.normalize()),
+        Sure::Inside => None,
+        Sure::Nothing | Sure::Near(_) | Sure::Beyond => {
+            match robust_intersection(&Difference::new(a, placement_a, b, placement_b)) {
+                Outcome::Separated { axis } => Some(axis),
+                Outcome::Touching(_) | Outcome::Intersecting(_) => None,
+            }
+        }
+    }
+}
+
+/// Whether an axis separates by so large a gap that it may answer alone.
+struct Separates {
+    axis: DVec3,
+}
+
+impl Task for Separates {
+    type Found = bool;
+
+    #[inline(always)]
+    fn run<A, B>(self, _: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> bool
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        clearly_separates(self.axis, against(self.axis).w)
+    }
+}
+
+/// Whether `w`, a support point against the axis, shows that it separates by so large a gap that it may answer alone.
+#[inline(always)]
+pub(super) fn clearly_separates(axis: DVec3, w: DVec3) -> bool {
+    axis.dot(w) > CACHED_GAP_MIN * axis.abs().element_sum()
 }
 
 /// A cached axis answers alone only when the gap along it is more than this, relative to the size of the data. Nearer,
@@ -92,6 +192,5 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let p = Difference::new(a, placement_a, b, placement_b).support_against(axis);
-    axis.dot(p.w) > CACHED_GAP_MIN * axis.abs().element_sum()
+    lean::run(a, placement_a, b, placement_b, Separates { axis })
 }

@@ -16,6 +16,7 @@ mod coherent;
 mod descent;
 mod distance;
 mod intersection;
+mod lean;
 #[cfg(test)]
 mod tests;
 
@@ -24,7 +25,7 @@ pub use coherent::{Coherent, Memory};
 pub(crate) use descent::{End, Goal, descend};
 pub(crate) use distance::DISTANCE_TOLERANCE;
 pub use distance::{Closest, closest_points, closest_points_within};
-pub use intersection::{Outcome, Witness, intersection, separates};
+pub use intersection::{Outcome, Witness, intersection, intersects, separates, separating_axis};
 
 /// Objects nearer to each other than this, or overlapping less, relative to the size of the data, may be reported
 /// as touching. The size of the data is the sum of the objects' extents and of the distance of their local origins.

@@ -2,11 +2,13 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_within};
+use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_robustly, descend_within};
+use super::lean::{self, Search, Sure};
 use super::{
     Closest, Coherent, DISTANCE_TOLERANCE, Outcome, TOUCHING_ERROR, closest_points, intersection, separates,
 };
 use crate::difference::Difference;
+use crate::simd;
 use crate::testing::{placement, shapes};
 use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
 
@@ -144,6 +146,58 @@ fn distances_of_round_objects_are_those_of_their_surfaces() {
     assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
 }
 
+/// The slow twin of the lean descent is the robust one, which never says the opposite of what the lean one is sure of; on all
+/// levels it is sure of the same, to the bit.
+#[test]
+fn the_lean_descent_says_what_the_robust_one_says() {
+    let hull = |count: u32, k: u32| {
+        let points = (0..count).map(|i| placement(i * 7 + k).translation.normalize_or(DVec3::X));
+        Box::new(crate::Polytope::new(points.collect()).unwrap()) as Box<dyn Support>
+    };
+    let all: Vec<_> =
+        shapes().into_iter().chain([hull(4, 0), hull(20, 3), hull(60, 5), hull(250, 11)]).collect();
+    let (mut cases, mut hits, mut sure, mut measured) = (0, 0, 0, 0);
+    for (i, a) in all.iter().enumerate() {
+        for (j, b) in all.iter().enumerate() {
+            for k in 0..60 {
+                let (at_a, mut at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
+                at_b.translation = at_a.translation + (at_b.translation - at_a.translation) * 1.6;
+                // One in three just touches, or misses by up to 1e-9.
+                if k % 3 == 0 {
+                    let closest = closest_points(&**a, &at_a, &**b, &at_b).points;
+                    let way = at_a.transform_point3(closest.on_a) - at_b.transform_point3(closest.on_b);
+                    at_b.translation += way * (1.0 - 1e-9 * f64::from(k % 2));
+                }
+                let difference = Difference::new(&**a, &at_a, &**b, &at_b);
+                for goal in [Goal::Separation, Goal::Distance { tolerance: DISTANCE_TOLERANCE }] {
+                    let search = Search { goal, warm: &[] };
+                    let [scalar, wide] = simd::levels().map(|level| lean::run_on(level, &difference, search));
+                    assert_eq!((scalar.sure, scalar.v), (wide.sure, wide.v), "{i} {j} {k}");
+                    assert_eq!(scalar.points(), wide.points(), "{i} {j} {k}");
+                    let slow = descend_robustly(&difference, goal);
+                    cases += 1;
+                    hits += usize::from(slow.end != End::Separated);
+                    sure += usize::from(wide.sure != Sure::Nothing);
+                    match wide.sure {
+                        Sure::Separated => assert_ne!(slow.end, End::Inside, "{i} {j} {k}"),
+                        Sure::Inside => assert_ne!(slow.end, End::Separated, "{i} {j} {k}"),
+                        Sure::Near(mu) => {
+                            let Some((v, _)) = wide.closest_point() else { continue };
+                            let (found, slow) = (v.length(), slow.v.length());
+                            assert!((found - mu).abs() < 1e-11, "{i} {j} {k}: {found:e}, at least {mu:e}");
+                            assert!((found - slow).abs() < 1e-11, "{i} {j} {k}: {found:e}, {slow:e}");
+                            measured += 1;
+                        }
+                        Sure::Beyond | Sure::Nothing => {}
+                    }
+                }
+            }
+        }
+    }
+    assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
+    assert!(2 * sure > cases && 6 * measured > cases, "{sure} sure, {measured} measured, of {cases}");
+}
+
 #[test]
 fn coincident_shapes_intersect() {
     for shape in shapes() {
@@ -163,11 +217,11 @@ fn the_iteration_limit_is_undecided() {
     let near = DAffine3::from_translation(DVec3::new(1.3, 2.0, 0.1)) * DAffine3::from_rotation_z(1.0);
     let difference = Difference::new(&ball, &egg, &ball, &near);
     let needed = (0..=ITERATIONS_MAX).find(|&limit| {
-        descend_within(&difference, Goal::Distance { tolerance: 1e-12 }, None, limit).end != End::Undecided
+        descend_within(&difference, Goal::Distance { tolerance: 1e-12 }, limit).end != End::Undecided
     });
     let needed = needed.expect("it ends in time");
     assert!(needed > 2, "{needed}");
-    assert_eq!(descend_within(&difference, Goal::Separation, None, 1).end, End::Undecided);
+    assert_eq!(descend_within(&difference, Goal::Separation, 1).end, End::Undecided);
 }
 
 /// A support mapping that is none: it must not hang nor crash whoever asks it.

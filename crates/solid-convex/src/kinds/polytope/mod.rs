@@ -3,21 +3,27 @@
 mod direction_map;
 mod rows;
 
-use glam::DVec3;
+use fearless_simd::Simd;
+use glam::{DMat3, DVec3};
 
 use super::points::{mean, reach};
-use crate::{Support, simd};
+use crate::Support;
+use crate::simd::{self, dispatch};
+use crate::support::bounds_by_supports;
 use direction_map::DirectionMap;
 use rows::Rows;
 
 /// Points beyond which support points are looked up by direction first. Below, comparing all of them is as fast.
-const SCAN_MAX: usize = 64;
+const SCAN_MAX: usize = 192;
 
-/// The convex hull of points, as [`Points`](super::Points), with the same answers to the bit, found faster: up to 64 points by
+/// Points beyond which the bounds of an image are found by support points. Below, it is faster to map all of them.
+const IMAGE_MAX: usize = 400;
+
+/// The convex hull of points, as [`Points`](super::Points), with the same answers to the bit, found faster: up to 192 points by
 /// comparing all of them with vector instructions; more by comparing those few that can be the furthest in directions near the
 /// one asked for.
 ///
-/// Memory: 48 bytes a point; of more than 64 points some 50 more, and at most 200. Cost of a support point: some 25 ns, however many
+/// Memory: 48 bytes a point; of more than 192 points some 50 more, and at most 200. Cost of a support point: some 25 ns, however many
 /// points there are, where the hull is round; where many points are about as far as each other, as the rim of a
 /// drum is along its axis, as long as it takes to compare these.
 ///
@@ -38,12 +44,24 @@ pub struct Polytope {
 }
 
 impl Polytope {
-    /// The hull of `points`; `None` for no points. Cost: O(n), of more than 64 points O(n log n) where the hull is round.
+    /// The hull of `points`; `None` for no points. Cost: O(n), of more than 192 points O(n log n) where the hull is round.
     pub fn new(points: Vec<DVec3>) -> Option<Self> {
         let rows = Rows::new(&points)?;
         let (reach, center) = (reach(points.iter().copied()), mean(points.iter().copied()));
         let map = (points.len() > SCAN_MAX).then(|| DirectionMap::new(&points, reach)).flatten();
         Some(Polytope { points, rows, map, reach, center })
+    }
+
+    /// The support point, for searches that are compiled into one piece with it.
+    #[inline(always)]
+    pub(crate) fn furthest<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
+        let mapped = self.map.as_ref().and_then(|map| map.furthest(&self.points, direction));
+        let furthest = match mapped {
+            Some(furthest) => furthest,
+            None => self.rows.furthest(simd, direction),
+        };
+        // Of a direction that is no number, none is the furthest.
+        self.points[furthest.min(self.points.len() - 1)]
     }
 
     /// The points.
@@ -55,10 +73,18 @@ impl Polytope {
 impl Support for Polytope {
     #[inline]
     fn support(&self, direction: DVec3) -> DVec3 {
-        let mapped = self.map.as_ref().and_then(|map| map.furthest(&self.points, direction));
-        let furthest = mapped.unwrap_or_else(|| self.rows.furthest(simd::level(), direction));
-        // Of a direction that is no number, none is the furthest.
-        self.points[furthest.min(self.points.len() - 1)]
+        dispatch!(simd::level(), simd => self.furthest(simd, direction))
+    }
+
+    fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
+        if self.points.len() > IMAGE_MAX && self.map.is_some() {
+            return bounds_by_supports(self, linear);
+        }
+        dispatch!(simd::level(), simd => self.rows.image_bounds(simd, linear))
+    }
+
+    fn as_polytope(&self) -> Option<&Polytope> {
+        Some(self)
     }
 
     fn reach(&self) -> DVec3 {
@@ -119,7 +145,7 @@ mod tests {
     /// The slow twin is the scan over the points in order; grids have many ties.
     #[test]
     fn same_as_the_scan() {
-        for count in (1..60).chain([65, 100, 201, 500, 3_000]) {
+        for count in (1..60).chain([65, 100, 193, 201, 500, 3_000]) {
             for (kind, points) in clouds(count).into_iter().enumerate() {
                 let polytope = Polytope::new(points.clone()).unwrap();
                 let scan = Points::new(&points).unwrap();
@@ -141,7 +167,7 @@ mod tests {
 
     #[test]
     fn round_hulls_are_mapped_and_lists_stay_short() {
-        for count in [100, 1_000, 10_000] {
+        for count in [300, 1_000, 10_000] {
             let polytope = Polytope::new(clouds(count).swap_remove(0)).unwrap();
             let map = polytope.map.expect("there are many points");
             assert!(map.mean_length() < 24.0, "{} of {count}", map.mean_length());

@@ -1,9 +1,7 @@
 //! All points, compared by vector instructions.
 
-use fearless_simd::{Simd, f64x4, prelude::*};
-use glam::DVec3;
-
-use crate::simd::{Level, dispatch};
+use fearless_simd::{Simd, f64x4, i64x4, prelude::*};
+use glam::{DMat3, DVec3};
 
 /// Points that are compared at once.
 const LANES: usize = 4;
@@ -11,65 +9,95 @@ const LANES: usize = 4;
 /// The coordinates of four points: their x, their y, their z.
 type Row = [[f64; LANES]; 3];
 
-/// Points with their coordinates in rows, two by two. Invariant: there is at least one; the last pair is filled up with
-/// the last point.
+/// Points with their coordinates in rows. Invariant: there are at least two, an even number; they are filled up with the last
+/// point.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
-    pairs: Vec<[Row; 2]>,
+    rows: Vec<Row>,
 }
 
 impl Rows {
     /// `None` for no points.
     pub fn new(points: &[DVec3]) -> Option<Rows> {
         let last = *points.last()?;
-        let pair = |chunk: &[DVec3]| {
-            let lane = |i: usize| *chunk.get(i).unwrap_or(&last);
-            let row = |start: usize| [0, 1, 2].map(|axis| std::array::from_fn(|i| lane(start + i)[axis]));
-            [row(0), row(LANES)]
-        };
-        Some(Rows { pairs: points.chunks(2 * LANES).map(pair).collect() })
+        let lane = |i: usize| *points.get(i).unwrap_or(&last);
+        let row = |first: usize| [0, 1, 2].map(|axis| std::array::from_fn(|i| lane(first + i)[axis]));
+        let count = points.len().div_ceil(LANES).next_multiple_of(2);
+        Some(Rows { rows: (0..count).map(|k| row(k * LANES)).collect() })
     }
 
     /// The index of the point furthest along a direction, the first of equals; past the end when the direction is not finite.
-    pub fn furthest(&self, level: Level, direction: DVec3) -> usize {
-        dispatch!(level, simd => furthest(simd, &self.pairs, direction))
-    }
-}
-
-/// Each lane of the two rows of a pair keeps its own furthest point, the first of equals; then they are compared.
-#[inline(always)]
-fn furthest<S: Simd>(simd: S, pairs: &[[Row; 2]], direction: DVec3) -> usize {
-    let (x, y, z) =
-        (f64x4::splat(simd, direction.x), f64x4::splat(simd, direction.y), f64x4::splat(simd, direction.z));
-    let along = |[xs, ys, zs]: &Row| {
-        f64x4::simd_from(simd, *xs) * x + f64x4::simd_from(simd, *ys) * y + f64x4::simd_from(simd, *zs) * z
-    };
-    let least = f64x4::splat(simd, f64::NEG_INFINITY);
-    let mut index = f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]);
-    let second = f64x4::splat(simd, LANES as f64);
-    let step = f64x4::splat(simd, 2.0 * LANES as f64);
-    let (mut best, mut best_index) = ([least; 2], [index; 2]);
-    for [even, odd] in pairs {
-        for (k, (row, index)) in [(even, index), (odd, index + second)].into_iter().enumerate() {
-            let dot = along(row);
-            let further = dot.simd_gt(best[k]);
-            best[k] = further.select(dot, best[k]);
-            best_index[k] = further.select(index, best_index[k]);
+    #[inline(always)]
+    pub fn furthest<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
+        let (first, second) = self.rows.split_at(self.rows.len() / 2);
+        let (x, y, z) = (
+            f64x4::splat(simd, direction.x),
+            f64x4::splat(simd, direction.y),
+            f64x4::splat(simd, direction.z),
+        );
+        let along = |[xs, ys, zs]: &Row| {
+            f64x4::simd_from(simd, *xs) * x
+                + f64x4::simd_from(simd, *ys) * y
+                + f64x4::simd_from(simd, *zs) * z
+        };
+        // Each lane of either half keeps its own furthest point, the first of equals.
+        let mut best = [f64x4::splat(simd, f64::NEG_INFINITY); 2];
+        let mut best_index = [i64x4::splat(simd, 0); 2];
+        let mut index = i64x4::simd_from(simd, [0, 1, 2, 3]);
+        for rows in first.iter().zip(second) {
+            let dots = [along(rows.0), along(rows.1)];
+            for k in 0..2 {
+                let further = dots[k].simd_gt(best[k]);
+                best[k] = further.select(dots[k], best[k]);
+                best_index[k] = further.select(index, best_index[k]);
+            }
+            index += i64x4::splat(simd, LANES as i64);
         }
-        index += step;
+        let from_second = best[1].simd_gt(best[0]);
+        let best = from_second.select(best[1], best[0]);
+        let in_second = best_index[1] + i64x4::splat(simd, (first.len() * LANES) as i64);
+        let mut places = [0; LANES];
+        from_second.select(in_second, best_index[0]).store_slice(&mut places);
+        // Of the lanes that have the greatest, nearly always one; none, where that is no number.
+        let greatest = f64x4::splat(simd, best.reduce_max());
+        let lanes = best.simd_eq(greatest).to_bitmask();
+        if lanes & lanes.wrapping_sub(1) != 0 {
+            let equal = (0..LANES).filter(|lane| lanes >> lane & 1 == 1).map(|lane| places[lane]);
+            return equal.min().map_or(usize::MAX, |place| place as usize);
+        }
+        if lanes == 0 { usize::MAX } else { places[lanes.trailing_zeros() as usize & (LANES - 1)] as usize }
     }
-    let greatest = best[0].max(best[1]).reduce_max();
-    // The first of equals: of the lanes that have the greatest, the least index.
-    let greatest = f64x4::splat(simd, greatest);
-    let none = f64x4::splat(simd, f64::INFINITY);
-    let first = |k: usize| best[k].simd_eq(greatest).select(best_index[k], none);
-    first(0).min(first(1)).reduce_min() as usize
+
+    /// The least and the greatest coordinates of the images of all points under a linear map.
+    #[inline(always)]
+    pub fn image_bounds<S: Simd>(&self, simd: S, linear: &DMat3) -> [DVec3; 2] {
+        let column = |axis: DVec3| {
+            [f64x4::splat(simd, axis.x), f64x4::splat(simd, axis.y), f64x4::splat(simd, axis.z)]
+        };
+        let (x, y, z) = (column(linear.x_axis), column(linear.y_axis), column(linear.z_axis));
+        let mut least = [f64x4::splat(simd, f64::INFINITY); 3];
+        let mut greatest = [f64x4::splat(simd, f64::NEG_INFINITY); 3];
+        for [xs, ys, zs] in &self.rows {
+            let xs = f64x4::simd_from(simd, *xs);
+            let ys = f64x4::simd_from(simd, *ys);
+            let zs = f64x4::simd_from(simd, *zs);
+            for axis in 0..3 {
+                let image = xs * x[axis] + ys * y[axis] + zs * z[axis];
+                least[axis] = least[axis].min(image);
+                greatest[axis] = greatest[axis].max(image);
+            }
+        }
+        let [x, y, z] = least;
+        let min = DVec3::new(x.reduce_min(), y.reduce_min(), z.reduce_min());
+        let [x, y, z] = greatest;
+        [min, DVec3::new(x.reduce_max(), y.reduce_max(), z.reduce_max())]
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simd::levels;
+    use crate::simd::{dispatch, levels};
 
     #[test]
     fn every_level_finds_the_first_of_the_furthest() {
@@ -83,7 +111,8 @@ mod tests {
                 let greatest = points.iter().map(|p| p.dot(direction)).fold(f64::NEG_INFINITY, f64::max);
                 let first = points.iter().position(|p| p.dot(direction) == greatest).unwrap();
                 for level in levels() {
-                    assert_eq!(rows.furthest(level, direction), first, "{level:?}");
+                    let found = dispatch!(level, simd => rows.furthest(simd, direction));
+                    assert_eq!(found, first, "{level:?}");
                 }
             }
         }

@@ -1,0 +1,401 @@
+//! The lean descent: the same search as [`descend`](super::descend), for the many pairs that are easy.
+//!
+//! It answers only where it is sure, by the evidence that the robust descent would accept: an axis along which the gap exceeds
+//! the rounding error, a tetrahedron whose signs exceed theirs, a lower bound that is as good as the distance. For the rest
+//! it says nothing, and the robust descent begins anew. So it may leave out whatever makes that one robust: no sliver is measured
+//! twice, nothing is recomputed or taken back, and closest points are kept as quotients whose division is not needed to go on.
+//!
+//! It is compiled into one piece with the support mappings of polytopes, once for each level of instructions.
+
+use glam::{DAffine3, DVec3};
+
+use super::Witness;
+use super::coherent::Pair;
+use super::descent::Goal;
+use crate::Support;
+use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
+use crate::simd::{self, Level, dispatch};
+use crate::simplex::{Simplex, VOLUME_ERROR, Within, sides_of_origin, within_edge, within_face};
+
+/// Support points after which it gives up. Of random pairs of polytopes of up to 1,000 vertices, and of quadrics that are not about to
+/// touch, none took more than half of it.
+const STEPS_MAX: usize = 24;
+
+/// A step that shortens `v` squared by less than this part of it: the robust descent sees to it.
+const PROGRESS_MIN: f64 = 4.0 * f64::EPSILON;
+
+/// The least square of twice a face's area, or of an edge: of slivers whose closest points have few right digits.
+const DIVISOR_MIN: f64 = 1e-24;
+
+/// What the lean descent is sure of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Sure {
+    /// The axis separates the objects.
+    Separated,
+    /// The four points contain the origin.
+    Inside,
+    /// The hull of the points has the point closest to the origin, within the goal's tolerance; the distance is at least this.
+    Near(f64),
+    /// The objects are further apart than the goal asks for.
+    Beyond,
+    /// Nothing.
+    Nothing,
+}
+
+/// Where a lean descent ended. Space: the difference's own.
+pub(super) struct Lean {
+    pub sure: Sure,
+    /// The axis, or a vector along the shortest way from the origin to the hull; of any length.
+    pub v: DVec3,
+    /// The support points that it ended with are the first `len`, the oldest first.
+    pub points: [SupportPoint; 4],
+    len: usize,
+}
+
+impl Lean {
+    /// The support points that it ended with, the oldest first.
+    pub fn points(&self) -> &[SupportPoint] {
+        &self.points[..self.len.min(4)]
+    }
+
+    /// The common point, of objects that intersect: where the origin is in the tetrahedron.
+    pub fn common_point(&self) -> Witness {
+        let [p, q, r, s] = self.points;
+        let (sides, _) = sides_of_origin([p.w, q.w, r.w, s.w]);
+        let inverse = 1.0 / (sides[0] + sides[1] + sides[2] + sides[3]);
+        // Of each point the side of the face opposite.
+        let weights = [sides[1], sides[2], sides[0], sides[3]].map(|side| side * inverse);
+        let (mut w, mut on_a, mut on_b) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        for (point, weight) in self.points.iter().zip(weights) {
+            w += point.w * weight;
+            on_a += point.a * weight;
+            on_b += point.b * weight;
+        }
+        if w.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
+            return Witness { on_a, on_b };
+        }
+        // Of a flat tetrahedron the ratios have no right digit.
+        let mut simplex = self.simplex();
+        simplex.reduce_if_inside();
+        Witness::of(&simplex)
+    }
+
+    /// The closest point of the hull of up to three points, measured again by more careful means, with the points of the objects that
+    /// it is the difference of; `None` where it takes yet more care.
+    pub fn closest_point(&self) -> Option<(DVec3, Witness)> {
+        let (v, weights) = match *self.points() {
+            [p] => (p.w, [1.0, 0.0, 0.0]),
+            [p, q] => {
+                let (v, [x, y]) = within_edge([p.w, q.w]).ok()?;
+                (v, [x, y, 0.0])
+            }
+            [p, q, r] => {
+                let squares = [p, q, r].map(|p| p.w.length_squared());
+                // Around the face from the corner nearest to the origin; then back.
+                let turn = if squares[1] < squares[0] { 1 } else { 0 };
+                let turn = if squares[2] < squares[turn] { 2 } else { turn };
+                let [p, q, r] = [p.w, q.w, r.w];
+                match within_face([[p, q, r], [q, r, p], [r, p, q]][turn]) {
+                    Within::Face(v, [x, y, z]) => (v, [[x, y, z], [z, x, y], [y, z, x]][turn]),
+                    Within::Outside | Within::Sliver => return None,
+                }
+            }
+            _ => return None,
+        };
+        let (mut on_a, mut on_b) = (DVec3::ZERO, DVec3::ZERO);
+        for (point, weight) in self.points().iter().zip(weights) {
+            on_a += point.a * weight;
+            on_b += point.b * weight;
+        }
+        Some((v, Witness { on_a, on_b }))
+    }
+
+    /// The same as a simplex that is not reduced.
+    pub fn simplex(&self) -> Simplex {
+        Simplex::of(self.points())
+    }
+}
+
+/// The closest point of a hull: `v / divisor`, on the newest point and those older ones whose bits are set.
+#[derive(Clone, Copy)]
+struct Closest {
+    v: DVec3,
+    divisor: f64,
+    older: u8,
+}
+
+impl Closest {
+    /// The same, where the older point is the second of two.
+    #[inline(always)]
+    fn of_second(self) -> Closest {
+        Closest { older: self.older << 1, ..self }
+    }
+
+    /// The nearer one to the origin of two.
+    #[inline(always)]
+    fn or_nearer(self, other: Closest) -> Closest {
+        if other.is_nearer_than(&self) { other } else { self }
+    }
+
+    /// Whether it is nearer to the origin than another.
+    #[inline(always)]
+    fn is_nearer_than(&self, other: &Closest) -> bool {
+        let (mine, its) = (self.divisor * self.divisor, other.divisor * other.divisor);
+        self.v.length_squared() * its < other.v.length_squared() * mine
+    }
+}
+
+/// Something that is found of a difference by its support points.
+pub(super) trait Task {
+    /// What is found.
+    type Found;
+
+    /// Finds it: `against` gives the support points, as [`Difference::support_against`]. To be inlined.
+    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Self::Found
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized;
+}
+
+/// Runs a task on two placed objects: on polytopes in one piece, compiled for the level of instructions.
+#[inline]
+pub(super) fn run<A, B, T>(a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3, task: T) -> T::Found
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+    T: Task,
+{
+    match (a.as_polytope(), b.as_polytope()) {
+        (Some(a), Some(b)) => dispatch!(simd::level(), simd => {
+            let difference = Difference::new(a, placement_a, b, placement_b);
+            task.run(&difference, #[inline(always)] |v| difference.point_against(
+                v,
+                #[inline(always)] |d| a.furthest(simd, d),
+                #[inline(always)] |d| b.furthest(simd, d),
+            ))
+        }),
+        _ => {
+            let difference = Difference::new(a, placement_a, b, placement_b);
+            task.run(&difference, |v| difference.support_against(v))
+        }
+    }
+}
+
+/// Runs a task on a difference.
+#[inline]
+pub(super) fn run_on<A, B, T>(level: Level, difference: &Difference<A, B>, task: T) -> T::Found
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+    T: Task,
+{
+    let (a, b) = difference.objects();
+    match (a.as_polytope(), b.as_polytope()) {
+        (Some(a), Some(b)) => dispatch!(level, simd => {
+            task.run(difference, #[inline(always)] |v| difference.point_against(
+                v,
+                #[inline(always)] |d| a.furthest(simd, d),
+                #[inline(always)] |d| b.furthest(simd, d),
+            ))
+        }),
+        _ => task.run(difference, |v| difference.support_against(v)),
+    }
+}
+
+/// A lean descent.
+#[derive(Clone, Copy)]
+pub(super) struct Search<'w> {
+    pub goal: Goal,
+    /// Pairs of local points, up to three, between whose differences the closest point was last.
+    pub warm: &'w [Pair],
+}
+
+impl Task for Search<'_> {
+    type Found = Lean;
+
+    // v / divisor: the point of conv(W) closest to the origin; p.w: a support point of A - B against v; W: the points.
+    #[inline(always)]
+    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Lean
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
+        let mut lean = Lean { sure: Sure::Nothing, v: DVec3::ZERO, points: [zero; 4], len: 0 };
+        let mut v;
+        let mut divisor = 1.0;
+        let mut before = f64::INFINITY;
+        if self.warm.is_empty() {
+            v = difference.initial_direction();
+        } else {
+            for (place, &Pair { a, b }) in lean.points.iter_mut().zip(self.warm.iter().take(3)) {
+                *place = difference.point(a, b);
+            }
+            lean.len = self.warm.len().min(3);
+            let closest = closest_of_any(&mut lean.points, &mut lean.len);
+            (v, divisor) = (closest.v, closest.divisor);
+            before = v.length_squared() / (divisor * divisor);
+            if !(divisor >= DIVISOR_MIN && before > SUPPORT_ERROR * SUPPORT_ERROR) {
+                return lean;
+            }
+        }
+        for _ in 0..STEPS_MAX {
+            let p = against(v);
+            let vw = v.dot(p.w);
+            if vw > SUPPORT_ERROR * v.abs().element_sum() {
+                let sure = self.reached(v, divisor, vw, lean.len);
+                if sure != Sure::Nothing {
+                    (lean.sure, lean.v) = (sure, v);
+                    return lean;
+                }
+            }
+            let [x, y, z, _] = lean.points;
+            let closest = match lean.len {
+                0 => Closest { v: p.w, divisor: 1.0, older: 0 },
+                1 => edge(x.w, p.w),
+                2 => face(x.w, y.w, p.w),
+                _ => match tetrahedron(x.w, y.w, z.w, p.w) {
+                    Some(closest) => closest,
+                    None => {
+                        (lean.points[3], lean.len) = (p, 4);
+                        lean.sure = Sure::Inside;
+                        return lean;
+                    }
+                },
+            };
+            lean.keep(closest.older);
+            (lean.points[lean.len & 3], lean.len) = (p, (lean.len & 3) + 1);
+            (v, divisor) = (closest.v, closest.divisor);
+            let square = v.length_squared() / (divisor * divisor);
+            let progress = square < before * (1.0 - PROGRESS_MIN);
+            if !(progress && divisor >= DIVISOR_MIN && square > SUPPORT_ERROR * SUPPORT_ERROR) {
+                return lean;
+            }
+            before = square;
+        }
+        lean
+    }
+}
+
+impl Lean {
+    /// Drops those of up to three points whose bits are not set.
+    #[inline(always)]
+    fn keep(&mut self, bits: u8) {
+        match bits {
+            0b000 => {}
+            0b010 => self.points[0] = self.points[1],
+            0b100 => self.points[0] = self.points[2],
+            0b101 => self.points[1] = self.points[2],
+            0b110 => (self.points[0], self.points[1]) = (self.points[1], self.points[2]),
+            _ => {}
+        }
+        self.len = bits.count_ones() as usize;
+    }
+}
+
+impl Search<'_> {
+    /// What is sure, after `v` was found to separate the objects: `vw` is its product with a support point against it.
+    #[inline(always)]
+    fn reached(self, v: DVec3, divisor: f64, vw: f64, len: usize) -> Sure {
+        let tolerance = match self.goal {
+            Goal::Separation => return Sure::Separated,
+            Goal::DistanceWithin { .. } if self.goal.is_exceeded(vw / v.length()) => return Sure::Beyond,
+            Goal::Distance { tolerance } | Goal::DistanceWithin { tolerance, .. } => tolerance,
+        };
+        let square = v.length_squared();
+        if len > 0 && square - vw * divisor <= tolerance * square {
+            Sure::Near(vw / square.sqrt())
+        } else {
+            Sure::Nothing
+        }
+    }
+}
+
+/// Of the edge from an older point to the newest, which is needed in any case (Theorem 4.8).
+#[inline(always)]
+fn edge(p: DVec3, newest: DVec3) -> Closest {
+    let d = newest - p;
+    let along = newest.dot(d);
+    if along <= 0.0 {
+        return Closest { v: newest, divisor: 1.0, older: 0 };
+    }
+    let square = d.length_squared();
+    Closest { v: newest * square - d * along, divisor: square, older: 1 }
+}
+
+/// Of the face of two older points and the newest.
+#[inline(always)]
+fn face(p: DVec3, q: DVec3, newest: DVec3) -> Closest {
+    let (to_p, to_q) = (p - newest, q - newest);
+    let n = to_p.cross(to_q);
+    let square = n.length_squared();
+    // -newest = x to_p + y to_q + an offset along n; all times n^2.
+    let across = newest.cross(n);
+    let (x, y) = (to_q.dot(across), -to_p.dot(across));
+    if x > 0.0 && y > 0.0 && x + y < square {
+        return Closest { v: n * n.dot(newest), divisor: square, older: 3 };
+    }
+    let with_p = || edge(p, newest);
+    let with_q = || edge(q, newest).of_second();
+    // Beyond one edge it is on that one; beyond both, where an angle is obtuse, on the one that leads to the origin.
+    match (x > 0.0, y > 0.0) {
+        (true, false) => with_p(),
+        (false, true) => with_q(),
+        (false, false) if newest.dot(to_q) < 0.0 => with_q(),
+        (false, false) => with_p(),
+        (true, true) => with_p().or_nearer(with_q()),
+    }
+}
+
+/// Of the tetrahedron of three older points and the newest; `None` when it certainly contains the origin.
+#[inline(always)]
+fn tetrahedron(p: DVec3, q: DVec3, r: DVec3, newest: DVec3) -> Option<Closest> {
+    let (sides, least) = sides_of_origin([p, q, r, newest]);
+    let [pq, qr, rp, old] = sides.map(|side| side > 0.0);
+    if pq && qr && rp {
+        // Of what is too flat to tell, nothing: no divisor is that small.
+        let unknown = Closest { v: newest, divisor: 0.0, older: 7 };
+        return if old && least > VOLUME_ERROR { None } else { Some(unknown) };
+    }
+    // On a face with the newest point that has the origin outside.
+    let mut closest = Closest { v: DVec3::INFINITY, divisor: 1.0, older: 0 };
+    if !pq {
+        closest = face(p, q, newest);
+    }
+    if !qr {
+        let found = face(q, r, newest);
+        closest = closest.or_nearer(Closest { older: found.older << 1, ..found });
+    }
+    if !rp {
+        let found = face(p, r, newest);
+        closest = closest.or_nearer(Closest { older: found.older & 1 | (found.older & 2) << 1, ..found });
+    }
+    Some(closest)
+}
+
+/// The closest point of the hull of up to three points in any order, of which those that it does not need are dropped.
+#[inline(always)]
+fn closest_of_any(points: &mut [SupportPoint; 4], len: &mut usize) -> Closest {
+    let [p, q, r, _] = *points;
+    if *len == 3 {
+        let closest = face(p.w, q.w, r.w);
+        if closest.older == 3 {
+            return closest;
+        }
+    }
+    // Off their face, the two that are nearest are a start as good as any.
+    let squares = [p, q, r].map(|p| p.w.length_squared());
+    let pair = match *len {
+        1 => [p, p],
+        2 => [p, q],
+        _ if squares[0] >= squares[1] && squares[0] >= squares[2] => [q, r],
+        _ if squares[1] >= squares[2] => [p, r],
+        _ => [p, q],
+    };
+    let [near, far] =
+        if pair[0].w.length_squared() < pair[1].w.length_squared() { pair } else { [pair[1], pair[0]] };
+    let closest = edge(far.w, near.w);
+    (points[0], points[1]) = if closest.older == 1 { (far, near) } else { (near, far) };
+    *len = 1 + usize::from(closest.older);
+    closest
+}
