@@ -42,7 +42,7 @@ pub struct Penetration {
 /// The bounds are certain for the pair that the answer is of. Between polytopes, spheres and capsules they are 1e-13 of
 /// the size of the data apart; where cones, cylinders or stretched round shapes take part, within 1e-7 of the depth
 /// ([`DEPTH_TOLERANCE`](solid_convex::epa::DEPTH_TOLERANCE)), unless these have their shortest translations in very many
-/// directions at once, as coaxial cylinders do: then within 4e-4, and 5e-2 for concentric ellipsoids that are the same in all of them.
+/// directions at once, as coaxial cones and cylinders do: then within 1e-3, and 5e-2 for concentric ellipsoids that are the same in all of them.
 ///
 /// Cost: some hundred nanoseconds for two boxes, some microseconds for other convex shapes, less with a [`PairCache`](super::PairCache); for others, that for each pair of primitives that intersect; for a solid
 /// follows the number of its triangles.
