@@ -89,7 +89,7 @@ pub struct Cli {
 pub enum Command {
     /// Plays the animation frame by frame and reports what collides
     #[command(after_help = EXIT_STATUS, after_long_help = format!("{CHECK_NOTES}\n\n{EXIT_STATUS}"))]
-    Check(CheckArgs),
+    Check(Box<CheckArgs>),
     /// Says what is in the files: objects, kinds, sizes, units, animation, defects
     Info(InfoArgs),
 }
