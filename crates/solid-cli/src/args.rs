@@ -24,6 +24,11 @@ Objects:
   other. Shapes are closed sets, so touching collides; a mesh is a surface, so a body wholly inside one does not,
   unless --solid declares the mesh solid.
 
+Convex pieces (--decompose PATTERN):
+  In the place of the mesh are at most 32 convex pieces, found on a grid of 64 voxels along its longest side: they cover all
+  of the mesh, and more by about 1 % of its convex hull for each piece. Notches thinner than two voxels may be closed. A mesh that
+  deforms cannot be decomposed. With --solid for the same object the mesh must be closed, too.
+
 Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any characters, `?` for one.
     default = \"witness\"             # ignore, simple, witness, smart, curve, depth or contacts
     solid = [\"tank*\"]               # as --solid
@@ -161,6 +166,11 @@ pub struct CheckArgs {
     /// repeated. The meshes must be closed
     #[arg(long, value_name = "PATTERN")]
     pub solid: Vec<String>,
+
+    /// Take the mesh objects of this name (`*`, `?`) for unions of convex pieces, so that they have an inside, depths and
+    /// contacts also where they are not convex or not closed; may be repeated
+    #[arg(long, value_name = "PATTERN")]
+    pub decompose: Vec<String>,
 
     /// Report pairs that come nearer than this, in units of length of the scene, with their closest points
     #[arg(long, value_name = "DISTANCE", value_parser = clearance, allow_negative_numbers = true)]

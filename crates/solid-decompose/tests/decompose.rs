@@ -41,7 +41,7 @@ fn l_shape() -> Shape {
 /// Five spikes.
 fn star() -> Shape {
     let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / 10.0;
-    let radius = |i: u32| if i % 2 == 0 { 2.0 } else { 0.8 };
+    let radius = |i: u32| if i.is_multiple_of(2) { 2.0 } else { 0.8 };
     let outline: Vec<_> = (0..10).map(|i| (radius(i) * angle(i).cos(), radius(i) * angle(i).sin())).collect();
     let mut caps: Vec<[u32; 3]> = (0..5).map(|i| [2 * i + 1, (2 * i + 2) % 10, (2 * i + 3) % 10]).collect();
     caps.extend([[1, 3, 5], [1, 5, 7], [1, 7, 9]]);

@@ -5,10 +5,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fmt::Write;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::{DAffine3, DVec3};
-use solid3d::query::{self, Ray, RayOptions};
+use solid3d::query::{self, ContactOptions, ImpactOptions, PairCache, Ray, RayOptions};
 use solid3d::{ComplexShapeBuilder, Error, Result, Shape, ShapeKind, glam};
 
 /// A shape at a place.
@@ -33,9 +34,30 @@ const OF_TWO: &[OfTwo] = &[
             _ => "curve".to_owned(),
         })
     }),
+    ("contacts", |a, b| {
+        said(query::contacts(a.0, a.1, b.0, b.1, &ContactOptions::default()), |c| match c.len() {
+            0 => "none".to_owned(),
+            _ => "contacts".to_owned(),
+        })
+    }),
+    ("intersecting_primitives", |a, b| {
+        let mut count = 0;
+        let found = |_, _| {
+            count += 1;
+            ControlFlow::Continue(())
+        };
+        let asked = query::intersecting_primitives(a.0, a.1, b.0, b.1, found);
+        said(asked, |()| format!("{count} pairs"))
+    }),
+    ("PairCache::distance", |a, b| said(PairCache::new(a.0, b.0).distance(a.1, b.1), |d| figure(d.distance))),
     ("cast_shape", |a, b| {
         let cast = query::cast_shape(a.0, a.1, DVec3::X * 4.0, b.0, b.1, DVec3::ZERO);
         said(cast, |c| some_figure(c.map(|c| c.time)))
+    }),
+    ("time_of_impact", |a, b| {
+        let to = at(4.0, 0.0, 0.0) * *a.1 * DAffine3::from_rotation_z(1.0);
+        let impact = query::time_of_impact(a.0, a.1, &to, b.0, b.1, b.1, &ImpactOptions::default());
+        said(impact, |i| some_figure(i.map(|i| i.time)))
     }),
 ];
 
@@ -43,6 +65,7 @@ const OF_ONE: &[OfOne] = &[
     ("bounds", |a, _| said(query::bounds(a.0, a.1), |b| format!("{} wide", figure(b.max.x - b.min.x)))),
     ("contains_point", |a, p| said(query::contains_point(a.0, a.1, p), yes_or_no)),
     ("closest_point", |a, p| said(query::closest_point(a.0, a.1, p), |c| figure(c.distance))),
+    ("signed_distance", |a, p| said(query::signed_distance(a.0, a.1, p), |s| figure(s.distance))),
     ("winding_number", |a, p| said(query::winding_number(a.0, a.1, p), figure)),
     ("cast_ray", |a, p| {
         said(query::cast_ray(a.0, a.1, &ray(p), &RayOptions::default()), |hit| {
@@ -166,7 +189,9 @@ fn page() -> String {
          is the answer that there is nothing. A mesh is a surface, and so is asked for twice: also as a solid.\n\n\
          ## Of two shapes\n\n\
          First of two whose surfaces cross, then of two that are apart. `distance_within` has the bound 1; `cast_shape` moves the first\n\
-         shape by 4 towards the second, and its answer is the time from 0 to 1. Each pair is asked for both ways round, with the same answers.\n\n\
+         shape by 4 towards the second, `time_of_impact` also turns it by one radian, and their answer is the time from 0 to 1. Each pair is asked\n\
+         for both ways round, with the same answers. A query that takes a `PairCache`, or that lets shapes deform, has the answers of the\n\
+         one without.\n\n\
          {}\n## Of one shape\n\n\
          First at a point in the middle, then at one outside on the left; rays go to the right from there.\n\n{}",
         table(&["a", "b"], &names_of_two, of_two),
@@ -193,7 +218,7 @@ fn the_page_of_queries_is_what_they_answer() {
 fn every_pair_answers_the_same_both_ways_round() {
     let shapes = shapes();
     let there = [at(0.75, 0.375, 0.25), at(2.5, 0.375, 0.25)];
-    let directed = ["cast_shape"];
+    let directed = ["cast_shape", "time_of_impact"];
     let mut asked = 0;
     for (a, b) in shapes.iter().flat_map(|a| shapes.iter().map(move |b| (a, b))) {
         for (name, ask) in OF_TWO.iter().filter(|(name, _)| !directed.contains(name)) {
@@ -221,6 +246,10 @@ fn no_pair_is_without_an_answer() {
         assert_eq!(&cells[2..5], ["yes, no", "point, none", "none, axis"], "{line}");
         assert!(cells[5].starts_with("0.00, ") && !cells[5].ends_with(" 0.00"), "{line}");
         assert!(!cells[7].starts_with("none") && cells[7].ends_with(", none"), "{line}");
-        assert!(!cells[9].contains("none") && cells[9].starts_with("0.00, "), "{line}");
+        assert_eq!(cells[9], "contacts, none", "{line}");
+        assert!(cells[11].starts_with("0.00, ") && cells[11] == cells[5], "{line}");
+        for cast in &cells[12..14] {
+            assert!(!cast.contains("none") && cast.starts_with("0.00, "), "{line}");
+        }
     }
 }

@@ -1,12 +1,12 @@
 //! `solid check`: a scene, played and tested frame by frame.
 
+mod bodies;
 mod clock;
 mod files;
 mod motion;
 mod player;
 mod report;
 mod root_paths;
-mod solids;
 mod stage;
 mod timeline;
 
@@ -37,6 +37,7 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let (mut clock, mut times) = (Clock::start(), Times::default());
     let mut rules = args.rules.as_deref().map(Rules::read).transpose()?.unwrap_or_default();
     rules.declare_solid(&args.solid);
+    rules.declare_decomposed(&args.decompose);
     let rays: Vec<NamedRay> = [rays::of_arguments(&args.ray)?.as_slice(), rules.rays()].concat();
     let scene = scene::load(&args.scene)?;
     scene::warnings(&scene).for_each(|warning| complain("warning", warning));
@@ -46,9 +47,9 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
         Some(placements) => Motion::table(&scene, placements),
         None => Motion::animation(&scene),
     };
-    let (solid, warnings) = rules::solids(&rules, &names(&scene));
+    let (bodies, warnings) = rules::bodies(&rules, &names(&scene));
     warnings.iter().for_each(|warning| complain("warning", warning));
-    let shapes = solids::shapes(&scene, &solid)?;
+    let shapes = bodies::shapes(&scene, &bodies)?;
     let tested = if args.continuous { solid3d::Motion::Swept } else { solid3d::Motion::Sampled };
     let mut stage = Stage::new(&scene, &shapes, motion, tested, timeline.time(0))?;
     let has_clearance = set_rules(&rules, args, &scene, &mut stage)?;

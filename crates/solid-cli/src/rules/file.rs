@@ -20,6 +20,7 @@ use crate::text;
 pub struct Rules {
     pub(super) default: Option<Response>,
     pub(super) solid: Vec<Names>,
+    pub(super) decompose: Vec<Names>,
     pub(super) clearance: Option<f64>,
     pub(super) objects: Vec<ObjectRule>,
     pub(super) pairs: Vec<PairRule>,
@@ -66,8 +67,12 @@ impl Rules {
 
     /// Adds objects that are to be solid, as the command line names them.
     pub fn declare_solid(&mut self, patterns: &[String]) {
-        let names = |text: &String| Names::new(text.clone(), "--solid".to_owned());
-        self.solid.extend(patterns.iter().map(names));
+        self.solid.extend(given("--solid", patterns));
+    }
+
+    /// Adds objects that are to be decomposed, as the command line names them.
+    pub fn declare_decomposed(&mut self, patterns: &[String]) {
+        self.decompose.extend(given("--decompose", patterns));
     }
 
     /// The rays that are to be cast in every frame.
@@ -106,11 +111,17 @@ impl Rules {
             default: written.default.map(Response::from),
             clearance: written.clearance.map(Spanned::into_inner),
             solid: written.solid.into_iter().map(|text| source.names(text)).collect(),
+            decompose: written.decompose.into_iter().map(|text| source.names(text)).collect(),
             objects: written.object.into_iter().map(object).collect(),
             pairs: written.pair.into_iter().map(pair).collect(),
             rays: written.ray.into_iter().map(|ray| source.ray(ray)).collect::<Result<_>>()?,
         })
     }
+}
+
+/// The patterns of an option of the command line.
+fn given<'a>(option: &'a str, patterns: &'a [String]) -> impl Iterator<Item = Names> + 'a {
+    patterns.iter().map(move |text| Names::new(text.clone(), option.to_owned()))
 }
 
 /// A text and where it is from.
@@ -168,6 +179,8 @@ struct Written {
     clearance: Option<Spanned<f64>>,
     #[serde(default)]
     solid: Vec<Spanned<String>>,
+    #[serde(default)]
+    decompose: Vec<Spanned<String>>,
     #[serde(default)]
     object: Vec<WrittenObject>,
     #[serde(default)]
@@ -259,7 +272,7 @@ mod tests {
             ),
             (
                 "\ncolour = 1",
-                "rules.toml:2: unknown field `colour`, expected one of `default`, `clearance`, `solid`, `object`, `pair`, `ray`",
+                "rules.toml:2: unknown field `colour`, expected one of `default`, `clearance`, `solid`, `decompose`, `object`, `pair`, `ray`",
             ),
             ("[[object]]\nname = \"x\"", "rules.toml:1: missing field `response`"),
             ("[[pair]]\na = \"x\"\nb = 3\nresponse = \"simple\"", "rules.toml:3: invalid type: integer"),

@@ -3,6 +3,7 @@
 //! ```toml
 //! default = "witness"        # ignore, simple, witness, smart, curve, depth or contacts
 //! solid = ["ship*"]          # closed meshes that are to be solid
+//! decompose = ["crane"]      # meshes that are to be unions of convex pieces
 //! clearance = 0.05           # pairs that come nearer are reported
 //!
 //! [[object]]                 # all pairs with the object
@@ -31,4 +32,4 @@ mod pattern;
 mod table;
 
 pub use file::Rules;
-pub use table::{Objects, apply, set_clearances, solids};
+pub use table::{Bodies, Objects, apply, bodies, set_clearances};

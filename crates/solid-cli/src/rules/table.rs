@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 use solid3d::{ObjectId, Response, World};
 
-use super::file::{PairRule, Rules};
+use super::file::{Names, PairRule, Rules};
 use super::names::NameIndex;
 
 /// How many pairs of objects the rules for pairs may make: each is an entry of the world's table, of some 100 bytes. A rule
@@ -19,11 +19,21 @@ pub struct Objects<'a> {
     pub exempt: &'a [(usize, usize)],
 }
 
-/// The places of the objects that rules declare solid, and warnings, for patterns that match nothing.
-pub fn solids(rules: &Rules, names: &[&str]) -> (Vec<usize>, Vec<String>) {
+/// The places of the objects whose mesh rules want to be something else.
+#[derive(Debug)]
+pub struct Bodies {
+    /// The solid that it bounds.
+    pub solid: Vec<usize>,
+    /// A union of convex pieces.
+    pub decomposed: Vec<usize>,
+}
+
+/// What rules want the objects to be, and warnings, for patterns that match nothing.
+pub fn bodies(rules: &Rules, names: &[&str]) -> (Bodies, Vec<String>) {
     let mut index = NameIndex::new(names);
-    let places = rules.solid.iter().flat_map(|wanted| index.matching(wanted)).collect();
-    (places, index.into_warnings())
+    let mut places = |wanted: &[Names]| wanted.iter().flat_map(|wanted| index.matching(wanted)).collect();
+    let bodies = Bodies { solid: places(&rules.solid), decomposed: places(&rules.decompose) };
+    (bodies, index.into_warnings())
 }
 
 /// Sets the responses of a world. Returns warnings, for patterns that match nothing.
