@@ -36,6 +36,7 @@ use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
+pub(crate) use closed_form::intersects as plainly_intersects;
 pub(crate) use coherent::{closest_again, intersects_again};
 pub(crate) use contact::contacts;
 pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};
@@ -48,7 +49,10 @@ pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};
 pub use swept::Path;
-pub(crate) use table::{axis, closest, closest_within, intersection, intersects, penetration};
+pub(crate) use table::{
+    axis, closest, closest_within, convex_closest_within, convex_intersects, intersection, intersects,
+    penetration,
+};
 
 use crate::placement::inverse_linear;
 use crate::shape::{Class, Shape};

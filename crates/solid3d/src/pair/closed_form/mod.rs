@@ -4,8 +4,8 @@
 //! [`SKEW_MAX`], and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
 //! ([`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR)). So both say the same, and GJK decides the rest.
 
-mod balls;
 mod boxes;
+mod quick;
 mod round;
 mod similarity;
 #[cfg(test)]
@@ -34,12 +34,15 @@ enum Pair {
     Boxes(PlacedBox, PlacedBox),
 }
 
-/// Whether they intersect; `None` where GJK has to say.
-pub(super) fn intersects(a: Placed, b: Placed) -> Option<bool> {
-    if let answer @ Some(_) = balls::intersects(a, b) {
+/// Whether they intersect; `None` where GJK has to say, and where placements have yet to be checked: those of an answer are good.
+pub(crate) fn intersects(a: Placed, b: Placed) -> Option<bool> {
+    let kinds = [a.shape.simple()?, b.shape.simple()?];
+    let (at_a, at_b) = (Similarity::plain(a.placement)?, Similarity::plain(b.placement)?);
+    let offset = b.placement.translation - a.placement.translation;
+    if let answer @ Some(_) = quick::intersects(kinds, [&at_a, &at_b], offset) {
         return answer;
     }
-    match Pair::new(a, b)?.0 {
+    match Pair::of(kinds, [at_a, at_b], offset).0 {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).gap().intersects(),
         Pair::RoundBox(round, cuboid) | Pair::BoxRound(cuboid, round) => {
             Cores::of_round_and_box(&round, &cuboid)?.gap().intersects()
@@ -79,9 +82,13 @@ pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
 impl Pair {
     /// With the scale: world lengths times it are lengths of the pair.
     fn new(a: Placed, b: Placed) -> Option<(Pair, f64)> {
-        let (of_a, of_b) = (a.shape.simple()?, b.shape.simple()?);
-        let (at_a, at_b) = (Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?);
-        let offset = b.placement.translation - a.placement.translation;
+        let kinds = [a.shape.simple()?, b.shape.simple()?];
+        let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];
+        Some(Pair::of(kinds, at, b.placement.translation - a.placement.translation))
+    }
+
+    /// Of two shapes under similarities; `offset` leads from the origin of the first to that of the second.
+    fn of([of_a, of_b]: [Simple; 2], [at_a, at_b]: [Similarity; 2], offset: DVec3) -> (Pair, f64) {
         let size = of_a.radius() * at_a.stretch + of_b.radius() * at_b.stretch + offset.abs().element_sum();
         let scale = unit_scale(size);
         let (at_a, at_b) = (at_a.scaled(scale), at_b.scaled(scale));
@@ -110,7 +117,7 @@ impl Pair {
                 }
             }
         };
-        Some((pair, scale))
+        (pair, scale)
     }
 }
 
