@@ -18,7 +18,7 @@ use super::{Mirror, Placed, Relation};
 use crate::shape::Simple;
 use boxes::PlacedBox;
 use round::{Cores, PlacedRound};
-use similarity::Similarity;
+use similarity::{Similarity, plain_stretch};
 
 /// The least gap or overlap that a closed form decides, relative to the size of the data, which here is that of the balls around
 /// the shapes and of the distance of their origins: no less than GJK's. Beyond GJK's error, by more than the errors of a
@@ -37,12 +37,14 @@ enum Pair {
 /// Whether they intersect; `None` where GJK has to say, and where placements have yet to be checked: those of an answer are good.
 pub(crate) fn intersects(a: Placed, b: Placed) -> Option<bool> {
     let kinds = [a.shape.simple()?, b.shape.simple()?];
-    let (at_a, at_b) = (Similarity::plain(a.placement)?, Similarity::plain(b.placement)?);
-    let offset = b.placement.translation - a.placement.translation;
-    if let answer @ Some(_) = quick::intersects(kinds, [&at_a, &at_b], offset) {
-        return answer;
-    }
-    match Pair::of(kinds, [at_a, at_b], offset).0 {
+    let stretch = [plain_stretch(a.placement)?, plain_stretch(b.placement)?];
+    quick::intersects(kinds, [a.placement, b.placement], stretch).or_else(|| closely_intersects(kinds, a, b))
+}
+
+/// Whether they intersect, of pairs that take a common space.
+fn closely_intersects(kinds: [Simple; 2], a: Placed, b: Placed) -> Option<bool> {
+    let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];
+    match Pair::of(kinds, at, b.placement.translation - a.placement.translation).0 {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).gap().intersects(),
         Pair::RoundBox(round, cuboid) | Pair::BoxRound(cuboid, round) => {
             Cores::of_round_and_box(&round, &cuboid)?.gap().intersects()

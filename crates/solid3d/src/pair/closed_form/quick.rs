@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::similarity::Similarity;
 use super::{GAP_MIN, round::closest_on_segments};
@@ -11,9 +11,15 @@ use crate::shape::Simple;
 /// Sizes of the data whose squares and the products of these neither overflow nor vanish.
 const PLAIN_SIZES: RangeInclusive<f64> = 1e-30..=1e30;
 
-/// Whether they intersect; `None` where a closer look has to say. `offset` leads from the origin of `A` to that of `B`.
-pub(super) fn intersects([a, b]: [Simple; 2], [at_a, at_b]: [&Similarity; 2], offset: DVec3) -> Option<bool> {
-    let (reach_a, reach_b) = (a.radius() * at_a.stretch, b.radius() * at_b.stretch);
+/// Whether they intersect; `None` where a closer look has to say. With the scales of the placements.
+#[inline]
+pub(super) fn intersects(
+    [a, b]: [Simple; 2],
+    [at_a, at_b]: [&DAffine3; 2],
+    [stretch_a, stretch_b]: [f64; 2],
+) -> Option<bool> {
+    let offset = at_b.translation - at_a.translation;
+    let (reach_a, reach_b) = (a.radius() * stretch_a, b.radius() * stretch_b);
     let size = reach_a + reach_b + offset.abs().element_sum();
     let margin = GAP_MIN * size;
     let far = reach_a + reach_b + margin;
@@ -29,18 +35,20 @@ pub(super) fn intersects([a, b]: [Simple; 2], [at_a, at_b]: [&Similarity; 2], of
                 Simple::Round { radius: radius_a, half_height: height_a },
                 Simple::Round { radius: radius_b, half_height: height_b },
             ) => {
-                let radii = radius_a * at_a.stretch + radius_b * at_b.stretch;
+                let radii = radius_a * stretch_a + radius_b * stretch_b;
                 if height_a == 0.0 && height_b == 0.0 {
                     return meet_within(square, radii - margin);
                 }
-                let (axis_a, axis_b) = (at_a.y_axis() * height_a, at_b.y_axis() * height_b);
+                let (axis_a, axis_b) = (at_a.matrix3.y_axis * height_a, at_b.matrix3.y_axis * height_b);
                 segments(-offset, axis_a, axis_b).decide(radii, margin)
             }
             (Simple::Round { radius, half_height: 0.0 }, Simple::Cuboid { half }) => {
-                center_and_box(-offset, at_b, half).decide(radius * at_a.stretch, margin)
+                let at_b = Similarity::of_stretch(at_b, stretch_b);
+                center_and_box(-offset, &at_b, half).decide(radius * stretch_a, margin)
             }
             (Simple::Cuboid { half }, Simple::Round { radius, half_height: 0.0 }) => {
-                center_and_box(offset, at_a, half).decide(radius * at_b.stretch, margin)
+                let at_a = Similarity::of_stretch(at_a, stretch_a);
+                center_and_box(offset, &at_a, half).decide(radius * stretch_b, margin)
             }
             (Simple::Round { .. }, Simple::Cuboid { .. })
             | (Simple::Cuboid { .. }, Simple::Round { .. } | Simple::Cuboid { .. }) => None,
@@ -58,6 +66,7 @@ struct Cores {
 
 impl Cores {
     /// Whether what is within the radii of the cores intersects.
+    #[inline]
     fn decide(&self, radii: f64, margin: f64) -> Option<bool> {
         let far = radii + margin;
         if self.gap > 0.0 && self.gap * self.gap > far * far * self.square {
@@ -69,11 +78,13 @@ impl Cores {
 }
 
 /// Whether two points are so near, by the square of their distance; if not, that says nothing.
+#[inline]
 fn meet_within(square: f64, near: f64) -> Option<bool> {
     (near > 0.0 && square < near * near).then_some(true)
 }
 
 /// Two segments, by their half axes; `between` leads from the middle of the second to that of the first.
+#[inline]
 fn segments(between: DVec3, a: DVec3, b: DVec3) -> Cores {
     let (s, t) = closest_on_segments(between, a, b);
     let v = between + a * s - b * t;
@@ -81,6 +92,7 @@ fn segments(between: DVec3, a: DVec3, b: DVec3) -> Cores {
 }
 
 /// A point, seen from the centre of a box, and the box.
+#[inline]
 fn center_and_box(center: DVec3, at: &Similarity, half: DVec3) -> Cores {
     let local = at.local(center);
     // In the box's own space exactly along its axes, where the point is beyond a face.

@@ -120,6 +120,7 @@ const DISTANCE_ERROR: f64 = 0.25 * solid_convex::gjk::TOUCHING_ERROR;
 /// Where two segments are the closest, in half axes from their middles, from -1 to 1 (Ericson, *Real-Time Collision
 /// Detection*, section 5.1.9). Only points of the segments, however nearly parallel they are; how good these are is told
 /// by the gap along the line that joins them.
+#[inline]
 pub(super) fn closest_on_segments(between: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
     let (aa, bb, ab) = (a.length_squared(), b.length_squared(), a.dot(b));
     let (to_a, to_b) = (a.dot(between), b.dot(between));
