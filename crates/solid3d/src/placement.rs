@@ -42,11 +42,17 @@ fn plainly_good(placement: &DAffine3) -> bool {
     /// Far above the square of `VOLUME_MIN`, by more than the rounding errors of the products.
     const PLAIN_VOLUME_SQUARED: f64 = 1e-18;
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
-    let squares = [x, y, z].map(DVec3::length_squared);
+    let [xx, yy, zz] = [x, y, z].map(DVec3::length_squared);
     let volume = x.cross(y).dot(z);
-    squares.iter().all(|square| PLAIN_SQUARES.contains(square))
-        && volume * volume > PLAIN_VOLUME_SQUARED * squares[0] * squares[1] * squares[2]
-        && placement.translation.abs().cmple(DVec3::splat(MAGNITUDE_MAX)).all()
+    let DVec3 { x, y, z } = placement.translation.abs();
+    // No branches.
+    PLAIN_SQUARES.contains(&xx)
+        & PLAIN_SQUARES.contains(&yy)
+        & PLAIN_SQUARES.contains(&zz)
+        & (volume * volume > PLAIN_VOLUME_SQUARED * xx * yy * zz)
+        & (x <= MAGNITUDE_MAX)
+        & (y <= MAGNITUDE_MAX)
+        & (z <= MAGNITUDE_MAX)
 }
 
 /// The unit vector along an axis, without overflow or underflow on the way; `None` for one that is too short.

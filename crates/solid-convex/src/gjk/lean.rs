@@ -17,8 +17,8 @@ use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simd::{self, Level, dispatch};
 use crate::simplex::{Simplex, VOLUME_ERROR, Within, sides_of_origin, within_edge, within_face};
 
-/// Support points after which it gives up. Of random pairs of polytopes of up to 1,000 vertices, and of quadrics that are not about to
-/// touch, none took more than half of it.
+/// Support points after which it gives up. A random pair of polytopes takes 3 of each object, in the mean, to tell whether it
+/// intersects, and 5 to tell how far it is apart; what takes many times that is about to touch.
 const STEPS_MAX: usize = 24;
 
 /// A step that shortens `v` squared by less than this part of it: the robust descent sees to it.

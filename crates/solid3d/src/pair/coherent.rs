@@ -1,14 +1,14 @@
 //! The same two shapes, asked again and again: the table's answers, with what is kept from one question to the next.
 
 use solid_convex::gjk::{Coherent, Memory};
-use solid_convex::{Closest, Penetration, Support};
+use solid_convex::{Closest, Penetration};
 
+use super::table::convex;
 use super::{Placed, Scratch, closed_form, closest, intersects, penetration};
-use crate::shape::Class;
 
 /// What [`intersects`] says, found faster. The memory must be of the same two shapes.
 pub(crate) fn intersects_again(a: Placed, b: Placed, memory: &mut Memory, scratch: &mut Scratch) -> bool {
-    let Some((on_a, on_b)) = convex(a, b) else { return intersects(a, b, scratch) };
+    let Some(((on_a, _), (on_b, _))) = convex(a, b) else { return intersects(a, b, scratch) };
     closed_form::intersects(a, b).unwrap_or_else(|| {
         let mut pair = Coherent::with_memory(on_a, on_b, *memory);
         let answer = pair.intersects(a.placement, b.placement);
@@ -19,7 +19,7 @@ pub(crate) fn intersects_again(a: Placed, b: Placed, memory: &mut Memory, scratc
 
 /// What [`closest`] says within the same error, found faster. The memory must be of the same two shapes.
 pub(crate) fn closest_again(a: Placed, b: Placed, memory: &mut Memory, scratch: &mut Scratch) -> Closest {
-    let Some((on_a, on_b)) = convex(a, b) else { return closest(a, b, scratch) };
+    let Some(((on_a, _), (on_b, _))) = convex(a, b) else { return closest(a, b, scratch) };
     closed_form::closest(a, b).unwrap_or_else(|| {
         let mut pair = Coherent::with_memory(on_a, on_b, *memory);
         let answer = pair.closest_points(a.placement, b.placement);
@@ -35,16 +35,9 @@ pub(crate) fn penetration_again(
     memory: &mut Memory,
     scratch: &mut Scratch,
 ) -> Option<Penetration> {
-    let Some((on_a, on_b)) = convex(a, b) else { return penetration(a, b, scratch) };
+    let Some(((on_a, _), (on_b, _))) = convex(a, b) else { return penetration(a, b, scratch) };
     let mut pair = Coherent::with_memory(on_a, on_b, *memory);
     let answer = pair.penetration(a.placement, b.placement);
     *memory = pair.memory();
     answer
-}
-
-fn convex<'a>(a: Placed<'a>, b: Placed<'a>) -> Option<(&'a dyn Support, &'a dyn Support)> {
-    match (a.shape.class(), b.shape.class()) {
-        (Class::Convex(on_a), Class::Convex(on_b)) => Some((on_a, on_b)),
-        _ => None,
-    }
 }

@@ -6,6 +6,10 @@ use solid_convex::{Closest, Outcome, gjk};
 use super::table::PlacedConvex;
 use super::{Relation, Scratch};
 
+pub(super) fn intersects(a: PlacedConvex, b: PlacedConvex) -> bool {
+    gjk::intersects(a.0, a.1, b.0, b.1)
+}
+
 pub(super) fn intersection(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Relation {
     scratch.primitive_tests += 1;
     match gjk::intersection(a.0, a.1, b.0, b.1) {
@@ -14,19 +18,11 @@ pub(super) fn intersection(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scrat
     }
 }
 
-pub(super) fn closest_within(
-    a: PlacedConvex,
-    b: PlacedConvex,
-    bound: f64,
-    scratch: &mut Scratch,
-) -> Option<Closest> {
-    scratch.primitive_tests += 1;
+pub(super) fn closest_within(a: PlacedConvex, b: PlacedConvex, bound: f64) -> Option<Closest> {
     gjk::closest_points_within(a.0, a.1, b.0, b.1, bound)
 }
 
 pub(super) fn axis(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Option<DVec3> {
-    match intersection(a, b, scratch) {
-        Relation::Separated { axis } => axis,
-        Relation::Common(_) => None,
-    }
+    scratch.primitive_tests += 1;
+    gjk::separating_axis(a.0, a.1, b.0, b.1)
 }

@@ -36,6 +36,7 @@ use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
+pub(crate) use closed_form::intersects as plainly_intersects;
 pub(crate) use coherent::{closest_again, intersects_again, penetration_again};
 pub(crate) use contact::contacts;
 pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};
@@ -49,7 +50,10 @@ pub(crate) use scratch::Scratch;
 use solid_convex::{Closest, Witness, gjk};
 pub(crate) use surface::{SurfacePoint, surface_point};
 pub use swept::Path;
-pub(crate) use table::{axis, closest, closest_within, intersection, intersects, penetration};
+pub(crate) use table::{
+    axis, closest, closest_within, convex_closest_within, convex_intersects, intersection, intersects,
+    penetration,
+};
 
 use crate::placement::inverse_linear;
 use crate::shape::{Class, Shape};

@@ -28,14 +28,10 @@ pub(super) fn bounds_margin(size: f64) -> f64 {
     BOUNDS_MARGIN * size
 }
 
-/// The smallest box around the image of a convex shape under a linear map, up to rounding: six support points.
+/// The smallest box around the image of a convex shape under a linear map, up to rounding.
 pub(super) fn convex_bounds(shape: &dyn Support, linear: &DMat3) -> Aabb {
-    let transposed = linear.transpose();
-    let furthest = |axis: DVec3| axis.dot(linear.mul_vec3(shape.support(transposed * axis)));
-    let along = |sign: f64| {
-        sign * DVec3::new(furthest(DVec3::X * sign), furthest(DVec3::Y * sign), furthest(DVec3::Z * sign))
-    };
-    Aabb::new(along(-1.0), along(1.0))
+    let [min, max] = shape.image_bounds(linear);
+    Aabb::new(min, max)
 }
 
 /// The largest magnitude of each coordinate over the image of a box under a linear map.

@@ -36,12 +36,35 @@ impl<T: Mirror> Row<T> {
 
 /// Whether they intersect: what [`intersection`] says, without a common point.
 pub(crate) fn intersects(a: Placed, b: Placed, scratch: &mut Scratch) -> bool {
-    match closed_form::intersects(a, b) {
+    match closed_form::intersects(a, b).or_else(|| convex_intersects(a, b)) {
         Some(answer) => {
             scratch.primitive_tests += 1;
             answer
         }
         None => matches!(intersection(a, b, scratch), Relation::Common(_)),
+    }
+}
+
+/// What [`intersects`] says of convex shapes, for which no working memory is needed; `None` for others.
+pub(crate) fn convex_intersects(a: Placed, b: Placed) -> Option<bool> {
+    let (on_a, on_b) = convex(a, b)?;
+    Some(convex_convex::intersects(on_a, on_b))
+}
+
+/// What [`closest_within`] says of convex shapes, for which no working memory is needed; `None` for others.
+pub(crate) fn convex_closest_within(a: Placed, b: Placed, bound: f64) -> Option<Option<Closest>> {
+    if let Some(closest) = closed_form::closest(a, b) {
+        return Some((closest.distance <= bound).then_some(closest));
+    }
+    let (on_a, on_b) = convex(a, b)?;
+    Some(convex_convex::closest_within(on_a, on_b, bound))
+}
+
+/// Two shapes as convex ones, if they are.
+pub(super) fn convex<'a>(a: Placed<'a>, b: Placed<'a>) -> Option<(PlacedConvex<'a>, PlacedConvex<'a>)> {
+    match (a.shape.class(), b.shape.class()) {
+        (Class::Convex(on_a), Class::Convex(on_b)) => Some(((on_a, a.placement), (on_b, b.placement))),
+        _ => None,
     }
 }
 
@@ -67,15 +90,13 @@ pub(crate) fn closest(a: Placed, b: Placed, scratch: &mut Scratch) -> Closest {
 
 /// The closest points, if they are at most so far apart.
 pub(crate) fn closest_within(a: Placed, b: Placed, bound: f64, scratch: &mut Scratch) -> Option<Closest> {
-    if let Some(closest) = closed_form::closest(a, b) {
+    if let Some(closest) = convex_closest_within(a, b, bound) {
         scratch.primitive_tests += 1;
-        return (closest.distance <= bound).then_some(closest);
+        return closest;
     }
     let (at_a, at_b) = (a.placement, b.placement);
     match (a.shape.class(), b.shape.class()) {
-        (Class::Convex(a), Class::Convex(b)) => {
-            convex_convex::closest_within((a, at_a), (b, at_b), bound, scratch)
-        }
+        (Class::Convex(_), Class::Convex(_)) => unreachable!("convex shapes were answered"),
         (Class::Complex(a), Class::Convex(b)) => {
             complex_convex::closest_within((a, at_a), (b, at_b), bound, scratch)
         }

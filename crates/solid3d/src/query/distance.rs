@@ -40,15 +40,8 @@ pub fn distance_within(
     if !matches!(bound.partial_cmp(&0.0), Some(std::cmp::Ordering::Equal | std::cmp::Ordering::Greater)) {
         return Err(Error::Negative { argument: "bound", value: bound });
     }
-    let closest = pair::closest_within(
-        placed(a, placement_a)?,
-        placed(b, placement_b)?,
-        bound,
-        &mut Scratch::default(),
-    );
-    Ok(closest.map(|closest| Distance {
-        distance: closest.distance,
-        point_on_a: placement_a.transform_point3(closest.points.on_a),
-        point_on_b: placement_b.transform_point3(closest.points.on_b),
-    }))
+    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let closest = pair::convex_closest_within(a, b, bound)
+        .unwrap_or_else(|| pair::closest_within(a, b, bound, &mut Scratch::default()));
+    Ok(closest.map(|closest| Distance::new(a, b, &closest)))
 }

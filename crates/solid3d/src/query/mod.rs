@@ -67,8 +67,14 @@ pub struct Distance {
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn intersects(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<bool> {
+    // Simple shapes before anything is prepared, convex ones before working memory.
+    let unchecked = |shape, placement| Placed { shape, placement };
+    if let Some(answer) = pair::plainly_intersects(unchecked(a, placement_a), unchecked(b, placement_b)) {
+        return Ok(answer);
+    }
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
-    Ok(pair::intersects(a, b, &mut Scratch::default()))
+    let answer = pair::convex_intersects(a, b);
+    Ok(answer.unwrap_or_else(|| pair::intersects(a, b, &mut Scratch::default())))
 }
 
 /// A point that two placed shapes have in common, in the world; `None` when they do not intersect.
@@ -170,7 +176,9 @@ pub fn separating_axis(
 /// ```
 pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<Distance> {
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
-    Ok(Distance::new(a, b, &pair::closest(a, b, &mut Scratch::default())))
+    let closest = pair::convex_closest_within(a, b, f64::INFINITY).flatten();
+    let closest = closest.unwrap_or_else(|| pair::closest(a, b, &mut Scratch::default()));
+    Ok(Distance::new(a, b, &closest))
 }
 
 impl Distance {

@@ -16,7 +16,7 @@ use rows::Rows;
 /// Points beyond which support points are looked up by direction first. Below, comparing all of them is as fast.
 const SCAN_MAX: usize = 192;
 
-/// Points beyond which the bounds of an image are found by support points. Below, it is faster to map all of them.
+/// Points beyond which the bounds of an image are found by support points. Below, mapping all of them takes fewer instructions.
 const IMAGE_MAX: usize = 400;
 
 /// The convex hull of points, as [`Points`](super::Points), with the same answers to the bit, found faster: up to 192 points by

@@ -4,9 +4,9 @@
 //! [`SKEW_MAX`], and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
 //! ([`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR)). So both say the same, and GJK decides the rest.
 
-mod balls;
 mod boxes;
 mod point;
+mod quick;
 mod round;
 mod similarity;
 #[cfg(test)]
@@ -20,7 +20,7 @@ use crate::shape::Simple;
 use boxes::PlacedBox;
 pub(super) use point::surface_point;
 use round::{Cores, PlacedRound};
-use similarity::Similarity;
+use similarity::{Similarity, plain_stretch};
 
 /// The least gap or overlap that a closed form decides, relative to the size of the data, which here is that of the balls around
 /// the shapes and of the distance of their origins: no less than GJK's. Beyond GJK's error, by more than the errors of a
@@ -36,12 +36,17 @@ enum Pair {
     Boxes(PlacedBox, PlacedBox),
 }
 
-/// Whether they intersect; `None` where GJK has to say.
-pub(super) fn intersects(a: Placed, b: Placed) -> Option<bool> {
-    if let answer @ Some(_) = balls::intersects(a, b) {
-        return answer;
-    }
-    match Pair::new(a, b)?.0 {
+/// Whether they intersect; `None` where GJK has to say, and where placements have yet to be checked: those of an answer are good.
+pub(crate) fn intersects(a: Placed, b: Placed) -> Option<bool> {
+    let kinds = [a.shape.simple()?, b.shape.simple()?];
+    let stretch = [plain_stretch(a.placement)?, plain_stretch(b.placement)?];
+    quick::intersects(kinds, [a.placement, b.placement], stretch).or_else(|| closely_intersects(kinds, a, b))
+}
+
+/// Whether they intersect, of pairs that take a common space.
+fn closely_intersects(kinds: [Simple; 2], a: Placed, b: Placed) -> Option<bool> {
+    let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];
+    match Pair::of(kinds, at, b.placement.translation - a.placement.translation).0 {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).gap().intersects(),
         Pair::RoundBox(round, cuboid) | Pair::BoxRound(cuboid, round) => {
             Cores::of_round_and_box(&round, &cuboid)?.gap().intersects()
@@ -81,9 +86,13 @@ pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
 impl Pair {
     /// With the scale: world lengths times it are lengths of the pair.
     fn new(a: Placed, b: Placed) -> Option<(Pair, f64)> {
-        let (of_a, of_b) = (a.shape.simple()?, b.shape.simple()?);
-        let (at_a, at_b) = (Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?);
-        let offset = b.placement.translation - a.placement.translation;
+        let kinds = [a.shape.simple()?, b.shape.simple()?];
+        let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];
+        Some(Pair::of(kinds, at, b.placement.translation - a.placement.translation))
+    }
+
+    /// Of two shapes under similarities; `offset` leads from the origin of the first to that of the second.
+    fn of([of_a, of_b]: [Simple; 2], [at_a, at_b]: [Similarity; 2], offset: DVec3) -> (Pair, f64) {
         let size = of_a.radius() * at_a.stretch + of_b.radius() * at_b.stretch + offset.abs().element_sum();
         let scale = unit_scale(size);
         let (at_a, at_b) = (at_a.scaled(scale), at_b.scaled(scale));
@@ -112,7 +121,7 @@ impl Pair {
                 }
             }
         };
-        Some((pair, scale))
+        (pair, scale)
     }
 }
 
