@@ -46,7 +46,7 @@ pub(super) fn meeting_primitives(
     found: &mut dyn FnMut(u32, Witness) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let (query, frame) = convex_in_complex(complex, convex);
-    let Scratch { traversal, rows: [row, _], primitive_tests, .. } = scratch;
+    let Scratch { traversal, row, primitive_tests, .. } = scratch;
     row.clear();
     let shadow = Shadow::new(convex.0, &frame, CLEARLY_APART);
     let mut meeting =
@@ -140,7 +140,7 @@ pub(super) fn closest_within(
     if let Some(points) = contained(complex.0, convex.0, &frame, scratch) {
         return Some(Closest { distance: 0.0, points });
     }
-    let Scratch { traversal, rows: [row, _], primitive_tests, .. } = scratch;
+    let Scratch { traversal, row, primitive_tests, .. } = scratch;
     row.clear();
     let [of_complex, _] = &frame.stretch;
     let metric = PairMetric {
