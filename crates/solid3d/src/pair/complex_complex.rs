@@ -17,7 +17,7 @@ use super::triangle_triangle::{self, Triangle};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 use crate::shape::Complex;
-use crate::tree::{LeafPairs, NearLeafPairs, PairMetric, bits, nearest_pairs_on, pairs_on};
+use crate::tree::{Facing, LeafPairs, NearLeafPairs, PairMetric, bits, nearest_pairs_on, pairs_on};
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
     let mut first = None;
@@ -142,12 +142,14 @@ fn closest_pair(a: PlacedComplex, b: PlacedComplex, bound: f64, scratch: &mut Sc
     let metric = metric(&of_a, &of_b);
     let mut approach =
         Approach { a, b, common: &common, scale, rows, primitive_tests, axis: DVec3::ZERO, answer: None };
+    let facing = Facing { slabs: [a.0.slabs(), b.0.slabs()], placements: common };
     nearest_pairs_on(
         level(),
         a.0.tree(),
         b.0.tree(),
         &relative,
         &metric,
+        Some(&facing),
         &mut best,
         traversal,
         &mut approach,
