@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `verdict` | the lanes that meet a triangle, and that do not, certainly |
 //! | `rows` | the rows placed lately |
-//! | `distance` | the distances of a triangle and eight, each with a lower bound |
+//! | `distance` | the distances of a triangle, or a point, and eight, each with a lower bound |
 
 mod distance;
 mod rows;
@@ -14,7 +14,7 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::{DAffine3, DVec3};
 
-pub(super) use distance::{Near, distances};
+pub(super) use distance::{Near, distances, distances_of_point};
 pub(crate) use rows::Rows;
 pub(super) use verdict::verdict;
 
