@@ -52,7 +52,7 @@ impl Slabs {
         let mut below = vec![(0..0, DVec3::ZERO); tree.nodes.len()];
         for index in (0..tree.nodes.len()).rev() {
             let node = &tree.nodes[index];
-            let (mut all, mut sum) = (usize::MAX..0, DVec3::ZERO);
+            let (mut start, mut end, mut sum) = (usize::MAX, 0, DVec3::ZERO);
             for lane in 0..WIDTH {
                 let (range, normal) = match node.child[lane].kind() {
                     Kind::Empty => break,
@@ -67,14 +67,14 @@ impl Slabs {
                         (range, sum)
                     }
                 };
-                all = all.start.min(range.start)..all.end.max(range.end);
+                (start, end) = (start.min(range.start), end.max(range.end));
                 sum += normal;
                 if range.len() <= PRIMITIVES_MAX {
                     let points = tree.order[range].iter().flat_map(|&primitive| points_of(primitive));
                     eights[index].set(lane, normal, node, points.map(|&point| place(point)));
                 }
             }
-            below[index] = (all, sum);
+            below[index] = (start..end, sum);
         }
         Slabs { eights }
     }
@@ -101,8 +101,8 @@ impl Eight {
         }
         let middle = (0.5 * (least + greatest)) as f32;
         let half = (greatest - f64::from(middle)).max(f64::from(middle) - least);
-        for axis in 0..3 {
-            self.normal[axis][lane] = normal[axis];
+        for (row, x) in self.normal.iter_mut().zip(normal) {
+            row[lane] = x;
         }
         self.middle[lane] = middle;
         // Rounded up, beyond what `f64` made of the heights: points lie within 1.
@@ -306,8 +306,8 @@ impl<S: Simd> Patch<S> {
         }
         if let Some((node, lane)) = place.split() {
             let slabs = &side.slabs[node];
-            for axis in 0..3 {
-                normal[axis] = splat(simd, slabs.normal[axis][lane]);
+            for (x, row) in normal.iter_mut().zip(&slabs.normal) {
+                *x = splat(simd, row[lane]);
             }
             (middle, half) = (splat(simd, slabs.middle[lane]), splat(simd, slabs.half[lane]));
         }

@@ -118,12 +118,12 @@ fn of_step<S: Simd>(x: &[Vector<S>; 3], y: &[Vector<S>; 3], bound: Wide<S>, aske
             ([of_x[i], of_x[next]], [passes[i][0], passes[i][1], passes[i][2]]),
             ([of_y[i], of_y[next]], [passes[0][i], passes[1][i], passes[2][i]]),
         ] {
-            meet = meet | (sides[0].opposite(sides[1]) & one_side(&[p, q, r]));
+            meet |= sides[0].opposite(sides[1]) & one_side(&[p, q, r]);
             let mixed = p.opposite(q) | q.opposite(r) | r.opposite(p);
-            missed = missed & (sides[0].same(sides[1]) | mixed);
+            missed &= sides[0].same(sides[1]) | mixed;
         }
     }
-    apart = apart | missed;
+    apart |= missed;
     Verdict { meet: meet.to_bitmask() as u32, apart: apart.to_bitmask() as u32 }
 }
 
@@ -181,19 +181,20 @@ mod tests {
             let x: Triangle = [point(), point(), point()];
             let normal = (x[1] - x[0]).cross(x[2] - x[0]).normalize();
             // Corners near the plane of x, or near an edge, off by rounding or by a little more; the rest on one side.
-            let off = [0.0, 1e-16, 1e-15, 1e-3, -1e-4, -1e-3][case % 6];
+            let off = [0.0, 1e-16, 1e-15, 1e-3, -1e-6, -1e-7][case % 6];
+            let inside = case % 18 < 12;
             let ys = std::array::from_fn(|lane| {
-                let (s, t) = ((lane as f64 + 0.5) / 16.0, if case % 12 < 6 { 0.3 } else { 0.0 });
+                let (s, t) = ((lane as f64 + 0.5) / 16.0, if inside { 0.3 } else { 0.0 });
                 let near = x[0] + (x[1] - x[0]) * s + (x[2] - x[0]) * t * (1.0 - s) + normal * off;
                 let tiny = if lane % 2 == 0 { 1.0 } else { 1e-5 };
                 [near, near + (normal + point() * 0.3) * tiny, near + (normal * 2.0 + point() * 0.3) * tiny]
             });
             let [meet, unknown] = check(&x, &ys);
             hits += meet;
-            unknown_of_clear += if off.abs() > 1e-5 && case % 12 < 6 { unknown } else { 0 };
+            unknown_of_clear += if off.abs() > 1e-9 && inside { unknown } else { 0 };
         }
-        println!("{hits} of 42000 meet, of {unknown_of_clear} of 10500 that are clear nothing is said");
-        assert!((42_000 * 3 / 10..42_000 * 7 / 10).contains(&hits) && unknown_of_clear < 1000);
+        println!("{hits} of 42000 meet, of {unknown_of_clear} of 14000 that are clear nothing is said");
+        assert!((42_000 * 3 / 10..42_000 * 7 / 10).contains(&hits) && unknown_of_clear < 1400);
     }
 
     /// On a lattice, where touching, coplanar and degenerate triangles abound, and at random.
