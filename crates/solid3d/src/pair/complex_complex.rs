@@ -10,14 +10,14 @@ use solid_convex::{Closest, Witness, gjk};
 use super::containment::{PlacedSolid, part_inside};
 use super::crossing_point::{crossing_point, weighted};
 use super::frame::{Frame, Stretch};
-use super::row::{Near, Row, distances, exceed, parted};
+use super::row::{Near, Rows, distances, exceed, verdict};
 use super::scratch::PlacedPrimitive;
 use super::table::PlacedComplex;
 use super::triangle_triangle::{self, Triangle};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 use crate::shape::Complex;
-use crate::tree::{LeafPairs, NearLeafPairs, PairMetric, bits, nearest_pairs_on, pairs_on};
+use crate::tree::{Facing, LeafPairs, NearLeafPairs, PairMetric, bits, nearest_pairs_on, pairs_on};
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
     let mut first = None;
@@ -53,7 +53,7 @@ fn meeting_pairs_in(
 ) -> ControlFlow<()> {
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     let Frame { relative, common, .. } = frame;
-    rows.iter_mut().for_each(Row::clear);
+    rows.iter_mut().for_each(Rows::clear);
     let mut meeting = Meeting { a, b, common, rows, primitive_tests, found };
     pairs_on(level(), a.0.tree(), b.0.tree(), relative, traversal, &mut meeting)
 }
@@ -63,7 +63,7 @@ struct Meeting<'s> {
     a: PlacedComplex<'s>,
     b: PlacedComplex<'s>,
     common: &'s [DAffine3; 2],
-    rows: &'s mut [Row; 2],
+    rows: &'s mut [Rows; 2],
     primitive_tests: &'s mut u64,
     found: &'s mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 }
@@ -71,20 +71,24 @@ struct Meeting<'s> {
 impl LeafPairs<()> for Meeting<'_> {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32]) -> ControlFlow<()> {
-        let [in_a, in_b] = &mut *self.rows;
-        in_a.place(simd, self.a.0, leaf_a, &self.common[0]);
-        in_b.place(simd, self.b.0, leaf_b, &self.common[1]);
-        for i in bits(in_a.overlapping(simd, &in_b.union(simd))) {
-            let mut near = in_b.overlapping(simd, &in_a.bounds(i));
+        let [rows_a, rows_b] = &mut *self.rows;
+        let in_a = rows_a.place(simd, self.a.0, leaf_a, &self.common[0]);
+        let in_b = rows_b.place(simd, self.b.0, leaf_b, &self.common[1]);
+        for i in bits(in_a.overlapping(simd, in_b.union())) {
+            let bounds = in_a.bounds(i);
+            let near = in_b.overlapping(simd, &bounds);
+            if near == 0 {
+                continue;
+            }
             *self.primitive_tests += u64::from(near.count_ones());
             let x = in_a.triangle(i);
-            let is_triangle = in_a.triangles() >> i & 1 == 1;
-            if is_triangle && near != 0 {
-                near &= !(parted(simd, &x, in_b) & in_b.triangles());
-            }
-            for j in bits(near) {
+            let triangles = if in_a.triangles() >> i & 1 == 1 { near & in_b.triangles() } else { 0 };
+            let sure = verdict(simd, &x, &bounds, in_b, triangles);
+            for j in bits(near & !sure.apart) {
                 let (one, other) = (in_a.primitive(i), in_b.primitive(j));
-                let meet = if is_triangle && in_b.triangles() >> j & 1 == 1 {
+                let meet = if sure.meet >> j & 1 == 1 {
+                    true
+                } else if triangles >> j & 1 == 1 {
                     triangle_triangle::intersect(&x, &in_b.triangle(j))
                 } else {
                     hulls_meet(self.a, one, self.b, other)
@@ -134,16 +138,18 @@ fn closest_pair(a: PlacedComplex, b: PlacedComplex, bound: f64, scratch: &mut Sc
     let mut best = frame.beyond(bound);
     let Frame { relative, common, scale, stretch: [of_a, of_b] } = frame;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
-    rows.iter_mut().for_each(Row::clear);
+    rows.iter_mut().for_each(Rows::clear);
     let metric = metric(&of_a, &of_b);
     let mut approach =
         Approach { a, b, common: &common, scale, rows, primitive_tests, axis: DVec3::ZERO, answer: None };
+    let facing = Facing { slabs: [a.0.slabs(), b.0.slabs()], placements: common };
     nearest_pairs_on(
         level(),
         a.0.tree(),
         b.0.tree(),
         &relative,
         &metric,
+        Some(&facing),
         &mut best,
         traversal,
         &mut approach,
@@ -161,7 +167,7 @@ struct Approach<'s> {
     b: PlacedComplex<'s>,
     common: &'s [DAffine3; 2],
     scale: f64,
-    rows: &'s mut [Row; 2],
+    rows: &'s mut [Rows; 2],
     primitive_tests: &'s mut u64,
     /// From the closest point of B to that of A so far: what is further apart along it is no nearer.
     axis: DVec3,
@@ -171,12 +177,12 @@ struct Approach<'s> {
 impl NearLeafPairs for Approach<'_> {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32], best: &mut f64) {
-        let [in_a, in_b] = &mut *self.rows;
-        in_a.place(simd, self.a.0, leaf_a, &self.common[0]);
-        in_b.place(simd, self.b.0, leaf_b, &self.common[1]);
+        let [rows_a, rows_b] = &mut *self.rows;
+        let in_a = rows_a.place(simd, self.a.0, leaf_a, &self.common[0]);
+        let in_b = rows_b.place(simd, self.b.0, leaf_b, &self.common[1]);
         let least_of_a = in_a.least_along(simd, self.axis);
         let least_of_b = in_b.least_along(simd, -self.axis);
-        for i in bits(in_a.nearer(simd, &in_b.union(simd), *best * *best)) {
+        for i in bits(in_a.nearer(simd, in_b.union(), *best * *best)) {
             let along = exceed(simd, &least_of_b, *best - least_of_a[i]);
             let near = in_b.nearer(simd, &in_a.bounds(i), *best * *best) & !along;
             if near == 0 {

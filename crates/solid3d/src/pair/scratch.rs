@@ -1,6 +1,6 @@
 //! Working memory of the algorithms, and what they count.
 
-use super::row::Row;
+use super::row::{Row, Rows};
 use crate::bounds::Aabb;
 use crate::tree::Traversal;
 
@@ -18,8 +18,10 @@ pub(crate) struct PlacedPrimitive {
 pub(crate) struct Scratch {
     /// For walks over trees.
     pub traversal: Traversal,
-    /// The primitives of two leaves, in a common frame, in vectors.
-    pub rows: [Row; 2],
+    /// The primitives of a leaf, in a common frame, in vectors.
+    pub row: Row,
+    /// The same for leaves of two shapes.
+    pub rows: [Rows; 2],
     /// The primitives of two leaves, in a common frame.
     pub leaves: [Vec<PlacedPrimitive>; 2],
     /// The primitives of one complex shape that the other may meet on its way.

@@ -11,7 +11,7 @@ use super::topology::Topology;
 use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
-use crate::tree::Tree;
+use crate::tree::{Slabs, Tree};
 
 /// A soup of convex primitives. Clones share what a deformation leaves alone.
 #[derive(Clone, Debug)]
@@ -26,6 +26,8 @@ pub(crate) struct Complex {
     parts: Arc<OnceLock<Vec<u32>>>,
     /// What lies next to what, at these positions, found when first asked for.
     topology: OnceLock<Arc<Topology>>,
+    /// How flat it is, at these positions, found when first asked for.
+    slabs: OnceLock<Arc<Slabs>>,
 }
 
 /// Which vertices make up each primitive: its hull is the primitive. Invariant: there is at least one, each names at
@@ -131,6 +133,7 @@ impl Complex {
             solid: None,
             parts: Arc::default(),
             topology: OnceLock::new(),
+            slabs: OnceLock::new(),
         })
     }
 
@@ -180,6 +183,13 @@ impl Complex {
         })
     }
 
+    /// How flat the surface is below each lane of the tree. Cost: O(n) at the first call since the last deformation.
+    pub fn slabs(&self) -> &Slabs {
+        self.slabs.get_or_init(|| {
+            Arc::new(Slabs::new(&self.tree, &self.vertices, |primitive| self.primitives.get(primitive)))
+        })
+    }
+
     /// Whether both are soups of the same primitives, both solid or both not: one is a deformation of the other.
     pub fn same_primitives(&self, other: &Complex) -> bool {
         Arc::ptr_eq(&self.parts, &other.parts)
@@ -222,8 +232,9 @@ impl Complex {
     pub fn memory(&self) -> usize {
         let parts = self.parts.get().map_or(0, |parts| parts.capacity() * size_of::<u32>());
         let solid = self.solid.as_ref().map_or(0, |solid| solid.memory());
+        let slabs = self.slabs.get().map_or(0, |slabs| slabs.bytes());
         let vertices = self.vertices.capacity() * size_of::<DVec3>();
-        size_of::<Complex>() + self.primitives.memory() + vertices + self.tree.bytes() + solid + parts
+        size_of::<Complex>() + self.primitives.memory() + vertices + self.tree.bytes() + solid + parts + slabs
     }
 
     /// The tree over the primitives.
@@ -255,6 +266,7 @@ impl Complex {
         self.vertices.copy_from_slice(positions);
         self.tree.refit_leaves(|leaf| self.primitives.union(leaf, &self.vertices));
         self.topology = OnceLock::new();
+        self.slabs = OnceLock::new();
         if self.tree.degraded() {
             self.tree = build(&self.primitives, &self.vertices);
         }

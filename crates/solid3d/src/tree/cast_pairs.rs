@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::nearest::push_unless_far;
 use super::node::Child;
-use super::pairs::{Duel, Step};
+use super::pairs::{Duel, Pair, Step, extent};
 use super::ray::TreeRay;
 use super::relative::Relative;
 use super::{Place, Traversal, Tree};
@@ -46,34 +46,36 @@ pub fn cast_pairs(
     };
     let Traversal { counters, near_pairs: stack, .. } = traversal;
     stack.clear();
-    stack.push((0.0, (Place::ROOT, Place::ROOT)));
-    while let Some((least, (in_a, in_b))) = stack.pop() {
+    stack.push((0.0, duel.roots()));
+    while let Some((least, pair)) = stack.pop() {
         if least >= *until {
             continue;
         }
         let from = stack.len();
-        match duel.step(in_a, in_b) {
+        match duel.step(&pair) {
             Step::Leaves(leaf_a, leaf_b) => {
                 counters.leaf_visits += 1;
                 visit(leaf_a, leaf_b, until);
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let moving = moving_b(in_b);
+                let moving = moving_b(pair.b);
                 for lane in used(&a.nodes[node].child) {
                     let place = Place::lane(node, lane);
                     if let Some(least) = moving.reaches(&box_a(place)) {
-                        push_unless_far((least, (place, in_b)), *until, stack, from);
+                        let pair = Pair { a: place, extent_a: extent(&a.box_at(place)), ..pair };
+                        push_unless_far((least, pair), *until, stack, from);
                     }
                 }
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let still = box_a(in_a);
+                let still = box_a(pair.a);
                 for lane in used(&b.nodes[node].child) {
                     let place = Place::lane(node, lane);
                     if let Some(least) = moving_b(place).reaches(&still) {
-                        push_unless_far((least, (in_a, place)), *until, stack, from);
+                        let pair = Pair { b: place, extent_b: extent(&b.box_at(place)), ..pair };
+                        push_unless_far((least, pair), *until, stack, from);
                     }
                 }
             }

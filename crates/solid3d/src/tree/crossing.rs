@@ -59,6 +59,11 @@ impl Folded {
     }
 }
 
+/// Of a rotation times a scale, `3.sqrt()` times the scale.
+fn frobenius(m: &DMat3) -> f64 {
+    (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt()
+}
+
 fn row_sums(m: &DMat3) -> DVec3 {
     m.x_axis + m.y_axis + m.z_axis
 }
@@ -96,7 +101,7 @@ pub(super) struct Crossing {
 }
 
 /// A single box, prepared for tests against lanes of the other space.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(32))]
 pub(super) struct Probe {
     /// On the axes of L, the interval of the single box: three least coordinates, and from the fifth on the greatest.
@@ -136,7 +141,7 @@ impl Crossing {
             sums: quad(2.0 * row_sums(&back.abs)),
             half_rows,
             half_rows_abs: half_rows.map(|row| row.map(f32::abs)),
-            magnification: into.map.matrix3.determinant().abs().cbrt(),
+            magnification: frobenius(&into.map.matrix3) / frobenius(&DMat3::IDENTITY),
         }
     }
 

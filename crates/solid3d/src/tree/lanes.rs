@@ -35,6 +35,19 @@ pub(super) fn overlapping_probe<S: Simd>(simd: S, node: &Node, crossing: &Crossi
     !(apart.to_bitmask() as u32) & LANES
 }
 
+/// The sizes of the lanes, by which nodes compare: the sums of the sides.
+#[inline(always)]
+pub(super) fn extents<S: Simd>(simd: S, node: &Node) -> [f32; WIDTH] {
+    let [x, y, z] = three(
+        #[inline(always)]
+        |axis| {
+            let (min, max) = lanes(simd, node, axis);
+            max - min
+        },
+    );
+    (x + y + z).to_array()
+}
+
 /// A bit for each lane.
 const LANES: u32 = (1 << WIDTH) - 1;
 

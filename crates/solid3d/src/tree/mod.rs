@@ -23,6 +23,7 @@
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
 //! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
 //! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
+//! | `slabs` | how flat what hangs in each lane is: better bounds for tree against tree |
 //!
 //! # Laws
 //!
@@ -49,6 +50,7 @@ mod pairs;
 mod ray;
 mod refit;
 mod relative;
+mod slabs;
 mod split;
 mod traversal;
 mod validate;
@@ -71,6 +73,7 @@ pub use pairs::pairs;
 pub(crate) use pairs::{LeafPairs, pairs_on};
 pub use ray::TreeRay;
 pub use relative::{PlacedBox, Relative};
+pub(crate) use slabs::{Facing, Slabs};
 pub use traversal::{Counters, Traversal};
 
 use crate::Aabb;

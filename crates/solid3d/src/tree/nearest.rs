@@ -13,6 +13,10 @@ use crate::Aabb;
 
 /// What is done with leaves, in vectors of the level of instructions that the walk runs on.
 pub(crate) trait NearLeaves {
+    /// A lower bound of the distance to anything in a local box, of which `bound` is one. What is no greater than 0 says in
+    /// which order to look, the least first. Bounds of `best` and more are all the same.
+    fn raise(&self, bounds: &Aabb, bound: f64, best: f64) -> f64;
+
     /// Called with the leaves that may hold something nearer than `best`; lowers it.
     fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32], best: &mut f64);
 }
@@ -48,14 +52,15 @@ impl Tree {
         traversal: &mut Traversal,
         mut visit: impl FnMut(&[u32], &mut f64),
     ) {
-        let bounds = |node: &Node, bounds: &mut [f64; 8]| {
+        let bounds = |_: &(), node: &Node, _: f64, bounds: &mut [f64; 8]| {
             for (lane, least) in bounds.iter_mut().enumerate() {
                 if node.child[lane] != Child::EMPTY {
                     *least = bound(&self.normal.unpack(&node.lane(lane)));
                 }
             }
         };
-        self.walk_near(bounds, best, traversal, &mut visit);
+        let visit = |_: &mut (), leaf: &[u32], best: &mut f64| visit(leaf, best);
+        self.walk_near(&mut (), bounds, best, traversal, visit);
     }
 
     /// As [`nearest`](Tree::nearest), for a query in a box of local coordinates, on a level of instructions. Of `metric`, the
@@ -73,45 +78,55 @@ impl Tree {
         let metric = Folded::new(metric, &self.normal, &self.normal);
         dispatch!(level, simd => {
             self.walk_near(
+                visitor,
                 #[inline(always)]
-                |node, bounds| bound_lanes(simd, node, &query, &metric, bounds),
+                |visitor, node, best, bounds| {
+                    bound_lanes(simd, node, &query, &metric, bounds);
+                    for (lane, least) in bounds.iter_mut().enumerate() {
+                        if *least < best && node.child[lane] != Child::EMPTY {
+                            *least = visitor.raise(&self.normal.unpack(&node.lane(lane)), *least, best);
+                        }
+                    }
+                },
                 best,
                 traversal,
                 #[inline(always)]
-                |leaf, best| visitor.visit(simd, leaf, best),
+                |visitor, leaf, best| visitor.visit(simd, leaf, best),
             );
         });
     }
 
-    /// `bounds` fills in the lower bounds of the lanes in use.
+    /// `bounds` fills in the lower bounds of the lanes in use; what it makes of those that are not below `best` does not count.
     #[inline(always)] // into the function that is compiled for a level of instructions
-    fn walk_near(
+    fn walk_near<V>(
         &self,
-        bounds: impl Fn(&Node, &mut [f64; 8]),
+        visitor: &mut V,
+        bounds: impl Fn(&V, &Node, f64, &mut [f64; 8]),
         best: &mut f64,
         traversal: &mut Traversal,
-        mut visit: impl FnMut(&[u32], &mut f64),
+        mut visit: impl FnMut(&mut V, &[u32], &mut f64),
     ) {
         let Traversal { counters, near: stack, .. } = traversal;
         stack.clear();
         stack.reserve(STACK_USUAL);
         stack.push((0.0, Child::inner(0)));
         while let Some((least, child)) = stack.pop() {
-            if least >= *best {
+            // Bounds below zero are as good as zero.
+            if least >= *best || *best == 0.0 {
                 continue;
             }
             match child.kind() {
                 Kind::Empty => {}
                 Kind::Leaf(range) => {
                     counters.leaf_visits += 1;
-                    visit(self.leaf(range), best);
+                    visit(visitor, self.leaf(range), best);
                 }
                 Kind::Inner(index) => {
                     counters.box_tests += 1;
                     let node = &self.nodes[index];
                     let from = stack.len();
                     let mut of_lanes = [0.0; 8];
-                    bounds(node, &mut of_lanes);
+                    bounds(visitor, node, *best, &mut of_lanes);
                     for (&child, least) in node.child.iter().zip(of_lanes) {
                         if child != Child::EMPTY {
                             push_unless_far((least, child), *best, stack, from);

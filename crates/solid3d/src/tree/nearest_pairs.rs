@@ -3,12 +3,13 @@
 use fearless_simd::Simd;
 use solid_convex::simd::{Level, dispatch, level};
 
-use super::lanes::distances_squared;
+use super::lanes::{distances_squared, extents};
 use super::metric::{Folded, PairMetric};
 use super::nearest::push_unless_far;
 use super::node::{Child, WIDTH};
-use super::pairs::{Duel, Step};
+use super::pairs::{Duel, Pair, Step, Tested};
 use super::relative::Relative;
+use super::slabs::{Faces, Facing};
 use super::traversal::STACK_USUAL;
 use super::{Place, Traversal, Tree};
 
@@ -45,7 +46,7 @@ pub fn nearest_pairs(
     traversal: &mut Traversal,
     mut visit: impl FnMut(&[u32], &[u32], &mut f64),
 ) {
-    nearest_pairs_on(level(), a, b, relative, metric, best, traversal, &mut Plain(&mut visit));
+    nearest_pairs_on(level(), a, b, relative, metric, None, best, traversal, &mut Plain(&mut visit));
 }
 
 /// What is done with pairs of leaves, in vectors of the level of instructions that the walk runs on.
@@ -66,21 +67,23 @@ impl NearLeafPairs for Plain<'_> {
     }
 }
 
-/// As [`nearest_pairs`], on a level of instructions.
-#[expect(clippy::too_many_arguments, reason = "the public function, and the level")]
+/// As [`nearest_pairs`], on a level of instructions, and with slabs if there are any: their common space is that of the metric.
+#[expect(clippy::too_many_arguments, reason = "the public function, the level and the slabs")]
 pub(crate) fn nearest_pairs_on(
     level: Level,
     a: &Tree,
     b: &Tree,
     relative: &Relative,
     metric: &PairMetric,
+    facing: Option<&Facing>,
     best: &mut f64,
     traversal: &mut Traversal,
     visitor: &mut impl NearLeafPairs,
 ) {
     let duel = Duel::new(a, b, relative);
     let metric = Folded::new(metric, &a.normal, &b.normal);
-    dispatch!(level, simd => walk(simd, &duel, &metric, best, traversal, visitor));
+    let faces = facing.and_then(|facing| Faces::new(facing, a, b));
+    dispatch!(level, simd => walk(simd, &duel, &metric, faces.as_ref(), best, traversal, visitor));
 }
 
 #[inline(always)] // into the function that is compiled for a level of instructions
@@ -88,6 +91,7 @@ fn walk<S: Simd>(
     simd: S,
     duel: &Duel,
     metric: &Folded,
+    faces: Option<&Faces>,
     best: &mut f64,
     traversal: &mut Traversal,
     visitor: &mut impl NearLeafPairs,
@@ -96,51 +100,69 @@ fn walk<S: Simd>(
     let Traversal { counters, near_pairs: stack, .. } = traversal;
     stack.clear();
     stack.reserve(STACK_USUAL);
-    stack.push((0.0, (Place::ROOT, Place::ROOT)));
-    while let Some((least, (in_a, in_b))) = stack.pop() {
+    stack.push((0.0, duel.roots()));
+    let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
+    while let Some((least, pair)) = stack.pop() {
         if least >= *best {
             continue;
         }
         let from = stack.len();
-        match duel.step(in_a, in_b) {
+        match duel.step(&pair) {
             Step::Leaves(leaf_a, leaf_b) => {
                 counters.leaf_visits += 1;
                 visitor.visit(simd, leaf_a, leaf_b, best);
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let probe = duel.b_to_a.probe(simd, &b.box_at(in_b));
-                let lanes = &a.nodes[node];
-                let squared = distances_squared(simd, lanes, &duel.b_to_a, &probe, &metric.a, &metric.b);
-                each_lane(&lanes.child, &squared, metric, |least, lane| {
-                    push_unless_far((least, (Place::lane(node, lane), in_b)), *best, stack, from);
-                });
+                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, &duel.b_to_a, b, pair.b));
+                let squared = distances_squared(simd, lanes, &duel.b_to_a, probe, &metric.a, &metric.b);
+                let mut bounds = bounds_in_world(&squared, metric);
+                if let Some(faces) = faces.filter(|_| some_below(&bounds, *best)) {
+                    faces.raise_in_a(simd, a, node, b, pair.b, &mut bounds);
+                }
+                let extents = extents(simd, lanes);
+                for (lane, least) in in_use(&lanes.child, bounds) {
+                    let pair = Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..pair };
+                    push_unless_far((least, pair), *best, stack, from);
+                }
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let probe = duel.a_to_b.probe(simd, &a.box_at(in_a));
-                let lanes = &b.nodes[node];
-                let squared = distances_squared(simd, lanes, &duel.a_to_b, &probe, &metric.b, &metric.a);
-                each_lane(&lanes.child, &squared, metric, |least, lane| {
-                    push_unless_far((least, (in_a, Place::lane(node, lane))), *best, stack, from);
-                });
+                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, &duel.a_to_b, a, pair.a));
+                let squared = distances_squared(simd, lanes, &duel.a_to_b, probe, &metric.b, &metric.a);
+                let mut bounds = bounds_in_world(&squared, metric);
+                if let Some(faces) = faces.filter(|_| some_below(&bounds, *best)) {
+                    faces.raise_in_b(simd, b, node, a, pair.a, &mut bounds);
+                }
+                let extents = extents(simd, lanes);
+                for (lane, least) in in_use(&lanes.child, bounds) {
+                    let pair = Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..pair };
+                    push_unless_far((least, pair), *best, stack, from);
+                }
             }
             Step::Nothing => {}
         }
     }
 }
 
-/// Calls `f` with the bound in the world of each lane in use.
-#[inline]
-fn each_lane(
-    children: &[Child; WIDTH],
-    squared: &[f32; WIDTH],
-    metric: &Folded,
-    mut f: impl FnMut(f64, usize),
-) {
-    for (lane, (_, &squared)) in
-        children.iter().zip(squared).enumerate().filter(|(_, (c, _))| **c != Child::EMPTY)
-    {
-        f(metric.world(squared), lane);
+/// The bounds in the world.
+#[inline(always)]
+fn bounds_in_world(squared: &[f32; WIDTH], metric: &Folded) -> [f64; WIDTH] {
+    let mut bounds = [0.0; WIDTH];
+    for (bound, &squared) in bounds.iter_mut().zip(squared) {
+        *bound = metric.world(squared);
     }
+    bounds
+}
+
+#[inline(always)]
+fn some_below(bounds: &[f64; WIDTH], best: f64) -> bool {
+    bounds.iter().any(|&bound| bound < best)
+}
+
+/// The lanes in use, with the bound of each.
+#[inline(always)]
+fn in_use(children: &[Child; WIDTH], bounds: [f64; WIDTH]) -> impl Iterator<Item = (usize, f64)> {
+    let used = children.map(|child| child != Child::EMPTY);
+    bounds.into_iter().enumerate().filter(move |(lane, _)| used[*lane])
 }

@@ -3,8 +3,8 @@
 use fearless_simd::Simd;
 use solid_convex::simd::{Level, dispatch, level};
 
-use super::crossing::Crossing;
-use super::lanes::{bits, overlapping_probe};
+use super::crossing::{Crossing, Probe};
+use super::lanes::{bits, extents, overlapping_probe};
 use super::node::Kind;
 use super::packed::PackedBox;
 use super::relative::Relative;
@@ -85,29 +85,64 @@ fn walk<B, S: Simd>(
     let Traversal { counters, pairs: stack, .. } = traversal;
     stack.clear();
     stack.reserve(STACK_USUAL);
-    stack.push((Place::ROOT, Place::ROOT));
-    while let Some((in_a, in_b)) = stack.pop() {
-        match duel.step(in_a, in_b) {
+    stack.push(duel.roots());
+    // Of the boxes tested last: several in a row are often the same.
+    let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
+    while let Some(pair) = stack.pop() {
+        match duel.step(&pair) {
             Step::Leaves(leaf_a, leaf_b) => {
                 counters.leaf_visits += 1;
                 visitor.visit(simd, leaf_a, leaf_b)?;
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let probe = duel.b_to_a.probe(simd, &b.box_at(in_b));
-                let hits = overlapping_probe(simd, &a.nodes[node], &duel.b_to_a, &probe);
-                stack.extend(bits(hits).map(|lane| (Place::lane(node, lane), in_b)));
+                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, &duel.b_to_a, b, pair.b));
+                let extents = extents(simd, lanes);
+                for lane in bits(overlapping_probe(simd, lanes, &duel.b_to_a, probe)) {
+                    stack.push(Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..pair });
+                }
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let probe = duel.a_to_b.probe(simd, &a.box_at(in_a));
-                let hits = overlapping_probe(simd, &b.nodes[node], &duel.a_to_b, &probe);
-                stack.extend(bits(hits).map(|lane| (in_a, Place::lane(node, lane))));
+                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, &duel.a_to_b, a, pair.a));
+                let extents = extents(simd, lanes);
+                for lane in bits(overlapping_probe(simd, lanes, &duel.a_to_b, probe)) {
+                    stack.push(Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..pair });
+                }
             }
             Step::Nothing => {}
         }
     }
     ControlFlow::Continue(())
+}
+
+/// A pair of subtrees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub a: Place,
+    pub b: Place,
+    /// The sizes of their boxes.
+    pub extent_a: f32,
+    pub extent_b: f32,
+}
+
+/// The box of a tree that was prepared last for tests against lanes of the other.
+#[derive(Default)]
+pub(super) struct Tested {
+    place: Option<Place>,
+    probe: Probe,
+}
+
+impl Tested {
+    /// The box at a place, prepared.
+    #[inline(always)]
+    pub fn probe<S: Simd>(&mut self, simd: S, crossing: &Crossing, tree: &Tree, place: Place) -> &Probe {
+        if self.place != Some(place) {
+            self.place = Some(place);
+            self.probe = crossing.probe(simd, &tree.box_at(place));
+        }
+        &self.probe
+    }
 }
 
 /// Two trees, and the way between them.
@@ -141,18 +176,27 @@ impl<'t> Duel<'t> {
         Duel { a, b, a_to_b, b_to_a, magnification }
     }
 
+    /// The two trees.
+    pub fn roots(&self) -> Pair {
+        Pair {
+            a: Place::ROOT,
+            b: Place::ROOT,
+            extent_a: extent(&self.a.root),
+            extent_b: extent(&self.b.root),
+        }
+    }
+
     /// The larger of two nodes is opened (thesis, 5.2.3).
     #[inline(always)]
-    pub fn step(&self, in_a: Place, in_b: Place) -> Step<'t> {
-        let (child_a, child_b) = (self.a.child_at(in_a), self.b.child_at(in_b));
+    pub fn step(&self, pair: &Pair) -> Step<'t> {
+        let (child_a, child_b) = (self.a.child_at(pair.a), self.b.child_at(pair.b));
         match (child_a.kind(), child_b.kind()) {
             (Kind::Empty, _) | (_, Kind::Empty) => Step::Nothing,
             (Kind::Leaf(of_a), Kind::Leaf(of_b)) => Step::Leaves(self.a.leaf(of_a), self.b.leaf(of_b)),
             (Kind::Inner(node), Kind::Leaf(_)) => Step::OpenA(node),
             (Kind::Leaf(_), Kind::Inner(node)) => Step::OpenB(node),
             (Kind::Inner(node_a), Kind::Inner(node_b)) => {
-                let (box_a, box_b) = (self.a.box_at(in_a), self.b.box_at(in_b));
-                if extent(&box_a) >= self.magnification * extent(&box_b) {
+                if pair.extent_a >= self.magnification * pair.extent_b {
                     Step::OpenA(node_a)
                 } else {
                     Step::OpenB(node_b)
@@ -163,6 +207,6 @@ impl<'t> Duel<'t> {
 }
 
 /// The size by which nodes compare: the volume, as in the thesis, gives 1 to 4 % fewer box tests on tori, but flat boxes have none.
-fn extent(bounds: &PackedBox) -> f32 {
+pub(super) fn extent(bounds: &PackedBox) -> f32 {
     bounds.size(0) + bounds.size(1) + bounds.size(2)
 }

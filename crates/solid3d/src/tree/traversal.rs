@@ -1,7 +1,7 @@
 //! What every query needs from its caller: a stack to work on, and counters to add to.
 
-use super::Place;
 use super::node::Child;
+use super::pairs::Pair;
 use std::ops::AddAssign;
 
 /// The work of queries: deterministic, so tests can assert on it where times are noise.
@@ -43,9 +43,9 @@ pub struct Traversal {
     /// Nodes to visit.
     pub(super) nodes: Vec<u32>,
     /// Pairs of subtrees to visit.
-    pub(super) pairs: Vec<(Place, Place)>,
+    pub(super) pairs: Vec<Pair>,
     /// Subtrees to visit, with the lower bound of their distance; of each node, the nearest last.
     pub(super) near: Vec<(f64, Child)>,
     /// The same for pairs of subtrees.
-    pub(super) near_pairs: Vec<(f64, (Place, Place))>,
+    pub(super) near_pairs: Vec<(f64, Pair)>,
 }

@@ -10,8 +10,11 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::DVec3;
 
-use super::{Lanes, Row, Vector, Wide, along, cross, dot, minus, one, splat_triangle, steps, store, times};
+use super::{
+    Lanes, Row, Vector, Wide, along, cross, dot, minus, one, splat, splat_triangle, steps, store, times,
+};
 use crate::pair::triangle_triangle::Triangle;
+use crate::tree::bits;
 
 /// What is known of the distances of a triangle and eight.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +30,29 @@ pub(crate) struct Near {
 impl Near {
     /// Nothing is known.
     pub const UNKNOWN: Near = Near { distance: [f64::INFINITY; 8], least: [0.0; 8], v: [[0.0; 8]; 3] };
+
+    /// Of some lanes, given as bits, the nearest; the lowest of those.
+    #[inline(always)]
+    pub fn nearest(&self, lanes: u32) -> Option<usize> {
+        bits(lanes).reduce(|i, j| if self.distance[j] < self.distance[i] { j } else { i })
+    }
+
+    /// Takes in what was found of some lanes.
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, simd: S, best: &Best<S>, x: &[Vector<S>], y: &[Vector<S>; 3], from: usize) {
+        // v points from y to x: what y has most of it, and x least, bounds the distance from below.
+        let (v, distance) = (best.v, best.squared.sqrt());
+        let mut of_x = dot(x[0], v);
+        for corner in &x[1..] {
+            of_x = of_x.min(dot(*corner, v));
+        }
+        let of_y = dot(y[0], v).max(dot(y[1], v)).max(dot(y[2], v));
+        store(simd, distance, &mut self.distance, from);
+        store(simd, (of_x - of_y) / distance.max(one(simd, TINY)), &mut self.least, from);
+        for axis in 0..3 {
+            store(simd, v.0[axis], &mut self.v[axis], from);
+        }
+    }
 
     /// The direction from the point of a lane to that of the one; zero when they coincide.
     pub fn axis(&self, lane: usize) -> DVec3 {
@@ -47,6 +73,35 @@ pub(crate) fn distances<S: Simd>(simd: S, x: &Triangle, row: &Row) -> Near {
     )
 }
 
+/// The distances of a point and the triangles of a row: as of a triangle that is but the point.
+#[inline(never)] // see `distances`
+pub(crate) fn distances_of_point<S: Simd>(simd: S, p: DVec3, row: &Row) -> Near {
+    simd.vectorize(
+        #[inline(always)]
+        || distances_of_point_on(simd, p, row),
+    )
+}
+
+#[inline(always)]
+fn distances_of_point_on<S: Simd>(simd: S, p: DVec3, row: &Row) -> Near {
+    let x = splat(simd, p);
+    let mut near = Near::UNKNOWN;
+    for from in steps::<S>() {
+        let y = row.corners(simd, from);
+        let mut best = Best { squared: one(simd, f64::INFINITY), v: x };
+        for j in 0..3 {
+            let q = minus(y[(j + 1) % 3], y[j]);
+            let r = minus(x, y[j]);
+            let t = clamped(simd, dot(q, r) / dot(q, q).max(one(simd, TINY)));
+            let v = along(r, q, -t);
+            best.offer(dot(v, v), v);
+        }
+        all_faces(simd, &[x], &y, 1.0, &mut best);
+        near.take(simd, &best, &[x], &y, from);
+    }
+    near
+}
+
 #[inline(always)]
 fn distances_on<S: Simd>(simd: S, x: &Triangle, row: &Row) -> Near {
     let x = splat_triangle(simd, x);
@@ -59,15 +114,7 @@ fn distances_on<S: Simd>(simd: S, x: &Triangle, row: &Row) -> Near {
         }
         all_faces(simd, &x, &y, 1.0, &mut best);
         all_faces(simd, &y, &x, -1.0, &mut best);
-        // v points from y to x: what y has most of it, and x least, bounds the distance from below.
-        let (v, distance) = (best.v, best.squared.sqrt());
-        let of_x = dot(x[0], v).min(dot(x[1], v)).min(dot(x[2], v));
-        let of_y = dot(y[0], v).max(dot(y[1], v)).max(dot(y[2], v));
-        store(simd, distance, &mut near.distance, from);
-        store(simd, (of_x - of_y) / distance.max(one(simd, TINY)), &mut near.least, from);
-        for axis in 0..3 {
-            store(simd, v.0[axis], &mut near.v[axis], from);
-        }
+        near.take(simd, &best, &x, &y, from);
     }
     near
 }
@@ -123,7 +170,7 @@ fn clamped<S: Simd>(simd: S, t: Wide<S>) -> Wide<S> {
 /// The corners of one above the face of the other. `sign` is that of a vector from the face to the corner in `Best::v`,
 /// which points to `x`.
 #[inline(always)]
-fn all_faces<S: Simd>(simd: S, of: &[Vector<S>; 3], face: &[Vector<S>; 3], sign: f64, best: &mut Best<S>) {
+fn all_faces<S: Simd>(simd: S, of: &[Vector<S>], face: &[Vector<S>; 3], sign: f64, best: &mut Best<S>) {
     let zero = one(simd, 0.0);
     let edges = [minus(face[1], face[0]), minus(face[2], face[1]), minus(face[0], face[2])];
     let normal = cross(edges[0], edges[1]);
@@ -150,6 +197,32 @@ mod tests {
     use solid_convex::simd::levels;
     use solid_oracle::generate::seeded;
     use solid_oracle::triangle_distance;
+
+    /// Of a point: as of a triangle that is but the point, and the levels of instructions agree.
+    #[test]
+    fn a_point_is_a_triangle_of_no_size() {
+        let seed = 33;
+        println!("seed {seed}");
+        let mut rng = seeded(seed);
+        for round in 0..2000 {
+            let mut point = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-0.5..0.5)));
+            let p = point();
+            let ys = std::array::from_fn(|lane| {
+                let (q, r) = (point(), point());
+                if lane == 7 && round % 2 == 0 { [q, r, q.lerp(r, 0.3)] } else { [q, r, point()] }
+            });
+            let row = row_of(&ys);
+            let all = levels().map(|level| dispatch!(level, simd => distances_of_point(simd, p, &row)));
+            let bits = |near: &Near| [near.distance, near.least].map(|lanes| lanes.map(f64::to_bits));
+            assert!(bits(&all[1]) == bits(&all[0]));
+            for (lane, y) in ys.iter().enumerate() {
+                let exact = triangle_distance(&[p; 3], y);
+                let (distance, least) = (all[0].distance[lane], all[0].least[lane]);
+                assert!((distance - exact).abs() <= 1e-15, "{distance} for {exact}: {p:?} {y:?}");
+                assert!((least - exact).abs() <= 1e-13, "at least {least} for {exact}: {p:?} {y:?}");
+            }
+        }
+    }
 
     /// Random triangles, slivers, parallel edges, and degenerate ones: the distance is never below the true one, the lower bound
     /// never above it, nearly all are confirmed, and every level of instructions gives the same bits.

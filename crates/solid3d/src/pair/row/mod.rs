@@ -2,18 +2,21 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `planes` | the lanes that a plane parts from a triangle, certainly |
-//! | `distance` | the distances of a triangle and eight, each with a lower bound |
+//! | `verdict` | the lanes that meet a triangle, and that do not, certainly |
+//! | `rows` | the rows placed lately |
+//! | `distance` | the distances of a triangle, or a point, and eight, each with a lower bound |
 
 mod distance;
-mod planes;
+mod rows;
+mod verdict;
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::{DAffine3, DVec3};
 
-pub(super) use distance::{Near, distances};
-pub(super) use planes::parted;
+pub(super) use distance::{Near, distances, distances_of_point};
+pub(crate) use rows::Rows;
+pub(super) use verdict::verdict;
 
 use super::triangle_triangle::Triangle;
 use crate::bounds::Aabb;
@@ -24,7 +27,7 @@ use crate::tree::{LEAF_SIZE, bits};
 pub(super) type Lanes = [f64; LEAF_SIZE];
 
 /// Up to eight primitives. Lanes beyond them repeat the first.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Row {
     /// By corner and axis. A point or a segment repeats its last corner; a primitive of more vertices has none that mean
     /// anything.
@@ -32,12 +35,29 @@ pub(crate) struct Row {
     /// The boxes of the primitives.
     min: [Lanes; 3],
     max: [Lanes; 3],
+    /// The box around them all.
+    union: Aabb,
     primitives: [u32; LEAF_SIZE],
     /// The lanes in use, and those of them that are triangles, as bits.
     used: u32,
     triangles: u32,
     /// The leaf that is here: where it begins in memory, and how long it is.
     leaf: (usize, usize),
+}
+
+impl Default for Row {
+    fn default() -> Self {
+        Row {
+            corners: Default::default(),
+            min: Default::default(),
+            max: Default::default(),
+            union: Aabb::EMPTY,
+            primitives: [0; LEAF_SIZE],
+            used: 0,
+            triangles: 0,
+            leaf: (0, 0),
+        }
+    }
 }
 
 impl Row {
@@ -69,6 +89,7 @@ impl Row {
             }
             None => self.place_mixed(simd, complex, map),
         }
+        self.union = self.union_of_lanes(simd);
     }
 
     #[inline(never)] // see `distances`
@@ -172,7 +193,12 @@ impl Row {
 
     /// The box around all lanes.
     #[inline(always)]
-    pub fn union<S: Simd>(&self, simd: S) -> Aabb {
+    pub fn union(&self) -> &Aabb {
+        &self.union
+    }
+
+    #[inline(always)]
+    fn union_of_lanes<S: Simd>(&self, simd: S) -> Aabb {
         let mut bounds = Aabb::EMPTY;
         for axis in 0..3 {
             let mut least = load(simd, &self.min[axis], 0);
