@@ -239,9 +239,14 @@ impl BroadPhaseKind {
 #[inline]
 fn assert_valid(proxy: Proxy, bounds: &Aabb) {
     assert!(proxy <= PROXY_MAX, "proxy {proxy} is above PROXY_MAX = {PROXY_MAX}");
-    let Aabb { min, max } = bounds;
-    // No comparison holds of what is not a number. Without a branch: this is asked of every box that moves.
-    let is_valid = (0..3)
-        .fold(true, |valid, k| valid & (-f64::MAX <= min[k]) & (min[k] <= max[k]) & (max[k] <= f64::MAX));
-    assert!(is_valid, "the box of proxy {proxy} is empty or not finite: {bounds:?}");
+    let is_finite =
+        (0..3).fold(true, |is, k| is & (bounds.min[k] >= -f64::MAX) & (bounds.max[k] <= f64::MAX));
+    assert!(is_ordered(bounds) & is_finite, "the box of proxy {proxy} is empty or not finite: {bounds:?}");
+}
+
+/// Whether a box is of numbers and not empty. Without a branch: this is asked of every box that moves.
+#[inline]
+fn is_ordered(bounds: &Aabb) -> bool {
+    // No comparison holds of what is not a number.
+    (0..3).fold(true, |is, k| is & (bounds.min[k] <= bounds.max[k]))
 }

@@ -249,6 +249,41 @@ fn the_same_calls_give_the_same_order() {
     }
 }
 
+/// Law: the same pairs in the same order, the same changes and counters, on any number of threads.
+#[cfg(feature = "rayon")]
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    /// Enough for several threads to have something to do.
+    const BOXES: u32 = 20_000;
+    let run = || {
+        let mut rng = StdRng::seed_from_u64(5);
+        let mut anywhere =
+            |scale: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(0.0..scale)));
+        let side = (8.0 * f64::from(BOXES)).cbrt();
+        let places: Vec<_> = (0..BOXES).map(|_| (anywhere(side), anywhere(0.1))).collect();
+        let mut broad = BroadPhaseKind::DynamicTree.build();
+        let (mut pairs, mut changes) = (Vec::new(), Vec::new());
+        for frame in 0..8 {
+            for (proxy, (place, velocity)) in (0..).zip(&places) {
+                let min = *place + *velocity * f64::from(frame);
+                let b = Aabb::new(min, min + 1.0);
+                if frame == 0 { broad.insert(proxy, b) } else { broad.update(proxy, b) }
+            }
+            broad.flush();
+            broad.for_each_pair(&mut |a, b| pairs.push((a, b)));
+            changes.extend_from_slice(broad.changes());
+        }
+        broad.validate();
+        (pairs, changes, broad.counters())
+    };
+    let on = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run);
+    let alone = on(1);
+    assert!(alone.2.rebuilds > 1 && alone.1.len() > 10_000, "{:?}, {} changes", alone.2, alone.1.len());
+    for threads in [2, 3, 8] {
+        assert!(on(threads) == alone, "{threads} threads");
+    }
+}
+
 #[test]
 #[should_panic(expected = "changed since the last flush")]
 fn unflushed_pairs_are_refused() {

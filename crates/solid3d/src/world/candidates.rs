@@ -11,10 +11,11 @@ use super::near::{Near, Nearness};
 #[cfg(feature = "rayon")]
 use super::object::Object;
 use super::object::Staleness;
+use super::pair_map::PairMap;
 #[cfg(feature = "rayon")]
 use super::threads::{BATCH, Workers};
 use super::{Contact, ObjectId, World};
-use crate::broad::room::{push, resize};
+use crate::broad::room::push;
 use crate::broad::{PairChange, PairId};
 
 /// What the box of an object costs that moved, at least, in units of [`Workers::share`].
@@ -43,8 +44,7 @@ pub(super) struct Candidate {
 /// All candidates.
 #[derive(Debug, Default)]
 pub(super) struct Candidates {
-    /// By the broad phase's pair.
-    slots: Vec<Option<Candidate>>,
+    slots: PairMap<Candidate>,
     /// Pairs to be examined, some of them twice; some may be none any more.
     queue: Vec<PairId>,
     /// How many matter.
@@ -56,19 +56,15 @@ pub(super) struct Candidates {
 impl Candidates {
     /// Adds a candidate, to be examined.
     fn begin(&mut self, pair: PairId, a: ObjectId, b: ObjectId) {
-        let slot = pair as usize;
-        if slot >= self.slots.len() {
-            resize(&mut self.slots, slot + 1, None);
-        }
         self.stir_nearness(pair);
         let candidate = Candidate { a, b, axis: None, found: None, matters: false, queued: true };
-        self.slots[slot] = Some(candidate);
+        self.slots.insert(pair, candidate);
         push(&mut self.queue, pair);
     }
 
     /// Forgets a candidate and its collision.
     pub fn end(&mut self, pair: PairId, findings: &mut Findings) {
-        if let Some(candidate) = self.slots[pair as usize].take() {
+        if let Some(candidate) = self.slots.remove(pair) {
             self.stir_nearness(pair);
             self.count -= u64::from(candidate.matters);
             if let Some(found) = candidate.found {
@@ -80,7 +76,7 @@ impl Candidates {
     /// Has a candidate examined by the next test.
     pub fn enqueue(&mut self, pair: PairId) {
         self.stir_nearness(pair);
-        if let Some(candidate) = &mut self.slots[pair as usize]
+        if let Some(candidate) = self.slots.get_mut(pair)
             && !std::mem::replace(&mut candidate.queued, true)
         {
             self.queue.push(pair);
@@ -89,21 +85,21 @@ impl Candidates {
 
     /// Has every candidate examined by the next test.
     pub fn enqueue_all(&mut self) {
-        for pair in 0..self.slots.len() as PairId {
+        for pair in 0..self.slots.end() as PairId {
             self.enqueue(pair);
         }
     }
 
     /// Forgets what was learned about pairs that may help to examine them.
     pub fn forget_axes(&mut self) {
-        self.slots.iter_mut().flatten().for_each(|candidate| candidate.axis = None);
+        self.slots.values_mut().for_each(|candidate| candidate.axis = None);
     }
 
     /// Moves the queue to `pairs`, each pair once.
     pub fn take_queue(&mut self, pairs: &mut Vec<PairId>) {
         pairs.clear();
         for pair in self.queue.drain(..) {
-            if let Some(candidate) = &mut self.slots[pair as usize]
+            if let Some(candidate) = self.slots.get_mut(pair)
                 && std::mem::replace(&mut candidate.queued, false)
             {
                 pairs.push(pair);
@@ -126,12 +122,9 @@ impl Candidates {
     /// Puts into `pairs` the candidates of which it is not known how near they are.
     pub fn unknown(&mut self, pairs: &mut Vec<PairId>) {
         pairs.clear();
-        self.nearness.resize(self.slots.len(), Nearness::Unknown);
-        for (pair, (slot, nearness)) in (0..).zip(self.slots.iter().zip(&self.nearness)) {
-            if let (Some(_), Nearness::Unknown) = (slot, nearness) {
-                pairs.push(pair);
-            }
-        }
+        self.nearness.resize(self.slots.end(), Nearness::Unknown);
+        let is_unknown = |&pair: &PairId| matches!(self.nearness[pair as usize], Nearness::Unknown);
+        pairs.extend(self.slots.keys().filter(is_unknown));
     }
 
     pub fn set_nearness(&mut self, pair: PairId, nearness: Nearness) {
@@ -147,11 +140,11 @@ impl Candidates {
     }
 
     pub fn get(&self, pair: PairId) -> &Candidate {
-        self.slots[pair as usize].as_ref().expect("pairs in the queue are candidates")
+        self.slots.get(pair).expect("pairs in the queue are candidates")
     }
 
     pub fn get_mut(&mut self, pair: PairId) -> &mut Candidate {
-        self.slots[pair as usize].as_mut().expect("pairs in the queue are candidates")
+        self.slots.get_mut(pair).expect("pairs in the queue are candidates")
     }
 }
 
@@ -162,10 +155,10 @@ impl World {
             return;
         }
         self.update_broad();
-        let Self { broad, candidates, findings, objects, by_proxy, stirred, .. } = self;
+        let Self { broad, candidates, findings, objects, stirred, .. } = self;
         for &PairChange { pair, proxies, overlaps } in broad.changes() {
             if overlaps {
-                let [a, b] = proxies.map(|proxy| by_proxy[proxy as usize]);
+                let [a, b] = proxies.map(|proxy| objects.id_of(proxy));
                 let (a, b) = if objects[a].order <= objects[b].order { (a, b) } else { (b, a) };
                 candidates.begin(pair, a, b);
             } else {

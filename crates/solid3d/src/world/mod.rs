@@ -2,6 +2,7 @@
 //!
 //! It contains no geometry: what two shapes do is the algorithm table's business, which boxes overlap the broad phase's.
 
+mod arena;
 mod candidates;
 mod clearance;
 mod collision;
@@ -13,6 +14,7 @@ mod near;
 mod object;
 mod options;
 mod ordered;
+mod pair_map;
 mod rays;
 mod regions;
 mod response;
@@ -21,7 +23,6 @@ mod test;
 mod threads;
 
 use glam::{DAffine3, DVec3};
-use slotmap::{Key, SlotMap};
 
 pub use collision::{Collision, Contact};
 pub use event::{Event, EventKind};
@@ -34,11 +35,11 @@ pub use response::Response;
 pub use statistics::Statistics;
 pub use test::TestProgress;
 
-use crate::broad::room::resize;
-use crate::broad::{BroadPhase, PROXY_MAX, PairId, Proxy};
+use crate::broad::{BroadPhase, PROXY_MAX, PairId};
 use crate::error::{Error, Result};
 use crate::placement;
 use crate::shape::Shape;
+use arena::{Arena, slot_of as proxy};
 use candidates::{Candidates, PairKey};
 use clearance::Clearances;
 use findings::Findings;
@@ -73,9 +74,8 @@ const OBJECTS_MAX: usize = PROXY_MAX as usize;
 /// ```
 #[derive(Debug)]
 pub struct World {
-    objects: SlotMap<ObjectId, Object>,
-    /// The object of each proxy of the broad phase, which is its slot.
-    by_proxy: Vec<ObjectId>,
+    /// The slot of each is its proxy in the broad phase.
+    objects: Arena,
     /// How many objects were ever added: the creation order.
     added: u64,
     responses: ResponseTable,
@@ -122,8 +122,7 @@ impl World {
     /// An empty world.
     pub fn with_options(options: &WorldOptions) -> Self {
         World {
-            objects: SlotMap::with_key(),
-            by_proxy: Vec::new(),
+            objects: Arena::default(),
             added: 0,
             responses: ResponseTable::new(options.default_response),
             clearances: Clearances::default(),
@@ -179,12 +178,7 @@ impl World {
         let id = self.objects.insert(object);
         self.added += 1;
         self.stale = true;
-        let proxy = proxy(id);
-        if self.by_proxy.len() <= proxy as usize {
-            resize(&mut self.by_proxy, proxy as usize + 1, ObjectId::default());
-        }
-        self.by_proxy[proxy as usize] = id;
-        self.broad.insert(proxy, bounds);
+        self.broad.insert(proxy(id), bounds);
         Ok(id)
     }
 
@@ -342,12 +336,6 @@ impl World {
         *staleness = what.max(*staleness);
         self.stale = true;
     }
-}
-
-/// An object's box in the broad phase is named by its slot.
-fn proxy(id: ObjectId) -> Proxy {
-    // The low half of the bits is the slot, the high half the generation.
-    id.data().as_ffi() as u32
 }
 
 #[cfg(test)]

@@ -135,7 +135,7 @@ impl World {
             }
         }
         self.broad.for_each_nearest(bound, until, &mut |proxy| {
-            let id = self.by_proxy[proxy as usize];
+            let id = self.objects.id_of(proxy);
             if self.objects.get(id).is_some_and(|object| !is_out_of_date(object)) {
                 until = visit(id, until);
             }

@@ -384,6 +384,8 @@ mod tests {
     /// Law: the cost of a frame follows what moved.
     #[test]
     fn a_thousand_movers_among_many_cost_what_a_thousand_cost() {
+        /// Nodes that a mover visits, and its place anew: a little more than the levels of the tree, six of eight children each.
+        const VISITS_MAX: u64 = 8;
         let (movers, resting) = (1000, 100_000);
         let (alone, visits_alone) = frame_of_movers(movers, 0);
         let (among, visits_among) = frame_of_movers(movers, resting);
@@ -391,7 +393,8 @@ mod tests {
         assert_eq!(alone.primitive_tests, among.primitive_tests);
         assert_eq!(among.candidates, alone.candidates + resting as u64 / 2);
         assert!(
-            visits_among <= 2 * visits_alone + 100,
+            // Among many each mover goes down from the root; alone, the tree against itself finds the pairs of all at once.
+            visits_among <= VISITS_MAX * movers as u64,
             "{visits_alone} visits alone, {visits_among} among many"
         );
     }

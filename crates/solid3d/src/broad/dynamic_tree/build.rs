@@ -17,6 +17,12 @@ use crate::broad::room::{push, room};
 /// fewer than `DEPTH_MAX` in all.
 const DEPTH_BY_CODE: usize = 32;
 
+/// There are more leaves than this for each node, inner nodes included; with the reserve of a vector there is room for all nodes.
+const LEAVES_PER_NODE: usize = 5;
+
+/// Ranges of so many leaves or fewer are cut into full nodes.
+const CUT_BY_CODE_MIN: usize = 32;
+
 /// Bits of a code for each axis.
 const BITS: u32 = 10;
 
@@ -39,13 +45,9 @@ impl Builder {
         if self.order.is_empty() {
             return;
         }
+        room(&mut tree.nodes, self.order.len() / LEAVES_PER_NODE);
         encode(&mut self.order, boxes);
         fill(tree, ROOT, &mut self.order, boxes, 1);
-    }
-
-    /// The leaves of the tree that was built last, in its order: those that follow one another are near one another.
-    pub fn leaves(&self) -> impl Iterator<Item = Proxy> {
-        self.order.iter().map(|&entry| proxy(entry))
     }
 }
 
@@ -124,6 +126,15 @@ fn split(range: &mut [u64], boxes: &[FatBox], depth: usize, ends: &mut [usize; W
             *end = i + 1;
         }
         return range.len();
+    }
+    if range.len() <= CUT_BY_CODE_MIN {
+        // Along the curve, whatever the codes: fewer nodes, and those of leaves are full. Of a swarm that takes a fifth of the memory of
+        // a tree, for 6 % more visits.
+        let pieces = range.len().div_ceil(WIDTH);
+        for (i, end) in ends[..pieces].iter_mut().enumerate() {
+            *end = (WIDTH * (i + 1)).min(range.len());
+        }
+        return pieces;
     }
     if depth < DEPTH_BY_CODE && code(range[0]) == code(range[range.len() - 1]) {
         encode(range, boxes);

@@ -75,12 +75,17 @@ impl FatBox {
     }
 }
 
+/// The greatest `f32` that is not above, within the range of `f32`. Without a branch: there is no telling which way a number rounds.
+#[inline]
 fn round_down(x: f64) -> f32 {
-    let y = x as f32;
-    let y = if f64::from(y) > x { y.next_down() } else { y };
-    y.clamp(-f32::MAX, f32::MAX)
+    let nearest = x as f32;
+    // The order of these integers is that of the numbers; what rounded up to zero is minus zero, the one before it.
+    let flipped = |bits: i32| bits ^ (bits >> 31 & i32::MAX);
+    let below = flipped(nearest.to_bits() as i32) - i32::from(f64::from(nearest) > x);
+    f32::from_bits(flipped(below) as u32).clamp(-f32::MAX, f32::MAX)
 }
 
+#[inline]
 fn round_up(x: f64) -> f32 {
     -round_down(-x)
 }

@@ -8,21 +8,31 @@
 //! boxes together must come before it has to be decided again took twice the frame where all move: what has to be known of the
 //! moves, and the branches that nobody can foretell, cost more than the comparisons that they spare.)
 //!
-//! When more than one in [`REBUILD_AT_ONE_IN`] boxes leave in one frame, the whole tree is built anew: that is cheaper than to
-//! place them one by one, and a tree that was just built answers faster. Either path gives the same pairs.
+//! When more than one in [`REBUILD_AT_ONE_IN`] boxes leave in one frame, the whole tree is built anew, and all pairs of fat boxes are
+//! found anew by the tree against itself, node by node along the curve that it was built along: that is cheaper than to place boxes
+//! one by one, each of which goes down from the root. Either path gives the same pairs. (A million boxes: 0.3 s at first, where a
+//! search for each box took 0.85 s.)
+//!
+//! What is done for everything that moves is free of branches and reads memory in order, or many places at a time: while all move
+//! and stay inside, a frame of 10,000 boxes takes 97 us, where the same work with branches took 240 us.
 
 mod build;
 mod fat_box;
 mod nearest;
 mod node;
+mod search;
+mod self_pairs;
+mod status;
 mod tree;
 
 use super::pair_lists::PairLists;
 use super::room::{push, resize};
-use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid};
+use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid, is_ordered};
 use crate::bounds::Aabb;
 use build::Builder;
 use fat_box::FatBox;
+use search::{Found, Search};
+use status::Status;
 use tree::{DEPTH_MAX, Tree};
 
 /// Everything is built anew when more than one in this many boxes leave their fat boxes in one frame.
@@ -61,14 +71,12 @@ pub struct DynamicTree {
     tree: Tree,
     /// The pairs of fat boxes in the tree that overlap, exactly, except of queued proxies until the next flush.
     pairs: PairLists,
-    /// By proxy: the last mark that `pair_queued` gave it, as a partner that a box has already.
-    known: Vec<u32>,
-    /// The last mark given; the first is 1.
-    mark: u32,
     /// Proxies whose fat boxes are not in the tree as they are, each once; some may have been removed since.
     queue: Vec<Proxy>,
-    /// Proxies whose tight boxes changed since the last flush, each once; some may have been removed since.
+    /// Proxies whose tight boxes changed since the last flush, each once, unless it is all; some may have been removed since.
     moved: Vec<Proxy>,
+    /// Whether so many moved that no more of them were noted.
+    all_moved: bool,
     /// Whether a tight box changed, was added or removed since the last flush.
     dirty: bool,
     alive: usize,
@@ -77,43 +85,49 @@ pub struct DynamicTree {
     counters: Counters,
     builder: Builder,
     stack: Vec<u32>,
-}
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Status {
-    alive: bool,
-    /// Stands in the queue.
-    queued: bool,
-    /// Stands among the moved ones.
-    moved: bool,
-    /// Hangs in the tree.
-    in_tree: bool,
+    search: Search,
 }
 
 impl DynamicTree {
     fn is_alive(&self, proxy: Proxy) -> bool {
-        self.status.get(proxy as usize).is_some_and(|s| s.alive)
+        self.status.get(proxy as usize).is_some_and(|s| s.is(Status::ALIVE))
     }
 
     fn enqueue(&mut self, proxy: Proxy) {
-        let status = &mut self.status[proxy as usize];
-        if !std::mem::replace(&mut status.queued, true) {
+        if self.status[proxy as usize].put(Status::QUEUED) {
             push(&mut self.queue, proxy);
         }
+    }
+
+    /// Notes that a tight box changed.
+    fn note_moved(&mut self, proxy: Proxy) {
+        push(&mut self.moved, proxy);
+        self.all_moved = self.moved.len() * REFRESH_ALL_AT_ONE_IN > self.alive;
+    }
+
+    /// Gives a box another fat box, since it left the one that it had.
+    #[inline(never)]
+    fn leave(&mut self, proxy: Proxy, bounds: Aabb) {
+        assert_valid(proxy, &bounds);
+        assert!(self.is_alive(proxy), "proxy {proxy} is not in use");
+        let slot = proxy as usize;
+        let was = std::mem::replace(&mut self.tight[slot], bounds);
+        self.dirty = true;
+        if self.status[slot].put(Status::MOVED) && !self.all_moved {
+            self.note_moved(proxy);
+        }
+        self.fat[slot] = FatBox::with_room(proxy, &was, &bounds);
+        self.enqueue(proxy);
     }
 
     /// Builds the tree anew from all living boxes.
     fn rebuild(&mut self) {
         let Self { status, fat, tree, builder, .. } = self;
         for s in status.iter_mut() {
-            s.in_tree = s.alive;
+            s.set(Status::IN_TREE, s.is(Status::ALIVE));
         }
-        let living = (0..).zip(status.iter()).filter_map(|(proxy, s)| s.alive.then_some(proxy));
+        let living = (0..).zip(status.iter()).filter_map(|(proxy, s)| s.is(Status::ALIVE).then_some(proxy));
         builder.build(tree, living, fat);
-        // Boxes that are near one another find the same nodes, and those are then at hand: where 100,000 boxes leave again and again,
-        // this order has a third fewer cache misses than that of the queue, and takes a quarter less time.
-        self.queue.clear();
-        self.queue.extend(builder.leaves().filter(|&proxy| status[proxy as usize].queued));
         self.changes = 0;
         self.counters.rebuilds += 1;
     }
@@ -121,8 +135,12 @@ impl DynamicTree {
     /// Decides again which tight boxes overlap, among the pairs of boxes that moved.
     fn refresh_moved(&mut self) {
         let Self { tight, pairs, moved, .. } = self;
-        if moved.len() * REFRESH_ALL_AT_ONE_IN > self.alive {
-            pairs.refresh_all(|a, b| overlap(tight, a, b));
+        if self.all_moved {
+            let fetch = |proxy: Proxy| {
+                let Aabb { min, max } = tight[proxy as usize];
+                min.x.to_bits() ^ max.z.to_bits()
+            };
+            pairs.refresh_all(fetch, |a, b| overlap(tight, a, b));
         } else {
             for &proxy in moved.iter() {
                 pairs.refresh_of(proxy, |partner| overlap(tight, proxy, partner));
@@ -140,57 +158,85 @@ impl DynamicTree {
         }
     }
 
-    /// The same where many are queued: one pass over the pairs in place of walks along their lists.
-    fn part_all(&mut self) {
-        let Self { fat, pairs, .. } = self;
-        pairs.retain(|a, b| fat[a as usize].overlaps(&fat[b as usize]));
-    }
-
-    /// Places the queued boxes in the tree, one by one.
-    fn place_queued(&mut self) {
+    /// Places the queued boxes in the tree, one by one; false if the tree is no longer as it should be.
+    fn place_queued(&mut self) -> bool {
         let mut too_deep = false;
         for &proxy in &self.queue {
             let fat = self.fat[proxy as usize];
-            let status = &mut self.status[proxy as usize];
-            if status.in_tree && self.tree.leaf_box(proxy).overlaps(&fat) {
+            let is_new = self.status[proxy as usize].put(Status::IN_TREE);
+            if !is_new && self.tree.leaf_box(proxy).overlaps(&fat) {
                 // It drifts: it may hang where it hung.
                 self.tree.set_box(proxy, &fat);
             } else {
-                if status.in_tree {
+                if !is_new {
                     self.tree.remove(proxy);
                 }
-                status.in_tree = true;
                 too_deep |= self.tree.insert(proxy, &fat) > DEPTH_MAX;
             }
         }
         self.changes += self.queue.len();
         self.counters.reinsertions += self.queue.len() as u64;
-        if too_deep || self.changes > self.alive.max(REBUILD_MIN) {
-            self.rebuild();
-        }
+        !too_deep && self.changes <= self.alive.max(REBUILD_MIN)
     }
 
-    /// Finds the pairs of the queued boxes that are not there yet.
+    /// Finds the pairs of the queued boxes that are not there yet, box by box.
     fn pair_queued(&mut self) {
-        let Self { tight, fat, tree, pairs, queue, known, mark, stack, .. } = self;
+        let Self { tight, fat, tree, pairs, queue, stack, .. } = self;
         for &proxy in queue.iter() {
-            *mark = mark.checked_add(1).unwrap_or_else(|| {
-                known.fill(0);
-                1
-            });
-            // Of two queued boxes the one that comes first finds the pair; the other knows it then.
-            pairs.for_each_partner_of(proxy, |partner| known[partner as usize] = *mark);
-            known[proxy as usize] = *mark;
             self.counters.node_visits += tree.query(&fat[proxy as usize], stack, |other| {
-                if known[other as usize] != *mark {
+                // Of two queued boxes the one that comes first finds the pair.
+                if other != proxy && pairs.find(proxy, other).is_none() {
                     pairs.insert(proxy, other, overlap(tight, proxy, other));
                 }
             });
         }
         pairs.settle(|_| true);
     }
+
+    /// Finds all pairs anew, in a tree that was just built: nodes that follow one another are near one another, and so are the pairs
+    /// that are found in them.
+    fn pair_all(&mut self) {
+        let Self { tight, tree, pairs, search, .. } = self;
+        pairs.forget_apart();
+        self.counters.node_visits += search.run(tree, tight, |&Found { proxies: [a, b], overlaps }| {
+            // Those that do not overlap are not known any more.
+            if !overlaps || pairs.find(a, b).is_none() {
+                pairs.insert(a, b, overlaps);
+            }
+        });
+        pairs.settle(|_| true);
+    }
+
+    /// Takes those that were removed out of the queue.
+    fn drop_removed(&mut self) {
+        let status = &mut self.status;
+        self.queue.retain(|&proxy| {
+            let status = &mut status[proxy as usize];
+            status.set(Status::QUEUED, status.is(Status::ALIVE));
+            status.is(Status::ALIVE)
+        });
+    }
+
+    /// Brings the tree and the pairs of fat boxes up to date.
+    fn admit_queued(&mut self) {
+        // Boxes that are near one another find the same nodes, and those are then at hand. Since the tree was built, its nodes are about
+        // in the order of space.
+        let places = &self.tree.places;
+        self.queue.sort_unstable_by_key(|&proxy| (places[proxy as usize], proxy));
+        let few = self.queue.len() <= REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN);
+        if few {
+            self.part_queued();
+        }
+        if few && self.place_queued() {
+            self.pair_queued();
+        } else {
+            self.rebuild();
+            self.pair_all();
+        }
+    }
 }
 
+#[inline(always)]
 fn overlap(tight: &[Aabb], a: Proxy, b: Proxy) -> bool {
     tight[a as usize].overlaps(&tight[b as usize])
 }
@@ -205,10 +251,8 @@ impl BroadPhase for DynamicTree {
             resize(&mut self.status, slot + 1, Status::default());
             self.tree.grow(slot + 1);
             self.pairs.grow(slot + 1);
-            resize(&mut self.known, slot + 1, 0);
         }
-        assert!(!self.status[slot].alive, "proxy {proxy} is already in use");
-        self.status[slot].alive = true;
+        assert!(self.status[slot].put(Status::ALIVE), "proxy {proxy} is already in use");
         self.tight[slot] = bounds;
         self.fat[slot] = FatBox::with_room(proxy, &bounds, &bounds);
         self.alive += 1;
@@ -216,28 +260,32 @@ impl BroadPhase for DynamicTree {
         self.enqueue(proxy);
     }
 
+    #[inline]
     fn update(&mut self, proxy: Proxy, bounds: Aabb) {
-        assert_valid(proxy, &bounds);
-        assert!(self.is_alive(proxy), "proxy {proxy} is not in use");
-        let was = std::mem::replace(&mut self.tight[proxy as usize], bounds);
-        if was == bounds {
-            return;
-        }
-        self.dirty = true;
-        if !std::mem::replace(&mut self.status[proxy as usize].moved, true) {
-            push(&mut self.moved, proxy);
-        }
-        if !self.fat[proxy as usize].contains(&bounds) {
-            self.fat[proxy as usize] = FatBox::with_room(proxy, &was, &bounds);
-            self.enqueue(proxy);
+        let slot = proxy as usize;
+        if let (Some(tight), Some(fat), Some(status)) =
+            (self.tight.get_mut(slot), self.fat.get(slot), self.status.get_mut(slot))
+            // Nearly all stay inside. A fat box is finite: so is what lies in it.
+            && fat.contains(&bounds) & is_ordered(&bounds) & status.is(Status::ALIVE)
+        {
+            if *tight != bounds {
+                *tight = bounds;
+                self.dirty = true;
+                if status.put(Status::MOVED) && !self.all_moved {
+                    self.note_moved(proxy);
+                }
+            }
+        } else {
+            self.leave(proxy, bounds);
         }
     }
 
     fn remove(&mut self, proxy: Proxy) {
         assert!(self.is_alive(proxy), "proxy {proxy} is not in use");
         let status = &mut self.status[proxy as usize];
-        status.alive = false;
-        if std::mem::take(&mut status.in_tree) {
+        status.set(Status::ALIVE, false);
+        if status.is(Status::IN_TREE) {
+            status.set(Status::IN_TREE, false);
             self.tree.remove(proxy);
             self.pairs.remove_all_of(proxy, |_| {});
             self.changes += 1;
@@ -252,27 +300,21 @@ impl BroadPhase for DynamicTree {
             return;
         }
         self.refresh_moved();
-        let status = &mut self.status;
-        self.queue.retain(|&proxy| {
-            status[proxy as usize].queued = status[proxy as usize].alive;
-            status[proxy as usize].alive
-        });
+        self.drop_removed();
         if !self.queue.is_empty() {
-            if self.queue.len() > REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN) {
-                self.part_all();
-                self.rebuild();
-            } else {
-                self.part_queued();
-                self.place_queued();
-            }
-            self.pair_queued();
+            self.admit_queued();
         }
         for proxy in self.queue.drain(..) {
-            self.status[proxy as usize].queued = false;
+            self.status[proxy as usize].set(Status::QUEUED, false);
         }
-        for proxy in self.moved.drain(..) {
-            self.status[proxy as usize].moved = false;
+        if std::mem::take(&mut self.all_moved) {
+            self.status.iter_mut().for_each(|status| status.set(Status::MOVED, false));
+        } else {
+            for &proxy in &self.moved {
+                self.status[proxy as usize].set(Status::MOVED, false);
+            }
         }
+        self.moved.clear();
     }
 
     fn for_each_pair(&self, visit: &mut dyn FnMut(Proxy, Proxy)) {
@@ -316,25 +358,32 @@ impl BroadPhase for DynamicTree {
 
     fn validate(&self) {
         self.pairs.validate();
-        let in_tree = self.status.iter().filter(|s| s.in_tree).count();
-        assert_eq!(self.tree.validate(), in_tree);
-        assert_eq!(self.status.iter().filter(|s| s.alive).count(), self.alive);
-        assert_eq!(self.status.iter().filter(|s| s.queued).count(), self.queue.len());
+        let count = |what| self.status.iter().filter(|s| s.is(what)).count();
+        assert_eq!(self.tree.validate(), count(Status::IN_TREE));
+        assert_eq!(count(Status::ALIVE), self.alive);
+        assert_eq!(count(Status::QUEUED), self.queue.len());
+        assert!(self.all_moved || count(Status::MOVED) == self.moved.len());
         for (proxy, status) in (0..).zip(&self.status) {
-            assert!(status.alive || !status.in_tree);
-            if status.alive {
+            assert!(status.is(Status::ALIVE) || !status.is(Status::IN_TREE));
+            if status.is(Status::ALIVE) {
                 let fat = self.fat[proxy as usize];
                 let around = FatBox::around(&self.tight[proxy as usize]);
                 assert_eq!(fat.union(&around), fat);
-                assert!(status.queued || status.in_tree && self.tree.leaf_box(proxy) == fat);
+                let in_place = || status.is(Status::IN_TREE) && self.tree.leaf_box(proxy) == fat;
+                assert!(status.is(Status::QUEUED) || in_place());
             }
         }
         self.pairs.for_each_known(|[a, b], overlaps| {
             assert!(self.dirty || overlaps == overlap(&self.tight, a, b), "pair ({a}, {b}): {overlaps}");
             let (s, t) = (self.status[a as usize], self.status[b as usize]);
-            assert!(s.in_tree && t.in_tree, "pair ({a}, {b}) of a box that is not there");
             assert!(
-                s.queued || t.queued || self.fat[a as usize].overlaps(&self.fat[b as usize]),
+                s.is(Status::IN_TREE) && t.is(Status::IN_TREE),
+                "pair ({a}, {b}) of a box that is not there"
+            );
+            assert!(
+                s.is(Status::QUEUED)
+                    || t.is(Status::QUEUED)
+                    || self.fat[a as usize].overlaps(&self.fat[b as usize]),
                 "the fat boxes of pair ({a}, {b}) are apart"
             );
         });

@@ -3,6 +3,7 @@
 use super::DynamicTree;
 use super::fat_box::FatBox;
 use super::node::Kind;
+use super::status::Status;
 use super::tree::ROOT;
 use crate::bounds::Aabb;
 use crate::broad::Proxy;
@@ -29,7 +30,7 @@ impl DynamicTree {
             }
             match kind {
                 Kind::Leaf(proxy) => {
-                    let here = self.is_alive(proxy) && !self.status[proxy as usize].queued;
+                    let here = self.is_alive(proxy) && !self.status[proxy as usize].is(Status::QUEUED);
                     if here && bound(&self.tight[proxy as usize]) <= until {
                         until = visit(proxy);
                     }
