@@ -15,7 +15,7 @@ use glam::{DAffine3, DVec3};
 use solid_convex::Support;
 use solid_convex::simd::level;
 
-use super::super::row::{Row, parted};
+use super::super::row::{Rows, verdict};
 use super::super::table::PlacedConvex;
 use super::super::{Scratch, complex_convex, table, triangle_triangle};
 use super::{Meeting, Pair, Part, Patch, Touch, face, facing, plane_of};
@@ -133,7 +133,7 @@ struct NearPairs<'s> {
     soups: [&'s Complex; 2],
     maps: &'s [DAffine3; 2],
     margin: f64,
-    rows: &'s mut [Row; 2],
+    rows: &'s mut [Rows; 2],
     primitive_tests: &'s mut u64,
     /// With whether they are known to meet.
     found: Vec<([u32; 2], bool)>,
@@ -142,21 +142,26 @@ struct NearPairs<'s> {
 impl LeafPairs<()> for NearPairs<'_> {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32]) -> ControlFlow<()> {
-        let [in_a, in_b] = &mut *self.rows;
-        in_a.place(simd, self.soups[0], leaf_a, &self.maps[0]);
-        in_b.place(simd, self.soups[1], leaf_b, &self.maps[1]);
-        for i in bits(in_a.overlapping(simd, &in_b.union(simd).inflated(self.margin))) {
-            let mut near = in_b.overlapping(simd, &in_a.bounds(i).inflated(self.margin));
+        let [rows_a, rows_b] = &mut *self.rows;
+        let in_a = rows_a.place(simd, self.soups[0], leaf_a, &self.maps[0]);
+        let in_b = rows_b.place(simd, self.soups[1], leaf_b, &self.maps[1]);
+        for i in bits(in_a.overlapping(simd, &in_b.union().inflated(self.margin))) {
+            let bounds = in_a.bounds(i);
+            let near = in_b.overlapping(simd, &bounds.inflated(self.margin));
             *self.primitive_tests += u64::from(near.count_ones());
             let x = in_a.triangle(i);
-            let triangles = if in_a.triangles() >> i & 1 == 1 { in_b.triangles() } else { 0 };
-            if self.margin == 0.0 && near & triangles != 0 {
-                near &= !(parted(simd, &x, in_b) & triangles);
-            }
-            for j in bits(near) {
+            let triangles = if in_a.triangles() >> i & 1 == 1 { near & in_b.triangles() } else { 0 };
+            let sure = verdict(simd, &x, &bounds, in_b, triangles);
+            let apart = if self.margin == 0.0 { sure.apart } else { 0 };
+            for j in bits(near & !apart) {
                 // Of triangles it is decided exactly, as everywhere.
                 let known = triangles >> j & 1 == 1;
-                let meet = known && triangle_triangle::intersect(&x, &in_b.triangle(j));
+                let certain = (sure.meet | sure.apart) >> j & 1 == 1;
+                let meet = if certain {
+                    sure.meet >> j & 1 == 1
+                } else {
+                    known && triangle_triangle::intersect(&x, &in_b.triangle(j))
+                };
                 if meet || !known || self.margin > 0.0 {
                     self.found.push(([in_a.primitive(i), in_b.primitive(j)], meet));
                 }
@@ -173,7 +178,7 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     relative.slack_in_b += pair.local_margin(1);
     let [map_a, map_b] = pair.frame.common;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
-    rows.iter_mut().for_each(Row::clear);
+    rows.iter_mut().for_each(Rows::clear);
     let (soups, maps, margin) = ([a, b], &pair.frame.common, pair.margin);
     let mut near = NearPairs { soups, maps, margin, rows, primitive_tests, found: Vec::new() };
     let _ = pairs_on(level(), a.tree(), b.tree(), &relative, traversal, &mut near);

@@ -99,6 +99,11 @@ struct Nearest<'s, C> {
 
 impl<C: Fn(u32) -> Triangle> NearLeaves for Nearest<'_, C> {
     #[inline(always)]
+    fn raise(&self, _: &Aabb, bound: f64, _: f64) -> f64 {
+        bound
+    }
+
+    #[inline(always)]
     fn visit<S: Simd>(&mut self, _: S, leaf: &[u32], best: &mut f64) {
         for &primitive in leaf {
             *self.primitive_tests += 1;
