@@ -1,5 +1,5 @@
 //! What other libraries are known to get wrong: each a test here. Most were found in parry 0.31, some in FCL and Coal.
-#![expect(
+#![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
     reason = "a test fails by panicking, and prints its hit rate"
