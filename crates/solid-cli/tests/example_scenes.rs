@@ -28,7 +28,7 @@ fn what_the_page_says_is_what_is_printed() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let page = std::fs::read_to_string(root.join("scenes/README.md")).unwrap().replace("\r\n", "\n");
     let examples = examples(&page);
-    assert_eq!(examples.len(), 11);
+    assert_eq!(examples.len(), 14);
     for Example { arguments, printed } in examples {
         let mut command = Command::new(env!("CARGO_BIN_EXE_solid"));
         let output = command.args(arguments.split_whitespace()).current_dir(&root).output().unwrap();

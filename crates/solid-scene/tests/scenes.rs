@@ -93,7 +93,8 @@ fn gltf_scenes_are_valid() {
     }
 }
 
-/// But for the robot cell, where the next part comes, and the shooting range, where the next shot is fired.
+/// But for the robot cell, where the next part comes, the shooting range, where the next shot is fired, and the channel, where the
+/// next marble is.
 #[test]
 fn a_scene_ends_as_it_began() {
     for name in ["naval_warfare.wrl", "cloth.wrl", "deform.gltf", "blocks.wrl"] {
@@ -190,4 +191,9 @@ fn blocks() {
         ("pillar", "plank"),
     ];
     check("blocks.wrl", 4.0, &objects, &pairs);
+}
+
+#[test]
+fn channel() {
+    check("channel.wrl", 4.0, &["channel", "marble"], &[("channel", "marble")]);
 }

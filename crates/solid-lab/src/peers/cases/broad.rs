@@ -28,7 +28,7 @@ struct Scene {
 
 /// Races, then judges what pairs are found after the last frame.
 pub fn measure(bench: &mut Bench) {
-    for count in [10_000, 100_000, 1_000_000] {
+    for count in [1_000, 10_000, 100_000, 1_000_000] {
         if count == 1_000_000 && !bench.effort.large() {
             continue;
         }
