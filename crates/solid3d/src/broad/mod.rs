@@ -16,8 +16,6 @@
 //! 3. The same calls give the same pairs in the same order and the same [`Counters`].
 
 mod dynamic_tree;
-#[cfg(test)]
-mod measure;
 mod pair_lists;
 pub(crate) mod room;
 mod sweep_and_prune;

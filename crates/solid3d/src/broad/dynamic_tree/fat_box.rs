@@ -5,7 +5,7 @@ use crate::broad::Proxy;
 use glam::DVec3;
 
 /// How much a fat box exceeds its tight box on each side, as a fraction of the tight box's largest extent.
-/// Measured at 100,000 boxes, `broad::measure`: 0.05 is up to 25 % faster than 0.1 where little moves, because there
+/// Measured at 100,000 boxes: 0.05 is up to 25 % faster than 0.1 where little moves, because there
 /// are fewer fat pairs to filter, and as fast where all do.
 const MARGIN: f64 = 0.05;
 

@@ -22,7 +22,7 @@ use endpoint::{Endpoint, Sequence, Side};
 use pair_set::PairSet;
 
 /// Swaps a frame may spend, per box alive, before further moves are sorted in as a batch. A swap costs about 9 ns, a
-/// box in a batch 1.3 us among 10,000 and 5 us among 100,000 (`broad::measure`): so the bound is near the break-even.
+/// box in a batch 1.3 us among 10,000 and 5 us among 100,000: so the bound is near the break-even.
 const SWAPS_PER_BOX: u64 = 256;
 
 /// Where a proxy stands between its calls and the next flush.
