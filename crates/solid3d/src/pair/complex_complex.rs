@@ -9,7 +9,7 @@ use solid_convex::{Closest, Witness, gjk};
 
 use super::containment::{PlacedSolid, part_inside};
 use super::crossing_point::{crossing_point, weighted};
-use super::frame::{Frame, Stretch};
+use super::frame::Frame;
 use super::row::{Near, Rows, distances, exceed, verdict};
 use super::scratch::PlacedPrimitive;
 use super::table::PlacedComplex;
@@ -17,7 +17,7 @@ use super::triangle_triangle::{self, Triangle};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 use crate::shape::Complex;
-use crate::tree::{Facing, LeafPairs, NearLeafPairs, PairMetric, bits, nearest_pairs_on, pairs_on};
+use crate::tree::{Facing, LeafPairs, NearLeafPairs, bits, nearest_pairs_on, pairs_on};
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
     let mut first = None;
@@ -139,7 +139,7 @@ fn closest_pair(a: PlacedComplex, b: PlacedComplex, bound: f64, scratch: &mut Sc
     let Frame { relative, common, scale, stretch: [of_a, of_b] } = frame;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     rows.iter_mut().for_each(Rows::clear);
-    let metric = metric(&of_a, &of_b);
+    let metric = of_a.metric(&of_b);
     let mut approach =
         Approach { a, b, common: &common, scale, rows, primitive_tests, axis: DVec3::ZERO, answer: None };
     let facing = Facing { slabs: [a.0.slabs(), b.0.slabs()], placements: common };
@@ -224,10 +224,6 @@ impl NearLeafPairs for Approach<'_> {
 
 fn frame(a: PlacedComplex, b: PlacedComplex) -> Frame {
     Frame::new(a.1, a.0.reach(), b.1, b.0.reach())
-}
-
-fn metric(a: &Stretch, b: &Stretch) -> PairMetric {
-    PairMetric { facet_a: a.facets, facet_b: b.facets, sigma_min_a: a.least, sigma_min_b: b.least }
 }
 
 /// The boxes of the primitives of a leaf in the common frame.

@@ -11,14 +11,14 @@ use solid_convex::simd::level;
 use solid_convex::{Closest, Outcome, Support, Witness, gjk};
 
 use super::containment::PlacedSolid;
-use super::frame::{Frame, ROUNDINGS};
+use super::frame::{Frame, ROUNDINGS, Stretch};
 use super::reach::convex_bounds;
 use super::row::{Near, Row, distances_of_point, exceed};
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 use crate::shape::Complex;
-use crate::tree::{Leaves, NearLeaves, PairMetric, bits};
+use crate::tree::{Leaves, NearLeaves, bits};
 
 /// A gap in the common frame, where the size of the data is from 1 to 2, at which GJK calls shapes separate without fail: four
 /// times the one at which it does so by a cached axis.
@@ -161,12 +161,7 @@ pub(super) fn closest_within(
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
     row.clear();
     let [of_complex, _] = &frame.stretch;
-    let metric = PairMetric {
-        facet_a: of_complex.facets,
-        sigma_min_a: of_complex.least,
-        facet_b: DVec3::ZERO,
-        sigma_min_b: 0.0,
-    };
+    let metric = of_complex.metric(&Stretch::NONE);
     // The best distance so far is kept in the common frame, as the bounds are.
     let mut best = frame.beyond(bound);
     let shadow = Shadow::new(convex.0, &frame, ROUNDINGS);

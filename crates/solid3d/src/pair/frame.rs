@@ -5,7 +5,7 @@ use solid_convex::{gjk, unit_scale};
 
 use super::reach::image_reach;
 use crate::placement::{inverse_linear, row_norm};
-use crate::tree::Relative;
+use crate::tree::{PairMetric, Relative};
 
 /// Roundings of 2^-53, relative to the size of the data, that lie between a local point and its image in another local
 /// space: two products with matrices, three translations, and the products that made the matrices.
@@ -76,6 +76,19 @@ pub(super) fn slack(linear: &DMat3, inverse: &DMat3, size: f64) -> f64 {
 }
 
 impl Stretch {
+    /// Of what is bounded in the other space, and has no lengths of its own.
+    pub const NONE: Stretch = Stretch { facets: DVec3::ZERO, least: 0.0 };
+
+    /// What bounds distances of two trees in the common frame.
+    pub fn metric(&self, other: &Stretch) -> PairMetric {
+        PairMetric {
+            facet_a: self.facets,
+            facet_b: other.facets,
+            sigma_min_a: self.least,
+            sigma_min_b: other.least,
+        }
+    }
+
     fn new(inverse: &DMat3, scale: f64) -> Stretch {
         // Rows of the inverse are the facet normals; those of its Gram matrix bound its largest singular value.
         let rows = inverse.transpose();

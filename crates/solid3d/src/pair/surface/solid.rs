@@ -9,9 +9,9 @@ use super::{NEAR, SurfacePoint, away};
 use crate::bounds::Aabb;
 use crate::pair::Scratch;
 use crate::pair::containment::PlacedSolid;
-use crate::pair::frame::Frame;
+use crate::pair::frame::{Frame, Stretch};
 use crate::pair::table::PlacedComplex;
-use crate::tree::{NearLeaves, PairMetric};
+use crate::tree::NearLeaves;
 use crate::triangle_triangle::Triangle;
 
 /// Nearer to a face, its own normal is better than the way from the nearest point, of which rounding has that part. In the common
@@ -35,12 +35,7 @@ pub(super) fn surface_point((mesh, at): PlacedComplex, point: DVec3, scratch: &m
     let local = frame.relative.b_to_a.translation;
     let query = Aabb::new(local, local).inflated(frame.relative.slack_in_a);
     let [of_mesh, _] = &frame.stretch;
-    let metric = PairMetric {
-        facet_a: of_mesh.facets,
-        sigma_min_a: of_mesh.least,
-        facet_b: DVec3::ZERO,
-        sigma_min_b: 0.0,
-    };
+    let metric = of_mesh.metric(&Stretch::NONE);
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let mut nearest = Nearest {
         corners: |primitive| {
