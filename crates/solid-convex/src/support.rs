@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::Polytope;
+use crate::gjk::Balls;
 
 /// A convex object, known by its support mapping. Space: the object's own.
 ///
@@ -20,6 +21,11 @@ pub trait Support: Send + Sync {
     /// A point of the object, well inside when it has an inside: where a search starts.
     fn center(&self) -> DVec3 {
         DVec3::ZERO
+    }
+
+    /// A ball around the object and one in it, about its [`center`](Support::center): where they tell, no search is needed.
+    fn balls(&self) -> Option<Balls> {
+        None
     }
 
     /// Whether it is the hull of finitely many points, which its support points are: then a search among them ends with the exact answer.

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::sphere::ball_support;
+use crate::gjk::Balls;
 use crate::size::positive;
 use crate::support::with_sign;
 use crate::{SizeError, Support};
@@ -39,6 +40,10 @@ impl Support for Capsule {
 
     fn reach(&self) -> DVec3 {
         DVec3::new(self.radius, self.radius + self.half_height, self.radius)
+    }
+
+    fn balls(&self) -> Option<Balls> {
+        Some(Balls { center: DVec3::ZERO, inner: self.radius, outer: self.radius + self.half_height })
     }
 
     fn core_radius(&self) -> f64 {
