@@ -59,6 +59,7 @@ impl Lean {
     }
 
     /// The common point, of objects that intersect: where the origin is in the tetrahedron.
+    #[inline]
     pub fn common_point(&self) -> Witness {
         let [p, q, r, s] = self.points;
         let (sides, _) = sides_of_origin([p.w, q.w, r.w, s.w]);
@@ -74,7 +75,12 @@ impl Lean {
         if w.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
             return Witness { on_a, on_b };
         }
-        // Of a flat tetrahedron the ratios have no right digit.
+        self.careful_common_point()
+    }
+
+    /// Of a flat tetrahedron, where the ratios have no right digit.
+    #[cold]
+    fn careful_common_point(&self) -> Witness {
         let mut simplex = self.simplex();
         simplex.reduce_if_inside();
         Witness::of(&simplex)
