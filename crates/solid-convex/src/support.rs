@@ -22,6 +22,11 @@ pub trait Support: Send + Sync {
         DVec3::ZERO
     }
 
+    /// The radius of a ball around [`center`](Support::center) that contains the object.
+    fn bounding_radius(&self) -> f64 {
+        self.reach().length() + self.center().length()
+    }
+
     /// Whether it is the hull of finitely many points, which its support points are: then a search among them ends with the exact answer.
     fn is_polytope(&self) -> bool {
         false

@@ -12,6 +12,7 @@
 //!   that of the positions; a plate of 1000 x 1000 x 0.001 needs it.
 
 mod cast;
+mod clock;
 mod coherent;
 mod descent;
 mod distance;

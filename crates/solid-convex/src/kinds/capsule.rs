@@ -41,6 +41,10 @@ impl Support for Capsule {
         DVec3::new(self.radius, self.radius + self.half_height, self.radius)
     }
 
+    fn bounding_radius(&self) -> f64 {
+        self.radius + self.half_height
+    }
+
     fn core_radius(&self) -> f64 {
         self.radius
     }

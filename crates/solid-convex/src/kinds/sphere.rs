@@ -43,6 +43,10 @@ impl Support for Sphere {
         DVec3::splat(self.radius)
     }
 
+    fn bounding_radius(&self) -> f64 {
+        self.radius
+    }
+
     fn core_radius(&self) -> f64 {
         self.radius
     }

@@ -41,6 +41,8 @@ pub struct Polytope {
     map: Option<DirectionMap>,
     reach: DVec3,
     center: DVec3,
+    /// Of a ball around the centre.
+    radius: f64,
 }
 
 impl Polytope {
@@ -49,7 +51,8 @@ impl Polytope {
         let rows = Rows::new(&points)?;
         let (reach, center) = (reach(points.iter().copied()), mean(points.iter().copied()));
         let map = (points.len() > SCAN_MAX).then(|| DirectionMap::new(&points, reach)).flatten();
-        Some(Polytope { points, rows, map, reach, center })
+        let radius = points.iter().map(|point| point.distance(center)).fold(0.0, f64::max);
+        Some(Polytope { points, rows, map, reach, center, radius })
     }
 
     /// The support point, for searches that are compiled into one piece with it.
@@ -93,6 +96,10 @@ impl Support for Polytope {
 
     fn center(&self) -> DVec3 {
         self.center
+    }
+
+    fn bounding_radius(&self) -> f64 {
+        self.radius
     }
 
     fn is_polytope(&self) -> bool {
