@@ -2,12 +2,13 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::clock::Clock;
 use super::descent::{End, Goal, descend_robustly};
 use super::distance::{Measure, Measured, measure};
-use super::intersection::clearly_separates;
+use super::intersection::CACHED_GAP_MIN;
 use super::lean::{self, Lean, Search, Sure, Task};
 use super::{Closest, Witness, closest_points};
-use crate::difference::{Difference, SupportPoint};
+use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
 use crate::{Support, epa};
 
@@ -42,6 +43,8 @@ pub struct Coherent<'a, A: ?Sized, B: ?Sized> {
 pub struct Memory {
     /// An axis that separated the objects, from `B` to `A`; zero for none. Space: world.
     axis: DVec3,
+    /// For how long the last sure answer is.
+    clock: Clock,
     /// Pairs of points, one of each object: the first `len` of them. Four whose tetrahedron of differences contained the
     /// origin, or up to three whose hull of differences had the point closest to it.
     pairs: [Pair; 4],
@@ -71,33 +74,108 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
         self.memory
     }
 
-    /// Whether they intersect: exactly when [`intersection`](super::intersection) does not say
-    /// [`Separated`](super::Outcome::Separated). Cost: while the axis that separated them does, one support point of each; while the
-    /// four pairs of points that showed an overlap do, none.
+    /// What [`Memory::intersects`] says of them.
     pub fn intersects(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> bool {
-        let found = lean::run(self.a, placement_a, self.b, placement_b, Again { memory: &self.memory });
-        let lean = match found {
-            Found::Separated => return false,
-            Found::Inside => return true,
-            Found::Unknown => None,
-            Found::Anew(lean) => Some(lean),
-        };
-        match lean {
-            Some(lean) if matches!(lean.sure, Sure::Separated | Sure::Inside) => {
-                self.memory.keep(lean.sure == Sure::Separated, lean.v, lean.points());
-                lean.sure == Sure::Inside
+        self.memory.intersects(self.a, placement_a, self.b, placement_b)
+    }
+
+    /// What [`Memory::penetration`] says of them.
+    pub fn penetration(
+        &mut self,
+        placement_a: &DAffine3,
+        placement_b: &DAffine3,
+    ) -> Option<epa::Penetration> {
+        self.memory.penetration(self.a, placement_a, self.b, placement_b)
+    }
+
+    /// What [`Memory::closest_points`] says of them.
+    pub fn closest_points(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Closest {
+        self.memory.closest_points(self.a, placement_a, self.b, placement_b)
+    }
+}
+
+/// # Questions
+///
+/// All must be asked about the same two objects, the first first: of others, the answers may be wrong.
+impl Memory {
+    /// Whether they intersect, by what was found last and how little they moved since: what [`intersects`](Memory::intersects) says, or
+    /// `None`. Placements that it answers for are finite, and not near singular. Cost: some 150 sums and products, no support point.
+    ///
+    /// ```
+    /// use solid_convex::{Cuboid, gjk::Memory};
+    /// use glam::{DAffine3, DVec3};
+    /// let block = Cuboid::new(DVec3::ONE)?;
+    /// let mut memory = Memory::default();
+    /// let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+    /// assert!(!memory.intersects(&block, &at(0.0), &block, &at(3.0)));
+    /// assert_eq!(memory.still(&at(0.0), &at(1.1)), Some(false));
+    /// assert_eq!(memory.still(&at(0.0), &at(0.9)), None);
+    /// # Ok::<(), solid_convex::SizeError>(())
+    /// ```
+    #[inline]
+    pub fn still(&self, placement_a: &DAffine3, placement_b: &DAffine3) -> Option<bool> {
+        self.clock.answer(placement_a, placement_b)
+    }
+
+    /// Whether they intersect: exactly when [`intersection`](super::intersection) does not say
+    /// [`Separated`](super::Outcome::Separated). Cost: while they moved by less than the room that the last answer had, no support
+    /// point; then, while the axis that separated them does, one of each; while the four pairs of points that showed an overlap do, none.
+    pub fn intersects<A, B>(&mut self, a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3) -> bool
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let still = self.still(placement_a, placement_b);
+        still.unwrap_or_else(|| self.intersects_anew(a, placement_a, b, placement_b))
+    }
+
+    /// The same, when [`still`](Memory::still) was asked already, and said nothing.
+    pub fn intersects_anew<A, B>(
+        &mut self,
+        a: &A,
+        placement_a: &DAffine3,
+        b: &B,
+        placement_b: &DAffine3,
+    ) -> bool
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let (placed_a, placed_b) = ((a, placement_a), (b, placement_b));
+        match lean::run(a, placement_a, b, placement_b, Again { memory: self }) {
+            Found::Separated { gap } => {
+                self.clock.set_apart(placed_a, placed_b, self.axis, gap);
+                false
             }
-            _ => self.intersects_robustly(&Difference::new(self.a, placement_a, self.b, placement_b)),
+            Found::Inside => {
+                self.clock.set_common(placed_a, placed_b, &self.pairs);
+                true
+            }
+            Found::Anew { lean, gap } => {
+                let apart = lean.sure == Sure::Separated;
+                self.keep(apart, lean.v, lean.points());
+                if apart {
+                    self.clock.set_apart(placed_a, placed_b, self.axis, gap);
+                } else {
+                    self.clock.set_common(placed_a, placed_b, &self.pairs);
+                }
+                !apart
+            }
+            Found::Unknown => self.intersects_robustly(&Difference::new(a, placement_a, b, placement_b)),
         }
     }
 
     #[cold]
-    fn intersects_robustly(&mut self, difference: &Difference<A, B>) -> bool {
-        if self.memory.len == 4 && self.tetrahedron(difference).is_some() {
+    fn intersects_robustly<A, B>(&mut self, difference: &Difference<A, B>) -> bool
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        if self.tetrahedron(difference).is_some() {
             return true;
         }
         let descent = descend_robustly(difference, Goal::Separation);
-        self.memory.keep(descent.end == End::Separated, descent.v, descent.simplex.points());
+        self.keep(descent.end == End::Separated, descent.v, descent.simplex.points());
         descent.end != End::Separated
     }
 
@@ -118,52 +196,73 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
     /// }
     /// # Ok::<(), solid_convex::SizeError>(())
     /// ```
-    pub fn penetration(
+    pub fn penetration<A, B>(
         &mut self,
+        a: &A,
         placement_a: &DAffine3,
+        b: &B,
         placement_b: &DAffine3,
-    ) -> Option<epa::Penetration> {
-        if !self.intersects(placement_a, placement_b) {
+    ) -> Option<epa::Penetration>
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        if !self.intersects(a, placement_a, b, placement_b) {
             return None;
         }
-        let difference = Difference::new(self.a, placement_a, self.b, placement_b);
-        let kept = (self.memory.len == 4).then(|| self.tetrahedron(&difference)).flatten();
+        let difference = Difference::new(a, placement_a, b, placement_b);
+        let kept = self.tetrahedron(&difference);
         let simplex = kept.unwrap_or_else(|| descend_robustly(&difference, Goal::Separation).simplex);
-        Some(epa::penetration_from(self.a, placement_a, self.b, placement_b, &simplex))
+        Some(epa::penetration_from(a, placement_a, b, placement_b, &simplex))
     }
 
     /// The closest points, as [`closest_points`](super::closest_points) within the same error. Cost: where the points lie on the same
     /// features as before, two support points of each object.
-    pub fn closest_points(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Closest {
-        if self.a.core_radius() + self.b.core_radius() > 0.0 {
+    pub fn closest_points<A, B>(
+        &mut self,
+        a: &A,
+        placement_a: &DAffine3,
+        b: &B,
+        placement_b: &DAffine3,
+    ) -> Closest
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        if a.core_radius() + b.core_radius() > 0.0 {
             // The cores, which are not what is kept, are as fast from scratch.
-            return closest_points(self.a, placement_a, self.b, placement_b);
+            return closest_points(a, placement_a, b, placement_b);
         }
-        if self.memory.len == 4 {
-            let difference = Difference::new(self.a, placement_a, self.b, placement_b);
-            if let Some(simplex) = self.tetrahedron(&difference) {
-                return Closest { distance: 0.0, points: Witness::of(&simplex) };
-            }
+        if self.len == 4
+            && let Some(simplex) = self.tetrahedron(&Difference::new(a, placement_a, b, placement_b))
+        {
+            return Closest { distance: 0.0, points: Witness::of(&simplex) };
         }
-        let task = Measure { bound: f64::INFINITY, warm: self.memory.nearest() };
-        let found = measure(self.a, placement_a, self.b, placement_b, task);
+        let task = Measure { bound: f64::INFINITY, warm: self.nearest() };
+        let found = measure(a, placement_a, b, placement_b, task);
         let Measured { closest, v, points, len } = found.expect("every distance is finite");
-        self.memory.keep(closest.distance > 0.0, v, &points[..len]);
+        self.keep(closest.distance > 0.0, v, &points[..len]);
         closest
     }
 
     /// The tetrahedron of the four kept pairs, when it still contains the origin: then no axis separates the objects.
-    fn tetrahedron(&self, difference: &Difference<A, B>) -> Option<Simplex> {
+    fn tetrahedron<A, B>(&self, difference: &Difference<A, B>) -> Option<Simplex>
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        if self.len < 4 {
+            return None;
+        }
         let mut simplex = Simplex::new();
-        for pair in &self.memory.pairs {
+        for pair in &self.pairs {
             simplex.push(difference.point(pair.a, pair.b));
         }
         simplex.reduce_if_inside().then_some(simplex)
     }
-}
 
-impl Memory {
     fn keep<'p>(&mut self, separated: bool, v: DVec3, points: impl IntoIterator<Item = &'p SupportPoint>) {
+        self.clock.stop();
         self.axis = if separated { v.normalize_or_zero() } else { DVec3::ZERO };
         self.len = 0;
         for (pair, p) in self.pairs.iter_mut().zip(points) {
@@ -187,14 +286,14 @@ struct Again<'m> {
 /// What [`Again`] found.
 #[expect(clippy::large_enum_variant, reason = "it is looked at where it is made, and never stored")]
 enum Found {
-    /// The kept axis clearly separates them.
-    Separated,
+    /// The kept axis clearly separates them, by this gap at least. World units.
+    Separated { gap: f64 },
     /// The kept tetrahedron contains the origin.
     Inside,
-    /// The kept tetrahedron is too close to tell.
+    /// The kept tetrahedron is too close to tell, or the search was not sure.
     Unknown,
-    /// What is kept is of no use any more.
-    Anew(Lean),
+    /// What is kept is of no use any more. The gap along the axis is that of objects that are apart. World units.
+    Anew { lean: Lean, gap: f64 },
 }
 
 impl Task for Again<'_> {
@@ -206,19 +305,67 @@ impl Task for Again<'_> {
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let Memory { axis, pairs, len } = self.memory;
-        if *axis != DVec3::ZERO && clearly_separates(*axis, against(*axis).w) {
-            return Found::Separated;
+        let Memory { axis, ref pairs, len, .. } = *self.memory;
+        if axis != DVec3::ZERO {
+            let (gap, clear) = gap(axis, against(axis).w);
+            if clear {
+                return Found::Separated { gap: gap / difference.scale() };
+            }
         }
-        if *len == 4 {
+        let mut warm = self.memory.nearest();
+        let face;
+        if len == 4 {
             let (sides, least) = sides_of_origin(pairs.map(|pair| difference.point(pair.a, pair.b).w));
             if least <= VOLUME_ERROR {
                 return Found::Unknown;
             }
-            if sides.iter().all(|&side| side > 0.0) {
+            let outside = sides[0].min(sides[1]).min(sides[2].min(sides[3]));
+            if outside > 0.0 {
                 return Found::Inside;
             }
+            // The face that the origin went out by.
+            let [p, q, r, s] = *pairs;
+            face = match sides {
+                [side, ..] if side == outside => [p, q, s],
+                [_, side, ..] if side == outside => [q, r, s],
+                [_, _, side, _] if side == outside => [r, p, s],
+                _ => [p, q, r],
+            };
+            warm = &face;
         }
-        Found::Anew(Search { goal: Goal::Separation, warm: &[] }.run(difference, against))
+        // First from where the last search ended, then from nothing.
+        for warm in [warm, &[]] {
+            let search = Search { goal: Goal::Separation, warm };
+            #[expect(clippy::redundant_closure, reason = "a closure is inlined, a reference to one is not")]
+            let lean = search.run(
+                difference,
+                #[inline(always)]
+                |v| against(v),
+            );
+            match lean.sure {
+                Sure::Separated => {
+                    let axis = lean.v.normalize_or_zero();
+                    let (gap, clear) = gap(axis, against(axis).w);
+                    // Of a small gap a search from nothing has the word.
+                    if clear || warm.is_empty() {
+                        return Found::Anew { lean, gap: gap / difference.scale() };
+                    }
+                }
+                Sure::Inside => return Found::Anew { lean, gap: 0.0 },
+                Sure::Near(_) | Sure::Beyond | Sure::Nothing => {}
+            }
+            if warm.is_empty() {
+                break;
+            }
+        }
+        Found::Unknown
     }
+}
+
+/// A lower bound of the gap along a unit axis, in the difference's unit, from a support point against it; and whether it is so large that
+/// it may answer alone.
+#[inline(always)]
+fn gap(axis: DVec3, w: DVec3) -> (f64, bool) {
+    let (gap, norm) = (axis.dot(w), axis.abs().element_sum());
+    (gap - SUPPORT_ERROR * norm, gap > CACHED_GAP_MIN * norm)
 }

@@ -184,7 +184,7 @@ pub(super) fn clearly_separates(axis: DVec3, w: DVec3) -> bool {
 
 /// A cached axis answers alone only when the gap along it is more than this, relative to the size of the data. Nearer,
 /// the search from scratch decides, so that what is cached never changes an answer; at such a gap it has never failed.
-const CACHED_GAP_MIN: f64 = 1.0 / (1u64 << 26) as f64;
+pub(super) const CACHED_GAP_MIN: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// Whether an axis, pointing from `B` to `A`, clearly separates two placed convex objects: the first step of ISA-GJK
 /// (thesis, section 4.4.3), with the axis of an earlier frame. Cost: one support point of each object.

@@ -13,6 +13,7 @@
 
 mod balls;
 mod cast;
+mod clock;
 mod coherent;
 mod descent;
 mod distance;

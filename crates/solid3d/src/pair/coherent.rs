@@ -1,31 +1,22 @@
 //! The same two shapes, asked again and again: the table's answers, with what is kept from one question to the next.
 
-use solid_convex::gjk::{Coherent, Memory};
+use solid_convex::gjk::Memory;
 use solid_convex::{Closest, Penetration};
 
 use super::table::convex;
 use super::{Placed, Scratch, closed_form, closest, intersects, penetration};
 
-/// What [`intersects`] says, found faster. The memory must be of the same two shapes.
+/// What [`intersects`] says, found faster. The memory must be of the same two shapes, and say nothing by itself.
 pub(crate) fn intersects_again(a: Placed, b: Placed, memory: &mut Memory, scratch: &mut Scratch) -> bool {
     let Some(((on_a, _), (on_b, _))) = convex(a, b) else { return intersects(a, b, scratch) };
-    closed_form::intersects(a, b).unwrap_or_else(|| {
-        let mut pair = Coherent::with_memory(on_a, on_b, *memory);
-        let answer = pair.intersects(a.placement, b.placement);
-        *memory = pair.memory();
-        answer
-    })
+    closed_form::intersects(a, b)
+        .unwrap_or_else(|| memory.intersects_anew(on_a, a.placement, on_b, b.placement))
 }
 
 /// What [`closest`] says within the same error, found faster. The memory must be of the same two shapes.
 pub(crate) fn closest_again(a: Placed, b: Placed, memory: &mut Memory, scratch: &mut Scratch) -> Closest {
     let Some(((on_a, _), (on_b, _))) = convex(a, b) else { return closest(a, b, scratch) };
-    closed_form::closest(a, b).unwrap_or_else(|| {
-        let mut pair = Coherent::with_memory(on_a, on_b, *memory);
-        let answer = pair.closest_points(a.placement, b.placement);
-        *memory = pair.memory();
-        answer
-    })
+    closed_form::closest(a, b).unwrap_or_else(|| memory.closest_points(on_a, a.placement, on_b, b.placement))
 }
 
 /// What [`penetration`] says within the same error, found faster. The memory must be of the same two shapes.
@@ -36,8 +27,5 @@ pub(crate) fn penetration_again(
     scratch: &mut Scratch,
 ) -> Option<Penetration> {
     let Some(((on_a, _), (on_b, _))) = convex(a, b) else { return penetration(a, b, scratch) };
-    let mut pair = Coherent::with_memory(on_a, on_b, *memory);
-    let answer = pair.penetration(a.placement, b.placement);
-    *memory = pair.memory();
-    answer
+    memory.penetration(on_a, a.placement, on_b, b.placement)
 }

@@ -46,6 +46,10 @@ impl PairCache {
     /// What [`intersects`](super::intersects) says, always.
     pub fn intersects(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<bool> {
         let Self { a, b, memory, scratch } = self;
+        // Before anything is checked: placements that are near good ones are good.
+        if let Some(answer) = memory.still(placement_a, placement_b) {
+            return Ok(answer);
+        }
         Ok(pair::intersects_again(placed(a, placement_a)?, placed(b, placement_b)?, memory, scratch))
     }
 
