@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::Polytope;
+use crate::gjk::Balls;
 
 /// A convex object, known by its support mapping. Space: the object's own.
 ///
@@ -22,9 +23,9 @@ pub trait Support: Send + Sync {
         DVec3::ZERO
     }
 
-    /// The radius of a ball around [`center`](Support::center) that contains the object.
-    fn bounding_radius(&self) -> f64 {
-        self.reach().length() + self.center().length()
+    /// A ball around the object and one in it, about its [`center`](Support::center): where they tell, no search is needed.
+    fn balls(&self) -> Option<Balls> {
+        None
     }
 
     /// Whether it is the hull of finitely many points, which its support points are: then a search among them ends with the exact answer.

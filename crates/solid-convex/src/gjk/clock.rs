@@ -163,7 +163,10 @@ impl Clock {
 impl Body {
     /// `None` for what is out of the ordinary.
     fn of<S: Support + ?Sized>(object: &S, linear: &DMat3) -> Option<Body> {
-        let (center, radius) = (object.center(), object.bounding_radius());
+        let (center, radius) = match object.balls() {
+            Some(balls) => (balls.center, balls.outer),
+            None => (DVec3::ZERO, object.reach().length()),
+        };
         let squares = squares(linear);
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *linear;
         let volume = x.cross(y).dot(z).abs() / (squares.x * squares.y * squares.z).sqrt();

@@ -75,7 +75,7 @@ where
     B: Support + ?Sized,
 {
     let closest = if a.core_radius() + b.core_radius() == 0.0 {
-        measure(a, placement_a, b, placement_b, Measure { bound, warm: &[] })?.closest
+        nearest(a, placement_a, b, placement_b, bound)?.0
     } else {
         let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
         of_rounded((&core_a, placement_a), (&core_b, placement_b), bound)?
@@ -84,6 +84,7 @@ where
 }
 
 /// The closest points are sought, up to a bound in world units; from what is known of them.
+#[derive(Clone, Copy)]
 pub(super) struct Measure<'w> {
     pub bound: f64,
     /// As for [`Search`].
@@ -96,17 +97,92 @@ impl Measure<'_> {
     }
 }
 
+/// What a lean search for the closest points is sure of.
+pub(super) enum Answer {
+    /// They are further apart than the bound.
+    Beyond,
+    /// The closest points, with the vector from that of `B` to that of `A`, in the difference's unit; zero when they meet.
+    Closest(Closest, DVec3),
+    /// Nothing.
+    Unknown,
+}
+
+impl Answer {
+    #[inline(always)]
+    fn of(lean: &Lean, goal: Goal, scale: f64) -> Answer {
+        match lean.sure {
+            Sure::Beyond => Answer::Beyond,
+            Sure::Inside => {
+                Answer::Closest(Closest { distance: 0.0, points: lean.common_point() }, DVec3::ZERO)
+            }
+            Sure::Near(mu) => match lean.closest_point() {
+                Some((v, points)) if goal.is_within_tolerance(v.length(), mu) => {
+                    Answer::Closest(Closest { distance: v.length() / scale, points }, v)
+                }
+                _ => Answer::Unknown,
+            },
+            Sure::Separated | Sure::Nothing => Answer::Unknown,
+        }
+    }
+}
+
+/// With the points that the search ended with.
 impl Task for Measure<'_> {
-    type Found = (Lean, f64);
+    type Found = (Answer, Lean);
 
     #[inline(always)]
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> (Lean, f64)
+    fn run<A, B>(
+        self,
+        difference: &Difference<A, B>,
+        against: impl Fn(DVec3) -> SupportPoint,
+    ) -> (Answer, Lean)
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
         let goal = self.goal(difference.scale());
-        (Search { goal, warm: self.warm }.run(difference, against), difference.scale())
+        let lean = Search { goal, warm: self.warm }.run(difference, against);
+        (Answer::of(&lean, goal, difference.scale()), lean)
+    }
+}
+
+/// From nothing, and without the points, which would be carried about for nothing.
+struct MeasureAnew(Measure<'static>);
+
+impl Task for MeasureAnew {
+    type Found = Answer;
+
+    #[inline(always)]
+    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Answer
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        self.0.run(difference, against).0
+    }
+}
+
+/// The closest points of two placed objects, and the vector from that of `B` to that of `A`, in the difference's unit; `None` when they are
+/// further apart than the bound.
+fn nearest<A, B>(
+    a: &A,
+    placement_a: &DAffine3,
+    b: &B,
+    placement_b: &DAffine3,
+    bound: f64,
+) -> Option<(Closest, DVec3)>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let task = Measure { bound, warm: &[] };
+    match lean::run(a, placement_a, b, placement_b, MeasureAnew(task)) {
+        Answer::Beyond => None,
+        Answer::Closest(closest, v) => Some((closest, v)),
+        Answer::Unknown => {
+            let found = measure_robustly(&Difference::new(a, placement_a, b, placement_b), task)?;
+            Some((found.closest, found.v))
+        }
     }
 }
 
@@ -133,32 +209,22 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let bound = task.bound;
-    let (lean, scale) = lean::run(a, placement_a, b, placement_b, task);
-    let goal = Measure { bound, warm: &[] }.goal(scale);
-    let (closest, v) = match lean.sure {
-        Sure::Beyond => return None,
-        Sure::Inside => (Closest { distance: 0.0, points: lean.common_point() }, DVec3::ZERO),
-        Sure::Near(mu) => match lean.closest_point() {
-            Some((v, points)) if goal.is_within_tolerance(v.length(), mu) => {
-                (Closest { distance: v.length() / scale, points }, v)
-            }
-            _ => return measure_robustly(&Difference::new(a, placement_a, b, placement_b), goal),
-        },
-        Sure::Separated | Sure::Nothing => {
-            return measure_robustly(&Difference::new(a, placement_a, b, placement_b), goal);
+    match lean::run(a, placement_a, b, placement_b, task) {
+        (Answer::Beyond, _) => None,
+        (Answer::Closest(closest, v), lean) => {
+            Some(Measured { closest, v, points: lean.points, len: lean.points().len() })
         }
-    };
-    Some(Measured { closest, v, points: lean.points, len: lean.points().len() })
+        (Answer::Unknown, _) => measure_robustly(&Difference::new(a, placement_a, b, placement_b), task),
+    }
 }
 
 #[cold]
-fn measure_robustly<A, B>(difference: &Difference<A, B>, goal: Goal) -> Option<Measured>
+fn measure_robustly<A, B>(difference: &Difference<A, B>, task: Measure) -> Option<Measured>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let descent = descend_robustly(difference, goal);
+    let descent = descend_robustly(difference, task.goal(difference.scale()));
     if descent.beyond {
         return None;
     }
@@ -200,8 +266,7 @@ where
     let radii = core_a.radius() + core_b.radius();
     // Of cores that are nearly as far apart as the bound, the distance says.
     let of_cores = (bound + radii) * (1.0 + DISTANCE_TOLERANCE);
-    let task = Measure { bound: of_cores, warm: &[] };
-    let Measured { closest, v, .. } = measure(core_a, placement_a, core_b, placement_b, task)?;
+    let (closest, v) = nearest(core_a, placement_a, core_b, placement_b, of_cores)?;
     let Closest { distance: between, mut points } = closest;
     if between > 0.0 && radii > 0.0 {
         let axis = v.normalize();

@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::balls;
 use super::descent::{End, Goal, descend_robustly};
 use super::lean::{self, Search, Sure, Task};
 use crate::Support;
@@ -115,6 +116,9 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
+    if let Some(answer) = balls::decide(a, placement_a, b, placement_b) {
+        return answer;
+    }
     match lean::run(a, placement_a, b, placement_b, SEARCH).sure {
         Sure::Separated => false,
         Sure::Inside => true,

@@ -59,12 +59,18 @@ impl Lean {
     }
 
     /// The common point, of objects that intersect: where the origin is in the tetrahedron.
+    #[inline]
     pub fn common_point(&self) -> Witness {
         let (sides, _) = sides_of_origin(self.points.map(|p| p.w));
         if let Some(witness) = common_point(&self.points, sides) {
             return witness;
         }
-        // Of a flat tetrahedron the ratios have no right digit.
+        self.careful_common_point()
+    }
+
+    /// Of a flat tetrahedron, where the ratios have no right digit.
+    #[cold]
+    fn careful_common_point(&self) -> Witness {
         let mut simplex = self.simplex();
         simplex.reduce_if_inside();
         Witness::of(&simplex)

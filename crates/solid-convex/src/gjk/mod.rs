@@ -11,6 +11,7 @@
 //!   simplex was computed anew from the edges of the two objects, which gives it the precision of the edges instead of
 //!   that of the positions; a plate of 1000 x 1000 x 0.001 needs it.
 
+mod balls;
 mod cast;
 mod clock;
 mod coherent;
@@ -21,6 +22,7 @@ mod lean;
 #[cfg(test)]
 mod tests;
 
+pub use balls::Balls;
 pub use cast::{CAST_ERROR, Impact, cast};
 pub use coherent::{Coherent, Memory};
 pub(crate) use descent::{End, Goal, descend};

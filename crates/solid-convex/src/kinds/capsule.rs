@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::sphere::ball_support;
+use crate::gjk::Balls;
 use crate::size::positive;
 use crate::support::with_sign;
 use crate::{SizeError, Support};
@@ -41,8 +42,8 @@ impl Support for Capsule {
         DVec3::new(self.radius, self.radius + self.half_height, self.radius)
     }
 
-    fn bounding_radius(&self) -> f64 {
-        self.radius + self.half_height
+    fn balls(&self) -> Option<Balls> {
+        Some(Balls { center: DVec3::ZERO, inner: self.radius, outer: self.radius + self.half_height })
     }
 
     fn core_radius(&self) -> f64 {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::gjk::Balls;
 use crate::size::positive;
 use crate::support::rim;
 use crate::{SizeError, Support};
@@ -44,5 +45,12 @@ impl Support for Cone {
 
     fn reach(&self) -> DVec3 {
         DVec3::new(self.radius, self.half_height, self.radius)
+    }
+
+    fn balls(&self) -> Option<Balls> {
+        let slant = self.radius.hypot(2.0 * self.half_height);
+        let outer = self.radius.hypot(self.half_height);
+        // Nearer to its side than to its base, always.
+        Some(Balls { center: DVec3::ZERO, inner: self.half_height * (self.radius / slant), outer })
     }
 }

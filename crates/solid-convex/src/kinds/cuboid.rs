@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::gjk::Balls;
 use crate::size::positive;
 use crate::support::with_sign;
 use crate::{SizeError, Support};
@@ -37,6 +38,10 @@ impl Support for Cuboid {
 
     fn reach(&self) -> DVec3 {
         self.half
+    }
+
+    fn balls(&self) -> Option<Balls> {
+        Some(Balls { center: DVec3::ZERO, inner: self.half.min_element(), outer: self.half.length() })
     }
 
     fn is_polytope(&self) -> bool {

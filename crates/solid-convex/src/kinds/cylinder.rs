@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::gjk::Balls;
 use crate::size::positive;
 use crate::support::{rim, with_sign};
 use crate::{SizeError, Support};
@@ -38,5 +39,10 @@ impl Support for Cylinder {
 
     fn reach(&self) -> DVec3 {
         DVec3::new(self.radius, self.half_height, self.radius)
+    }
+
+    fn balls(&self) -> Option<Balls> {
+        let (inner, outer) = (self.radius.min(self.half_height), self.radius.hypot(self.half_height));
+        Some(Balls { center: DVec3::ZERO, inner, outer })
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::gjk::Balls;
 use crate::size::positive;
 use crate::{SizeError, Support};
 
@@ -43,8 +44,8 @@ impl Support for Sphere {
         DVec3::splat(self.radius)
     }
 
-    fn bounding_radius(&self) -> f64 {
-        self.radius
+    fn balls(&self) -> Option<Balls> {
+        Some(Balls { center: DVec3::ZERO, inner: self.radius, outer: self.radius })
     }
 
     fn core_radius(&self) -> f64 {

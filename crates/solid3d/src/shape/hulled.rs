@@ -6,6 +6,7 @@ use glam::DVec3;
 use solid_convex::Polytope;
 
 use super::facets::Facets;
+use crate::hull::Hull;
 
 /// A polytope, with its faces once they were needed.
 #[derive(Clone, Debug)]
@@ -18,6 +19,17 @@ impl Hulled {
     /// The hull of points; `None` for none.
     pub fn new(points: Vec<DVec3>) -> Option<Hulled> {
         Some(Hulled { polytope: Polytope::new(points)?, facets: OnceLock::new() })
+    }
+
+    /// A hull, of the points that it was made from.
+    pub fn of(hull: &Hull, points: &[DVec3]) -> Hulled {
+        let mut slots = vec![0; points.len()];
+        (0u32..).zip(hull.vertices()).for_each(|(slot, &i)| slots[i as usize] = slot);
+        let faces: Vec<[u32; 3]> =
+            hull.triangles().iter().map(|corners| corners.map(|i| slots[i as usize])).collect();
+        let extreme = hull.vertices().iter().map(|&i| points[i as usize]).collect();
+        let polytope = Polytope::new(extreme).expect("a hull has a vertex").with_faces(&faces);
+        Hulled { polytope, facets: OnceLock::new() }
     }
 
     pub fn polytope(&self) -> &Polytope {

@@ -153,10 +153,8 @@ impl Shape {
         validate::vertex_count("points", points.len())?;
         validate::at_most(POINTS_MAX, "points", points.len())?;
         validate::vertices(points)?;
-        let extreme =
-            Hull::of(points).map(|hull| hull.vertices().iter().map(|&i| points[i as usize]).collect());
-        let polytope = extreme.and_then(Hulled::new).ok_or(Error::NoVertices { argument: "points" })?;
-        Ok(Geometry::Polytope(Arc::new(polytope)).into())
+        let hull = Hull::of(points).ok_or(Error::NoVertices { argument: "points" })?;
+        Ok(Geometry::Polytope(Arc::new(Hulled::of(&hull, points))).into())
     }
 
     /// A triangle mesh: a surface, closed or not. Triangles may be degenerate. Cost: O(n log n), for the tree.

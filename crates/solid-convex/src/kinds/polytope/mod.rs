@@ -7,9 +7,10 @@ use fearless_simd::Simd;
 use glam::{DMat3, DVec3};
 
 use super::points::{mean, reach};
-use crate::Support;
+use crate::gjk::Balls;
 use crate::simd::{self, dispatch};
 use crate::support::bounds_by_supports;
+use crate::{Support, unit_scale};
 use direction_map::DirectionMap;
 use rows::Rows;
 
@@ -40,9 +41,7 @@ pub struct Polytope {
     rows: Rows,
     map: Option<DirectionMap>,
     reach: DVec3,
-    center: DVec3,
-    /// Of a ball around the centre.
-    radius: f64,
+    balls: Balls,
 }
 
 impl Polytope {
@@ -50,9 +49,33 @@ impl Polytope {
     pub fn new(points: Vec<DVec3>) -> Option<Self> {
         let rows = Rows::new(&points)?;
         let (reach, center) = (reach(points.iter().copied()), mean(points.iter().copied()));
+        let outer = points.iter().map(|&p| distance(p, center)).fold(0.0, f64::max);
         let map = (points.len() > SCAN_MAX).then(|| DirectionMap::new(&points, reach)).flatten();
-        let radius = points.iter().map(|point| point.distance(center)).fold(0.0, f64::max);
-        Some(Polytope { points, rows, map, reach, center, radius })
+        Some(Polytope { points, rows, map, reach, balls: Balls { center, inner: 0.0, outer } })
+    }
+
+    /// The same, where the faces of the hull are known: the triangles `faces` of its points, which close it. Many pairs that are deep in
+    /// each other are then found without a search. Cost: O(n).
+    ///
+    /// ```
+    /// use solid_convex::{Polytope, Support};
+    /// use glam::DVec3;
+    /// let corner = Polytope::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
+    /// let corner = corner.with_faces(&[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
+    /// let inner = corner.balls().unwrap().inner; // to the slanted face
+    /// assert!((inner - 0.25 / 3f64.sqrt()).abs() < 1e-12);
+    /// ```
+    pub fn with_faces(mut self, faces: &[[u32; 3]]) -> Self {
+        let points = |face: &[u32; 3]| face.map(|i| self.points[i as usize]);
+        let heights = faces.iter().map(|face| height_over(points(face), self.balls.center));
+        self.balls.inner = if faces.is_empty() { 0.0 } else { heights.fold(f64::INFINITY, f64::min) };
+        self
+    }
+
+    /// The balls around and in it.
+    #[inline]
+    pub(crate) fn own_balls(&self) -> &Balls {
+        &self.balls
     }
 
     /// The support point, for searches that are compiled into one piece with it.
@@ -95,16 +118,36 @@ impl Support for Polytope {
     }
 
     fn center(&self) -> DVec3 {
-        self.center
+        self.balls.center
     }
 
-    fn bounding_radius(&self) -> f64 {
-        self.radius
+    fn balls(&self) -> Option<Balls> {
+        Some(self.balls)
     }
 
     fn is_polytope(&self) -> bool {
         true
     }
+}
+
+/// The distance of two points. `hypot` neither overflows nor underflows.
+fn distance(p: DVec3, q: DVec3) -> f64 {
+    let DVec3 { x, y, z } = p - q;
+    x.hypot(y).hypot(z)
+}
+
+/// The distance of a point from the plane of a triangle, less its error; at least 0, also of slivers without a plane to speak of.
+fn height_over([p, q, r]: [DVec3; 3], point: DVec3) -> f64 {
+    /// The error of a normal is this much, relative to the lengths of the two edges: it turns the plane about the corner.
+    const NORMAL_ERROR: f64 = 16.0 * f64::EPSILON;
+    let scale = unit_scale(
+        [q - p, r - p, point - p].map(|edge| edge.abs().max_element()).into_iter().fold(0.0, f64::max),
+    );
+    let [q, r, to_point] = [q - p, r - p, point - p].map(|edge| edge * scale);
+    let normal = q.cross(r);
+    let error = NORMAL_ERROR * q.length() * r.length() * to_point.length();
+    let height = (normal.dot(to_point).abs() - error) / normal.length();
+    height.max(0.0) / scale
 }
 
 #[cfg(test)]

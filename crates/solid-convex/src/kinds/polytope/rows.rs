@@ -29,17 +29,40 @@ impl Rows {
     /// The index of the point furthest along a direction, the first of equals; past the end when the direction is not finite.
     #[inline(always)]
     pub fn furthest<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
+        match self.rows.as_slice() {
+            [_, _] => self.furthest_of_few::<S, 2>(simd, direction),
+            [_, _, _, _] => self.furthest_of_few::<S, 4>(simd, direction),
+            [_, _, _, _, _, _] => self.furthest_of_few::<S, 6>(simd, direction),
+            _ => self.furthest_of_many(simd, direction),
+        }
+    }
+
+    /// Of `N` rows, whose products all stay in registers.
+    #[inline(always)]
+    fn furthest_of_few<S: Simd, const N: usize>(&self, simd: S, direction: DVec3) -> usize {
+        let rows: &[Row; N] = self.rows.first_chunk().expect("the rows were counted");
+        let along = products(simd, direction);
+        let mut dots = [f64x4::splat(simd, 0.0); N];
+        for k in 0..N {
+            dots[k] = along(&rows[k]);
+        }
+        let mut best = dots[0];
+        for dot in &dots[1..] {
+            best = best.max(*dot);
+        }
+        let greatest = f64x4::splat(simd, best.reduce_max());
+        let mut equal = 0;
+        for k in 0..N {
+            equal |= dots[k].simd_eq(greatest).to_bitmask() << (k * LANES);
+        }
+        if equal == 0 { usize::MAX } else { equal.trailing_zeros() as usize }
+    }
+
+    /// Of any number of rows.
+    #[inline(always)]
+    fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
         let (first, second) = self.rows.split_at(self.rows.len() / 2);
-        let (x, y, z) = (
-            f64x4::splat(simd, direction.x),
-            f64x4::splat(simd, direction.y),
-            f64x4::splat(simd, direction.z),
-        );
-        let along = |[xs, ys, zs]: &Row| {
-            f64x4::simd_from(simd, *xs) * x
-                + f64x4::simd_from(simd, *ys) * y
-                + f64x4::simd_from(simd, *zs) * z
-        };
+        let along = products(simd, direction);
         // Each lane of either half keeps its own furthest point, the first of equals.
         let mut best = [f64x4::splat(simd, f64::NEG_INFINITY); 2];
         let mut best_index = [i64x4::splat(simd, 0); 2];
@@ -91,6 +114,17 @@ impl Rows {
         let min = DVec3::new(x.reduce_min(), y.reduce_min(), z.reduce_min());
         let [x, y, z] = greatest;
         [min, DVec3::new(x.reduce_max(), y.reduce_max(), z.reduce_max())]
+    }
+}
+
+/// The products of the points of a row with a direction.
+#[inline(always)]
+fn products<S: Simd>(simd: S, direction: DVec3) -> impl Fn(&Row) -> f64x4<S> {
+    let (x, y, z) =
+        (f64x4::splat(simd, direction.x), f64x4::splat(simd, direction.y), f64x4::splat(simd, direction.z));
+    #[inline(always)]
+    move |[xs, ys, zs]: &Row| {
+        f64x4::simd_from(simd, *xs) * x + f64x4::simd_from(simd, *ys) * y + f64x4::simd_from(simd, *zs) * z
     }
 }
 

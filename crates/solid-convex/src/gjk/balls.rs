@@ -1,0 +1,213 @@
+//! Whether two objects intersect, by a ball around each and a ball in each: for the many pairs that no search is needed for.
+//!
+//! A placement makes ellipsoids of the balls, `x -> L x` of a ball of radius `r`. Along a vector `v` such an ellipsoid reaches
+//! `r |L^T v|` from its centre, and along the line of `v` it extends `r / |L^-1 v|` times `v`. Where those around the objects are apart along
+//! the line of their centres, so are the objects; where those in the objects overlap on that line, so do the objects.
+
+use std::ops::RangeInclusive;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::Support;
+use crate::difference::SUPPORT_ERROR;
+
+/// Balls about a point, by which a pair may be decided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balls {
+    /// The centre of both balls, the [`center`](Support::center) of the object.
+    pub center: DVec3,
+    /// The radius of a ball that the object contains; 0 for none.
+    pub inner: f64,
+    /// The radius of a ball that contains the object.
+    pub outer: f64,
+}
+
+/// The least gap that is an answer, relative to the size of the data, which here is more than [`Difference`](crate::difference::Difference)
+/// has it: then the first step of a search sees it too, and says the same.
+const GAP_MIN: f64 = 4.0 * SUPPORT_ERROR;
+
+/// A bound on the error of the way from centre to centre, relative to the size of the data: two matrix products and three sums.
+const CENTER_ERROR: f64 = 16.0 * f64::EPSILON;
+
+/// A bound on the relative error of the test for an overlap, beside that of the centres: some thirty roundings.
+const OVERLAP_ERROR: f64 = 64.0 * f64::EPSILON;
+
+/// A bound on the error of scalar products of a placement's axes, relative to the longest one's square.
+const GRAM_ERROR: f64 = 16.0 * f64::EPSILON;
+
+/// Squares whose products neither overflow nor lose digits.
+const PLAIN_SQUARES: RangeInclusive<f64> = 1e-120..=1e120;
+
+/// Whether two placed objects intersect; `None` where their balls do not tell.
+#[inline]
+pub(super) fn decide<A, B>(a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3) -> Option<bool>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    match (a.as_polytope(), b.as_polytope()) {
+        // Without a call that would return them through memory.
+        (Some(a), Some(b)) => compare(a.own_balls(), placement_a, b.own_balls(), placement_b),
+        _ => compare(&a.balls()?, placement_a, &b.balls()?, placement_b),
+    }
+}
+
+fn compare(a: &Balls, placement_a: &DAffine3, b: &Balls, placement_b: &DAffine3) -> Option<bool> {
+    let (linear_a, linear_b) = (&placement_a.matrix3, &placement_b.matrix3);
+    let offset = placement_b.translation - placement_a.translation;
+    let v = linear_a * a.center - (linear_b * b.center + offset);
+    let (stretch_a, stretch_b) = (Stretch::of(linear_a), Stretch::of(linear_b));
+    let size = stretch_a.most * a.extent() + stretch_b.most * b.extent() + offset.abs().max_element();
+    let square = v.length_squared();
+    let [square_a, square_b] =
+        [linear_a, linear_b].map(|linear| linear.mul_transpose_vec3(v).length_squared());
+    let plain = |square| PLAIN_SQUARES.contains(&square);
+    if !(plain(square) & plain(square_a) & plain(square_b)) {
+        return None;
+    }
+    let (along_a, along_b) = (square_a.sqrt(), square_b.sqrt());
+    if square - (a.outer * along_a + b.outer * along_b) > GAP_MIN * size * v.abs().element_sum() {
+        return Some(false);
+    }
+    let error = CENTER_ERROR * size;
+    let (along_a, along_b) = (along_a + error * stretch_a.most, along_b + error * stretch_b.most);
+    // Each reaches at least this far along v, times |v|, times the other's |L^T v|.
+    let reach_a = a.inner * stretch_a.least_squared(linear_a) * along_b;
+    let reach_b = b.inner * stretch_b.least_squared(linear_b) * along_a;
+    (reach_a + reach_b > along_a * along_b * (1.0 + OVERLAP_ERROR)).then_some(true)
+}
+
+impl Balls {
+    /// No coordinate of the object is larger.
+    fn extent(&self) -> f64 {
+        self.outer + self.center.abs().max_element()
+    }
+}
+
+/// By how much a map stretches vectors.
+struct Stretch {
+    /// The squares of the lengths of its axes.
+    squares: [f64; 3],
+    /// At most by this: the Frobenius norm.
+    most: f64,
+}
+
+impl Stretch {
+    #[inline]
+    fn of(&DMat3 { x_axis: x, y_axis: y, z_axis: z }: &DMat3) -> Self {
+        let squares = [x, y, z].map(DVec3::length_squared);
+        Stretch { squares, most: (squares[0] + squares[1] + squares[2]).sqrt() }
+    }
+
+    /// A lower bound of the square of the least stretch: the least eigenvalue of `L^T L`, by Gershgorin's circles; exact for scales
+    /// before a rotation, negative for a strong skew. So `|L^-1 v|`, which is `|(L^T L)^-1 L^T v|`, is at most `|L^T v|` over it.
+    #[inline]
+    fn least_squared(&self, DMat3 { x_axis: x, y_axis: y, z_axis: z }: &DMat3) -> f64 {
+        let [xx, yy, zz] = self.squares;
+        let [xy, yz, zx] = [x.dot(*y).abs(), y.dot(*z).abs(), z.dot(*x).abs()];
+        let error = GRAM_ERROR * xx.max(yy).max(zz);
+        (xx - xy - zx).min(yy - yz - xy).min(zz - zx - yz) - error
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+    use crate::gjk::intersection;
+    use crate::testing::{placement, shapes};
+    use crate::{Polytope, Sphere};
+
+    /// A hull with its faces: an octahedron that was stretched, and moved off its origin.
+    fn octahedron() -> Polytope {
+        let corner = |axis: usize, sign: f64| {
+            DVec3::new(0.3, 0.2, -0.1) + DVec3::AXES[axis] * sign * (1.0 + axis as f64)
+        };
+        let points = (0..6).map(|i| corner(i / 2, if i % 2 == 0 { 1.0 } else { -1.0 })).collect();
+        let faces: Vec<[u32; 3]> = (0..8).map(|i| [i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2)]).collect();
+        Polytope::new(points).unwrap().with_faces(&faces)
+    }
+
+    fn objects() -> Vec<Box<dyn Support>> {
+        let mut objects = shapes();
+        objects.push(Box::new(octahedron()));
+        objects
+    }
+
+    #[test]
+    fn the_balls_are_around_and_in_the_object() {
+        for object in objects() {
+            let Balls { center, inner, outer } = object.balls().unwrap();
+            assert!(inner > 0.1, "{inner}");
+            let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+            for k in 0..20_000 {
+                let direction = placement(k).translation.normalize();
+                let reach = (object.support(direction) - center).dot(direction);
+                assert!((inner * (1.0 - 1e-12)..=outer * (1.0 + 1e-12)).contains(&reach), "{reach}");
+                (least, most) = (least.min(reach), most.max(reach));
+            }
+            assert!(least < 1.1 * inner && most > 0.95 * outer, "{least} {inner}, {most} {outer}");
+        }
+    }
+
+    #[test]
+    fn what_balls_decide_a_search_says_too() {
+        let (mut apart, mut meeting, mut total) = (0, 0, 0);
+        let objects = objects();
+        let far = DVec3::new(1e6, -3e5, 2e4);
+        let skew = |k: u32| {
+            let part = |step: f64| (f64::from(k) * step).fract() * 0.4 - 0.2;
+            DMat3::from_cols(
+                DVec3::new(1.0, part(0.37), part(0.91)),
+                DVec3::new(part(0.13), 1.0 + part(0.61), part(0.47)),
+                DVec3::new(part(0.83), part(0.29), [0.5, 1.0, 1.5, 1e-2][k as usize % 4]),
+            )
+        };
+        for k in 0..20_000 {
+            let (a, b) = (&objects[k as usize % 6], &objects[k as usize / 6 % 6]);
+            let unit = [1.0, 1e-20, 1e20, 1e-9][k as usize / 7 % 4];
+            let place = |k: u32, spread: f64| {
+                let DAffine3 { mut matrix3, translation } = placement(k);
+                if k % 3 > 0 {
+                    matrix3 *= skew(k);
+                }
+                DAffine3 { matrix3: matrix3 * unit, translation: translation * (spread * unit) }
+            };
+            let (mut at_a, mut at_b) = (place(k, 0.5), place(7 * k + 1, [0.5, 4.0][k as usize / 3 % 2]));
+            if k % 11 == 0 {
+                (at_a.translation, at_b.translation) =
+                    (at_a.translation + far * unit, at_b.translation + far * unit);
+            }
+            total += 1;
+            if let Some(answer) = decide(&**a, &at_a, &**b, &at_b) {
+                let found = intersection(&**a, &at_a, &**b, &at_b).witness().is_some();
+                assert_eq!(answer, found, "{k}");
+                if answer { meeting += 1 } else { apart += 1 }
+            }
+        }
+        assert!(apart * 5 > total && meeting * 5 > total, "{apart} and {meeting} of {total}");
+    }
+
+    /// Between two balls nothing is left out: what is decided changes at a gap of the margin, and never on its wrong side.
+    #[test]
+    fn balls_that_touch_are_left_to_the_search() {
+        let (ball, large) = (Sphere::new(1.0).unwrap(), Sphere::new(1e6).unwrap());
+        for k in 0..1_000 {
+            let (at_a, turned) = (placement(k), placement(3 * k + 1));
+            let direction = turned.translation.normalize();
+            for (b, radii) in [(&ball, 2.0), (&large, 1e6 + 1.0)] {
+                let at_b = |gap: f64| DAffine3 {
+                    translation: at_a.translation + direction * (radii * (1.0 + gap)),
+                    ..turned
+                };
+                let decided = |gap: f64| decide(&ball, &at_a, b, &at_b(gap));
+                assert_eq!(decided(1e-12), Some(false));
+                assert_eq!(decided(-1e-12), Some(true));
+                for roundings in -4..=4 {
+                    assert_eq!(decided(f64::from(roundings) * f64::EPSILON), None, "{roundings}");
+                }
+            }
+        }
+    }
+}
