@@ -28,11 +28,6 @@ pub trait Support: Send + Sync {
         None
     }
 
-    /// The radius of a ball around [`center`](Support::center) that contains the object.
-    fn bounding_radius(&self) -> f64 {
-        self.balls().map_or_else(|| self.reach().length() + self.center().length(), |balls| balls.outer)
-    }
-
     /// Whether it is the hull of finitely many points, which its support points are: then a search among them ends with the exact answer.
     fn is_polytope(&self) -> bool {
         false

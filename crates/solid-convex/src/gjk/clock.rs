@@ -5,6 +5,7 @@
 //! asked for. Of objects that intersect, the four points of each whose differences contained the origin are looked at where they
 //! are now. (Bounds on motion are what I-COLLIDE schedules pairs by; here they change no answer.)
 
+use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::coherent::Pair;
@@ -19,7 +20,7 @@ pub(super) struct Clock {
     evidence: Evidence,
     a: Body,
     b: Body,
-    /// At least the size of the data, but for the distance of the origins as it is now. World units.
+    /// At least the size of the data for as long as the bodies allow it. World units.
     size: f64,
 }
 
@@ -29,9 +30,8 @@ enum Evidence {
     /// Nothing is known.
     #[default]
     None,
-    /// The objects are apart along a unit axis, from `B` to `A`: `reach` is the gap, and how far the origin of `B` is beyond that of
-    /// `A`; so that only the latter changes when the objects move without turning.
-    Apart { axis: DVec3, reach: f64 },
+    /// The objects are apart along a unit axis, from `B` to `A`, by more than this and what the clock leaves.
+    Apart { axis: DVec3, gap: f64 },
     /// The tetrahedron of the differences of four pairs of points contains the origin.
     Common { a: Points, b: Points },
 }
@@ -39,12 +39,16 @@ enum Evidence {
 /// Four points of an object by coordinate. Space: local.
 type Points = [[f64; 4]; 3];
 
+/// A placement by its columns, the translation last, for vector instructions.
+type Columns = [f64; 12];
+
 /// An object as it was when the clock was set.
 #[derive(Clone, Copy, Debug, Default)]
 struct Body {
-    linear: DMat3,
-    /// How much each axis may change for the clock to go on: squares of lengths.
-    changes_max: DVec3,
+    placement: Columns,
+    /// The reciprocal of how much each number may change, were it to change alone: the clock goes on while the squares of the changes
+    /// times these sum to at most one.
+    rates: Columns,
     /// A ball that contains the object. Space: local.
     center: DVec3,
     radius: f64,
@@ -58,56 +62,65 @@ const PLAIN_MAX: f64 = 1e35;
 /// The least volume between the axes of a placement, brought to unit length, of which a clock is set.
 const VOLUME_MIN: f64 = 1e-6;
 
-/// By this part of its length, times the volume between the unit axes, may an axis change. Unit axes are then off by at most
-/// 1.02 times that; the volume, which is linear in each of three, by at most 0.92 of itself, so that a placement that was far from
-/// singular still is. And no object is larger by more than that part.
-const CHANGE_MAX: f64 = 0.3;
+/// By this part of its length, times the volume between the unit axes, may an axis change, if it is alone to. Unit axes are then off by at most
+/// 1.04 times that; the volume, which is linear in each of three, by at most the root of three times that, or 0.91 of itself, so that a
+/// placement that was far from singular still is. And no object is larger by more than half.
+const CHANGE_MAX: f64 = 0.5;
 
 /// What must be left of a gap, relative to the size of the data as it is counted here, which is at least that of
-/// [`CACHED_GAP_MIN`]: that, times the sum of the magnitudes of a unit axis, at most 1.74; and what the some thirty roundings
+/// [`CACHED_GAP_MIN`]: that, times the sum of the magnitudes of a unit axis, at most 1.74; and what the some forty roundings
 /// of 2^-53 between then and now may change, which is less than a millionth of the rest.
 const GAP_LEFT_MIN: f64 = 2.0 * CACHED_GAP_MIN;
 
 impl Clock {
     /// Whether the objects intersect where they are now; `None` when that is to be found again. Placements of an answer are finite, not near
-    /// singular, and of magnitudes below 1e36.
+    /// singular, and of magnitudes below 1e37.
     #[inline]
     pub fn answer(&self, at_a: &DAffine3, at_b: &DAffine3) -> Option<bool> {
-        if let Evidence::None = self.evidence {
-            return None;
+        match &self.evidence {
+            Evidence::None => None,
+            Evidence::Apart { axis, gap } => {
+                dispatch!(simd::level(), simd => self.still_apart(simd, at_a, at_b, *axis, *gap))
+                    .then_some(false)
+            }
+            Evidence::Common { a, b } => {
+                dispatch!(simd::level(), simd => self.still_common(simd, at_a, at_b, a, b)).then_some(true)
+            }
         }
-        dispatch!(simd::level(), _simd => self.answer_of(at_a, at_b))
     }
 
     #[inline(always)]
-    fn answer_of(&self, at_a: &DAffine3, at_b: &DAffine3) -> Option<bool> {
-        let (a, b) = (&self.a, &self.b);
-        let (change_a, change_b) = (at_a.matrix3 - a.linear, at_b.matrix3 - b.linear);
-        let farthest = at_a.translation.abs().max(at_b.translation.abs()).max_element();
-        let plain = a.allows(&change_a) & b.allows(&change_b) & (farthest <= PLAIN_MAX);
+    fn still_apart<S: Simd>(&self, simd: S, at_a: &DAffine3, at_b: &DAffine3, axis: DVec3, gap: f64) -> bool {
+        let (change_a, allowed_a) = self.a.change(simd, at_a);
+        let (change_b, allowed_b) = self.b.change(simd, at_b);
+        // How the balls moved along the axis: a centre by a product, any other point by at most a length more.
+        let (linear_a, by_a) = along(&change_a, axis);
+        let (linear_b, by_b) = along(&change_b, axis);
+        let left = gap + (linear_a.dot(self.a.center) + by_a) - (linear_b.dot(self.b.center) + by_b);
+        allowed_a & allowed_b & sum_is_less(linear_a * self.a.radius, linear_b * self.b.radius, left)
+    }
+
+    #[inline(always)]
+    fn still_common<S: Simd>(
+        &self,
+        simd: S,
+        at_a: &DAffine3,
+        at_b: &DAffine3,
+        a: &Points,
+        b: &Points,
+    ) -> bool {
+        let (_, allowed_a) = self.a.change(simd, at_a);
+        let (_, allowed_b) = self.b.change(simd, at_b);
         let offset = at_b.translation - at_a.translation;
-        let size = self.size + offset.abs().element_sum();
-        // Each is false of what is no number.
-        let (answer, holds) = match self.evidence {
-            Evidence::None => return None,
-            Evidence::Apart { axis, reach } => {
-                // How the balls moved along the axis: a centre by a product, any other point by at most a length more.
-                let (of_a, of_b) = (change_a.mul_transpose_vec3(axis), change_b.mul_transpose_vec3(axis));
-                let left = reach - axis.dot(offset) + of_a.dot(a.center) - of_b.dot(b.center);
-                (false, sum_is_less(of_a * a.radius, of_b * b.radius, left - GAP_LEFT_MIN * size))
+        let (on_a, on_b) = (images(&at_a.matrix3, a), images(&at_b.matrix3, b));
+        let mut points = [[0.0; 4]; 3];
+        for i in 0..3 {
+            for k in 0..4 {
+                points[i][k] = on_a[i][k] - on_b[i][k] - offset[i];
             }
-            Evidence::Common { ref a, ref b } => {
-                let (on_a, on_b) = (images(&at_a.matrix3, a), images(&at_b.matrix3, b));
-                let mut points = [[0.0; 4]; 3];
-                for i in 0..3 {
-                    for k in 0..4 {
-                        points[i][k] = on_a[i][k] - on_b[i][k] - offset[i];
-                    }
-                }
-                (true, contains_origin(&points, VOLUME_ERROR * size * size * size))
-            }
-        };
-        (plain & holds).then_some(answer)
+        }
+        let error = VOLUME_ERROR * self.size * self.size * self.size;
+        allowed_a & allowed_b & contains_origin(&points, error)
     }
 
     /// Sets it for objects that are apart: `gap` is a lower bound of the gap along a unit axis, from `B` to `A`, in the world.
@@ -121,8 +134,7 @@ impl Clock {
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let offset = at_b.translation - at_a.translation;
-        self.set((a, at_a), (b, at_b), Evidence::Apart { axis, reach: gap + axis.dot(offset) });
+        self.set((a, at_a), (b, at_b), |size| Evidence::Apart { axis, gap: gap - GAP_LEFT_MIN * size });
     }
 
     /// Sets it for objects that intersect, by four pairs of points.
@@ -138,7 +150,7 @@ impl Clock {
         let by_coordinate = |points: [DVec3; 4]| [0, 1, 2].map(|axis| points.map(|point| point[axis]));
         let (on_a, on_b) = (pairs.map(|pair| pair.a), pairs.map(|pair| pair.b));
         let evidence = Evidence::Common { a: by_coordinate(on_a), b: by_coordinate(on_b) };
-        self.set((a, at_a), (b, at_b), evidence);
+        self.set((a, at_a), (b, at_b), |_| evidence);
     }
 
     /// Stops it: nothing is sure.
@@ -146,52 +158,88 @@ impl Clock {
         self.evidence = Evidence::None;
     }
 
-    fn set<A, B>(&mut self, (a, at_a): (&A, &DAffine3), (b, at_b): (&B, &DAffine3), evidence: Evidence)
-    where
+    /// Sets it; `evidence` is given the size of the data.
+    fn set<A, B>(
+        &mut self,
+        (a, at_a): (&A, &DAffine3),
+        (b, at_b): (&B, &DAffine3),
+        evidence: impl FnOnce(f64) -> Evidence,
+    ) where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        self.evidence = Evidence::None;
-        let offset = at_b.translation - at_a.translation;
-        if let (Some(a), Some(b)) = (Body::of(a, &at_a.matrix3), Body::of(b, &at_b.matrix3)) {
-            let size = a.size() + b.size() + offset.abs().element_sum();
-            *self = Clock { evidence, a, b, size };
+        self.stop();
+        if let (Some((a, extent_a)), Some((b, extent_b))) = (Body::of(a, at_a), Body::of(b, at_b)) {
+            let extent = extent_a + extent_b;
+            // Each may come as far as this: then less than four times that is added to the sum of an offset's magnitudes.
+            let (a, b) = (a.with_travel_max(extent), b.with_travel_max(extent));
+            let size = 5.0 * extent + (at_b.translation - at_a.translation).abs().element_sum();
+            *self = Clock { evidence: evidence(size), a, b, size };
         }
     }
 }
 
 impl Body {
-    /// `None` for what is out of the ordinary.
-    fn of<S: Support + ?Sized>(object: &S, linear: &DMat3) -> Option<Body> {
-        let (center, radius) = (object.center(), object.bounding_radius());
-        let squares = squares(linear);
-        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *linear;
-        let volume = x.cross(y).dot(z).abs() / (squares.x * squares.y * squares.z).sqrt();
-        let plain = squares.min_element() >= PLAIN_MIN * PLAIN_MIN
-            && squares.max_element() <= PLAIN_MAX * PLAIN_MAX
+    /// With a bound on the coordinates of the object's image under its linear part, also under one that is changed as much as may be. `None` for
+    /// what is out of the ordinary.
+    fn of<S: Support + ?Sized>(object: &S, at: &DAffine3) -> Option<(Body, f64)> {
+        /// By Cauchy and Schwarz the root of three, and half as much again.
+        const SPREAD: f64 = 2.6;
+        let (center, radius) = match object.balls() {
+            Some(balls) => (balls.center, balls.outer),
+            None => (DVec3::ZERO, object.reach().length()),
+        };
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = at.matrix3;
+        let lengths = DVec3::new(x.length(), y.length(), z.length());
+        let volume = x.cross(y).dot(z).abs() / (lengths.x * lengths.y * lengths.z);
+        let farthest = radius + center.length();
+        let plain = lengths.min_element() >= PLAIN_MIN
+            && lengths.max_element() <= PLAIN_MAX
+            && at.translation.abs().max_element() <= PLAIN_MAX
             && radius >= PLAIN_MIN
-            && radius + center.length() <= PLAIN_MAX
+            && farthest <= PLAIN_MAX
             && volume >= VOLUME_MIN;
-        let change = CHANGE_MAX * volume.min(1.0);
-        let body = Body { linear: *linear, changes_max: squares * (change * change), center, radius };
-        plain.then_some(body)
+        let rates = (lengths * (CHANGE_MAX * volume.min(1.0))).recip();
+        let rates = std::array::from_fn(|k| if k < 9 { rates[k / 3] } else { 0.0 });
+        let body = Body { placement: at.to_cols_array(), rates, center, radius };
+        plain.then(|| (body, SPREAD * lengths.length() * farthest))
     }
 
-    /// At least the largest coordinate of the object's image under its linear part, and under one that is changed as much as may be: by
-    /// Cauchy and Schwarz the root of three of the product below, and three tenths more.
-    fn size(&self) -> f64 {
-        const SPREAD: f64 = 2.5;
-        SPREAD * squares(&self.linear).element_sum().sqrt() * (self.radius + self.center.length())
+    /// The same, allowed to come this far.
+    fn with_travel_max(mut self, travel_max: f64) -> Body {
+        self.rates[9..].fill(travel_max.recip());
+        self
     }
 
-    /// Whether its linear part may have changed by so much.
+    /// How its placement changed, and whether it may have changed so much: not to what is no number.
     #[inline(always)]
-    fn allows(&self, change: &DMat3) -> bool {
-        let changes = squares(change);
-        (changes.x <= self.changes_max.x)
-            & (changes.y <= self.changes_max.y)
-            & (changes.z <= self.changes_max.z)
+    fn change<S: Simd>(&self, simd: S, at: &DAffine3) -> (Columns, bool) {
+        let mut change = at.to_cols_array();
+        let mut sum = f64x4::splat(simd, 0.0);
+        for k in [0, 4, 8] {
+            let four = |columns: &Columns| {
+                f64x4::simd_from(simd, [columns[k], columns[k + 1], columns[k + 2], columns[k + 3]])
+            };
+            let changed = four(&change) - four(&self.placement);
+            let part = changed * four(&self.rates);
+            sum += part * part;
+            change[k..k + 4].copy_from_slice(changed.as_slice());
+        }
+        let sums = sum.as_slice();
+        let allowed = (sums[0] + sums[1]) + (sums[2] + sums[3]) <= 1.0;
+        (change, allowed)
     }
+}
+
+/// The products of columns with an axis: those of the linear part, and that of the translation.
+#[inline(always)]
+fn along(columns: &Columns, axis: DVec3) -> (DVec3, f64) {
+    let mut products = [0.0; 12];
+    for k in 0..12 {
+        products[k] = columns[k] * axis[k % 3];
+    }
+    let sum = |k: usize| products[k] + products[k + 1] + products[k + 2];
+    (DVec3::new(sum(0), sum(3), sum(6)), sum(9))
 }
 
 /// Whether the sum of the lengths of two vectors is less than a number, without a root: of what is no number it is not.
@@ -232,13 +280,6 @@ fn contains_origin(points: &Points, error: f64) -> bool {
     let [a, b, c, d] = [-sides[0], -sides[1], -sides[2], sides[3]];
     let (least, greatest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
     (least > error) | (greatest < -error)
-}
-
-/// The squares of the lengths of a matrix's columns.
-#[inline(always)]
-fn squares(linear: &DMat3) -> DVec3 {
-    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = linear;
-    DVec3::new(x.length_squared(), y.length_squared(), z.length_squared())
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::descent::{End, Goal, descend_robustly};
 use super::distance::{Measure, Measured, measure};
 use super::intersection::CACHED_GAP_MIN;
 use super::lean::{self, Lean, Search, Sure, Task};
-use super::{Closest, Witness, closest_points};
+use super::{Closest, DISTANCE_TOLERANCE, Witness, closest_points};
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
 use crate::{Support, epa};
@@ -233,9 +233,10 @@ impl Memory {
             // The cores, which are not what is kept, are as fast from scratch.
             return closest_points(a, placement_a, b, placement_b);
         }
-        if self.len == 4
-            && let Some(simplex) = self.tetrahedron(&Difference::new(a, placement_a, b, placement_b))
-        {
+        if let Some(closest) = lean::run(a, placement_a, b, placement_b, SameFeature { memory: self }) {
+            return closest;
+        }
+        if let Some(simplex) = self.tetrahedron(&Difference::new(a, placement_a, b, placement_b)) {
             return Closest { distance: 0.0, points: Witness::of(&simplex) };
         }
         let task = Measure { bound: f64::INFINITY, warm: self.nearest() };
@@ -278,6 +279,53 @@ impl Memory {
     }
 }
 
+/// The closest points, where they are still between the kept pairs of points.
+struct SameFeature<'m> {
+    memory: &'m Memory,
+}
+
+impl Task for SameFeature<'_> {
+    type Found = Option<Closest>;
+
+    #[inline(always)]
+    fn run<A, B>(
+        self,
+        difference: &Difference<A, B>,
+        against: impl Fn(DVec3) -> SupportPoint,
+    ) -> Option<Closest>
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let Memory { ref pairs, len, .. } = *self.memory;
+        if len == 0 {
+            return None;
+        }
+        let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
+        let mut points = [zero; 4];
+        let len = usize::from(len).min(4);
+        // No `map` of arrays: it is not inlined here.
+        for i in 0..len {
+            points[i] = difference.point(pairs[i].a, pairs[i].b);
+        }
+        if len == 4 {
+            let [p, q, r, s] = &points;
+            let (sides, least) = sides_of_origin([p.w, q.w, r.w, s.w]);
+            let inside = sides[0].min(sides[1]).min(sides[2].min(sides[3])) > 0.0;
+            let common =
+                if inside && least > VOLUME_ERROR { lean::common_point(&points, sides) } else { None };
+            return common.map(|points| Closest { distance: 0.0, points });
+        }
+        let (v, witness) = lean::closest_point(&points[..len])?;
+        // One support point shows that nothing is nearer.
+        let (length, vw) = (v.length(), v.dot(against(v).w));
+        let goal = Goal::Distance { tolerance: DISTANCE_TOLERANCE };
+        let sure =
+            vw > SUPPORT_ERROR * v.abs().element_sum() && goal.is_within_tolerance(length, vw / length);
+        sure.then(|| Closest { distance: length / difference.scale(), points: witness })
+    }
+}
+
 /// Whether two objects intersect, by what is kept of them, else from scratch.
 struct Again<'m> {
     memory: &'m Memory,
@@ -315,7 +363,11 @@ impl Task for Again<'_> {
         let mut warm = self.memory.nearest();
         let face;
         if len == 4 {
-            let (sides, least) = sides_of_origin(pairs.map(|pair| difference.point(pair.a, pair.b).w));
+            let mut points = [DVec3::ZERO; 4];
+            for i in 0..4 {
+                points[i] = difference.point(pairs[i].a, pairs[i].b).w;
+            }
+            let (sides, least) = sides_of_origin(points);
             if least <= VOLUME_ERROR {
                 return Found::Unknown;
             }

@@ -145,6 +145,9 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
+    if balls::decide(a, placement_a, b, placement_b) == Some(true) {
+        return None;
+    }
     let lean = lean::run(a, placement_a, b, placement_b, SEARCH);
     match lean.sure {
         Sure::Separated => Some(lean.v.normalize()),

@@ -61,19 +61,9 @@ impl Lean {
     /// The common point, of objects that intersect: where the origin is in the tetrahedron.
     #[inline]
     pub fn common_point(&self) -> Witness {
-        let [p, q, r, s] = self.points;
-        let (sides, _) = sides_of_origin([p.w, q.w, r.w, s.w]);
-        let inverse = 1.0 / (sides[0] + sides[1] + sides[2] + sides[3]);
-        // Of each point the side of the face opposite.
-        let weights = [sides[1], sides[2], sides[0], sides[3]].map(|side| side * inverse);
-        let (mut w, mut on_a, mut on_b) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-        for (point, weight) in self.points.iter().zip(weights) {
-            w += point.w * weight;
-            on_a += point.a * weight;
-            on_b += point.b * weight;
-        }
-        if w.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
-            return Witness { on_a, on_b };
+        let (sides, _) = sides_of_origin(self.points.map(|p| p.w));
+        if let Some(witness) = common_point(&self.points, sides) {
+            return witness;
         }
         self.careful_common_point()
     }
@@ -89,37 +79,58 @@ impl Lean {
     /// The closest point of the hull of up to three points, measured again by more careful means, with the points of the objects that
     /// it is the difference of; `None` where it takes yet more care.
     pub fn closest_point(&self) -> Option<(DVec3, Witness)> {
-        let (v, weights) = match *self.points() {
-            [p] => (p.w, [1.0, 0.0, 0.0]),
-            [p, q] => {
-                let (v, [x, y]) = within_edge([p.w, q.w]).ok()?;
-                (v, [x, y, 0.0])
-            }
-            [p, q, r] => {
-                let squares = [p, q, r].map(|p| p.w.length_squared());
-                // Around the face from the corner nearest to the origin; then back.
-                let turn = if squares[1] < squares[0] { 1 } else { 0 };
-                let turn = if squares[2] < squares[turn] { 2 } else { turn };
-                let [p, q, r] = [p.w, q.w, r.w];
-                match within_face([[p, q, r], [q, r, p], [r, p, q]][turn]) {
-                    Within::Face(v, [x, y, z]) => (v, [[x, y, z], [z, x, y], [y, z, x]][turn]),
-                    Within::Outside | Within::Sliver => return None,
-                }
-            }
-            _ => return None,
-        };
-        let (mut on_a, mut on_b) = (DVec3::ZERO, DVec3::ZERO);
-        for (point, weight) in self.points().iter().zip(weights) {
-            on_a += point.a * weight;
-            on_b += point.b * weight;
-        }
-        Some((v, Witness { on_a, on_b }))
+        closest_point(self.points())
     }
 
     /// The same as a simplex that is not reduced.
     pub fn simplex(&self) -> Simplex {
         Simplex::of(self.points())
     }
+}
+
+/// Where the origin is in a tetrahedron, by the volumes that it makes with the faces, as a point of each object; `None` where that is not precise.
+#[inline(always)]
+pub(super) fn common_point(points: &[SupportPoint; 4], sides: [f64; 4]) -> Option<Witness> {
+    let inverse = 1.0 / (sides[0] + sides[1] + sides[2] + sides[3]);
+    // Of each point the side of the face opposite.
+    let weights = [sides[1], sides[2], sides[0], sides[3]].map(|side| side * inverse);
+    let (mut w, mut on_a, mut on_b) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+    for (point, weight) in points.iter().zip(weights) {
+        w += point.w * weight;
+        on_a += point.a * weight;
+        on_b += point.b * weight;
+    }
+    (w.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR).then_some(Witness { on_a, on_b })
+}
+
+/// See [`Lean::closest_point`].
+#[inline(always)]
+pub(super) fn closest_point(points: &[SupportPoint]) -> Option<(DVec3, Witness)> {
+    let (v, weights) = match *points {
+        [p] => (p.w, [1.0, 0.0, 0.0]),
+        [p, q] => {
+            let (v, [x, y]) = within_edge([p.w, q.w]).ok()?;
+            (v, [x, y, 0.0])
+        }
+        [p, q, r] => {
+            let squares = [p, q, r].map(|p| p.w.length_squared());
+            // Around the face from the corner nearest to the origin; then back.
+            let turn = if squares[1] < squares[0] { 1 } else { 0 };
+            let turn = if squares[2] < squares[turn] { 2 } else { turn };
+            let [p, q, r] = [p.w, q.w, r.w];
+            match within_face([[p, q, r], [q, r, p], [r, p, q]][turn]) {
+                Within::Face(v, [x, y, z]) => (v, [[x, y, z], [z, x, y], [y, z, x]][turn]),
+                Within::Outside | Within::Sliver => return None,
+            }
+        }
+        _ => return None,
+    };
+    let (mut on_a, mut on_b) = (DVec3::ZERO, DVec3::ZERO);
+    for (point, weight) in points.iter().zip(weights) {
+        on_a += point.a * weight;
+        on_b += point.b * weight;
+    }
+    Some((v, Witness { on_a, on_b }))
 }
 
 /// The closest point of a hull: `v / divisor`, on the newest point and those older ones whose bits are set.

@@ -52,7 +52,7 @@ pub(crate) use surface::{SurfacePoint, surface_point};
 pub use swept::Path;
 pub(crate) use table::{
     axis, closest, closest_within, convex_closest_within, convex_intersects, intersection, intersects,
-    penetration,
+    penetration, separation,
 };
 
 use crate::placement::inverse_linear;
@@ -73,6 +73,12 @@ pub(crate) enum Relation {
     Separated { axis: Option<DVec3> },
     /// They do: a common point, as a point of each shape.
     Common(Witness),
+}
+
+/// That two shapes do not intersect; convex shapes come with an axis that separates them, from `B` to `A`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Separation {
+    pub axis: Option<DVec3>,
 }
 
 /// Calls `found` with every pair of primitives that meet, in no particular order, until it breaks off. A convex shape is

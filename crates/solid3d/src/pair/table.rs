@@ -4,7 +4,8 @@ use glam::{DAffine3, DVec3};
 use solid_convex::{Closest, Penetration, Support};
 
 use super::{
-    Mirror, Placed, Relation, Scratch, closed_form, complex_complex, complex_convex, convex_convex, depth,
+    Mirror, Placed, Relation, Scratch, Separation, closed_form, complex_complex, complex_convex,
+    convex_convex, depth,
 };
 use crate::shape::{Class, Complex};
 
@@ -80,6 +81,17 @@ pub(crate) fn intersection(a: Placed, b: Placed, scratch: &mut Scratch) -> Relat
         complex_complex: complex_complex::intersection,
     };
     ROW.apply(a, b, scratch)
+}
+
+/// What [`intersection`] says without a common point: `None` of shapes that intersect.
+pub(crate) fn separation(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<Separation> {
+    if let (Some((on_a, on_b)), None) = (convex(a, b), a.shape.simple().and(b.shape.simple())) {
+        return convex_convex::axis(on_a, on_b, scratch).map(|axis| Separation { axis: Some(axis) });
+    }
+    match intersection(a, b, scratch) {
+        Relation::Separated { axis } => Some(Separation { axis }),
+        Relation::Common(_) => None,
+    }
 }
 
 /// The closest points.

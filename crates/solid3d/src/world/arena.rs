@@ -7,7 +7,7 @@ use std::ops::{Index, IndexMut};
 
 use slotmap::{Key, KeyData};
 
-use super::object::{Object, ObjectId};
+use super::object::{Object, ObjectId, Staleness};
 use crate::broad::Proxy;
 use crate::broad::room::push;
 
@@ -73,6 +73,13 @@ impl Arena {
 
     pub fn get_mut(&mut self, id: ObjectId) -> Option<&mut Object> {
         self.slot_mut(id)?.object.as_mut()
+    }
+
+    /// Notes that nothing of an object is out of date, if it is still there.
+    pub fn freshen(&mut self, id: ObjectId) {
+        if let Some(object) = self.get_mut(id) {
+            object.staleness = Staleness::Fresh;
+        }
     }
 
     fn slot_mut(&mut self, id: ObjectId) -> Option<&mut Slot> {

@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use super::arena::Arena;
 use super::findings::{FindingId, Findings};
 use super::near::{Near, Nearness};
 #[cfg(feature = "rayon")]
@@ -21,6 +22,9 @@ use crate::broad::{PairChange, PairId};
 /// What the box of an object costs that moved, at least, in units of [`Workers::share`].
 #[cfg(feature = "rayon")]
 const UNITS_PER_BOX: u64 = 4;
+
+/// When one in so many objects changed, all candidates are looked at in one pass, rather than those of each that did.
+const MANY: usize = 4;
 
 /// Two objects by their places in the order of pairs, the earlier first: the order of the results.
 pub(super) type PairKey = (u64, u64);
@@ -80,6 +84,27 @@ impl Candidates {
             && !std::mem::replace(&mut candidate.queued, true)
         {
             self.queue.push(pair);
+        }
+    }
+
+    /// Has a candidate examined by the next test if it depends on what of one of its objects is out of date.
+    fn enqueue_if(&mut self, pair: PairId, staleness: Staleness, findings: &Findings) {
+        let looks_back = || match self.get(pair).found {
+            Some(found) => matches!(findings.collision(found).contact, Contact::Smart { .. }),
+            None => false,
+        };
+        if staleness > Staleness::Previous || staleness == Staleness::Previous && looks_back() {
+            self.enqueue(pair);
+        }
+    }
+
+    /// The same with every candidate: each is looked at once, in the order in which they are kept.
+    fn enqueue_stirred(&mut self, objects: &Arena, findings: &Findings) {
+        for pair in 0..self.slots.end() as PairId {
+            if let Some(&Candidate { a, b, .. }) = self.slots.get(pair) {
+                let staleness = objects[a].staleness.max(objects[b].staleness);
+                self.enqueue_if(pair, staleness, findings);
+            }
         }
     }
 
@@ -165,18 +190,17 @@ impl World {
                 candidates.end(pair, findings);
             }
         }
+        if MANY * stirred.len() >= objects.len() {
+            candidates.enqueue_stirred(objects, findings);
+            stirred.drain(..).for_each(|id| objects.freshen(id));
+        }
         for id in stirred.drain(..) {
-            let Some(object) = objects.get_mut(id) else { continue };
-            let staleness = std::mem::take(&mut object.staleness);
-            broad.for_each_pair_of(super::proxy(id), &mut |pair, _| {
-                let looks_back = || match candidates.get(pair).found {
-                    Some(found) => matches!(findings.collision(found).contact, Contact::Smart { .. }),
-                    None => false,
-                };
-                if staleness > Staleness::Previous || looks_back() {
-                    candidates.enqueue(pair);
-                }
-            });
+            let staleness = objects.get(id).map_or(Staleness::Fresh, |object| object.staleness);
+            objects.freshen(id);
+            if staleness > Staleness::Fresh {
+                let mut enqueue = |pair, _| candidates.enqueue_if(pair, staleness, findings);
+                broad.for_each_pair_of(super::proxy(id), &mut enqueue);
+            }
         }
         if std::mem::take(&mut self.default_changed) {
             candidates.enqueue_all();

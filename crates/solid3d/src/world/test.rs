@@ -12,7 +12,7 @@ use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
 use crate::broad::PairId;
 use crate::error::Result;
 use crate::pair::swept::{self, Encounter, Moving};
-use crate::pair::{self, Relation, Scratch};
+use crate::pair::{self, Relation, Scratch, Separation};
 
 /// How far a test has come that is made collision by collision: see [`World::test_next`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -253,20 +253,10 @@ impl World {
             return Examined { matters: true, found: None, axis: Some(axis), work };
         }
         let before = scratch.work();
-        let (found, axis) = match (pair::intersection(a.placed(), b.placed(), scratch), &way) {
-            (Relation::Common(witness), _) => {
-                let contact = match response {
-                    Response::Ignore | Response::Simple => Contact::Simple,
-                    Response::Witness => Contact::witness(a.placed(), b.placed(), &witness),
-                    Response::Smart => smart([a, b], scratch),
-                    Response::Curve => Contact::curve(a.placed(), b.placed(), &witness, scratch),
-                    Response::Depth => Contact::depth(a.placed(), b.placed(), scratch),
-                    Response::Contacts => Contact::contacts(a.placed(), b.placed(), &witness, scratch),
-                };
-                (Some((When::Now, contact)), None)
-            }
-            (Relation::Separated { axis }, None) => (None, axis),
-            (Relation::Separated { .. }, Some(way)) => {
+        let (found, axis) = match (now([a, b], response, scratch), &way) {
+            (Now::Collide(contact), _) => (Some((When::Now, contact)), None),
+            (Now::Apart { axis }, None) => (None, axis),
+            (Now::Apart { .. }, Some(way)) => {
                 work.sweeps = 1;
                 on_the_way([a, b], way, response, scratch)
             }
@@ -275,6 +265,37 @@ impl World {
         (work.box_tests, work.primitive_tests) = (after.0 - before.0, after.1 - before.1);
         Examined { matters: true, found, axis: axis.filter(|_| self.caching), work }
     }
+}
+
+/// What two objects do as they are.
+enum Now {
+    Collide(Contact),
+    /// With an axis that separates them, where there is one to keep.
+    Apart {
+        axis: Option<DVec3>,
+    },
+}
+
+fn now([a, b]: [&Object; 2], response: Response, scratch: &mut Scratch) -> Now {
+    let (placed_a, placed_b) = (a.placed(), b.placed());
+    if response == Response::Simple {
+        return match pair::separation(placed_a, placed_b, scratch) {
+            Some(Separation { axis }) => Now::Apart { axis },
+            None => Now::Collide(Contact::Simple),
+        };
+    }
+    let witness = match pair::intersection(placed_a, placed_b, scratch) {
+        Relation::Separated { axis } => return Now::Apart { axis },
+        Relation::Common(witness) => witness,
+    };
+    Now::Collide(match response {
+        Response::Ignore | Response::Simple => Contact::Simple,
+        Response::Witness => Contact::witness(placed_a, placed_b, &witness),
+        Response::Smart => smart([a, b], scratch),
+        Response::Curve => Contact::curve(placed_a, placed_b, &witness, scratch),
+        Response::Depth => Contact::depth(placed_a, placed_b, scratch),
+        Response::Contacts => Contact::contacts(placed_a, placed_b, &witness, scratch),
+    })
 }
 
 /// Whether two objects that are apart now collided on the way; else an axis, when one separates them all the way.

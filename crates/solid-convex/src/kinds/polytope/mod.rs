@@ -125,10 +125,6 @@ impl Support for Polytope {
         Some(self.balls)
     }
 
-    fn bounding_radius(&self) -> f64 {
-        self.balls.outer
-    }
-
     fn is_polytope(&self) -> bool {
         true
     }
