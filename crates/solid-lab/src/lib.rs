@@ -5,6 +5,7 @@
 //! - [`inputs`]: shapes, pairs and motions to measure on, from a seed.
 //! - [`experiments`]: the tables and figures of the thesis.
 //! - [`peers`]: the library, the thesis's design and parry, on the same inputs in one run.
+//! - [`threads`]: one thread against two.
 //! - [`document`]: where the results are put.
 
 pub mod comparators;
@@ -12,3 +13,4 @@ pub mod document;
 pub mod experiments;
 pub mod inputs;
 pub mod peers;
+pub mod threads;

@@ -10,6 +10,7 @@ use solid_lab::document;
 use solid_lab::experiments::{self, Experiment, Report, Settings};
 use solid_lab::inputs::SEED;
 use solid_lab::peers::{self, Effort};
+use solid_lab::threads;
 
 /// Measures again what the thesis measured, and the library beside its peers
 #[derive(Debug, Parser)]
@@ -23,7 +24,7 @@ struct Cli {
 enum Command {
     /// Names the experiments
     List,
-    /// Runs an experiment, or all of them and the comparison with the peers
+    /// Runs an experiment, or all of them, the comparison with the peers, and that of one thread and two
     Run {
         /// The name of an experiment, or `all`
         name: String,
@@ -46,6 +47,14 @@ enum Command {
         /// Draw the ratios, as SVG
         #[arg(long, value_name = "FILE")]
         chart: Option<PathBuf>,
+    },
+    /// One thread against two
+    Threads {
+        #[command(flatten)]
+        measuring: Measuring,
+        /// Bring `experiments.md` in this folder up to date
+        #[arg(long, value_name = "FOLDER")]
+        docs: Option<PathBuf>,
     },
 }
 
@@ -70,16 +79,20 @@ fn main() -> Result<()> {
         Command::Run { name, measuring, out, docs } => {
             let out = docs.as_ref().map_or(out, |docs| docs.join("experiments"));
             let effort = if measuring.quick { experiments::Effort::Quick } else { experiments::Effort::Full };
+            threads::stay_on_one()?;
             run(&name, &Settings { effort, seed: measuring.seed, out_dir: out }, docs.as_deref())?;
             if name == "all" {
                 let chart = docs.as_ref().map(|docs| docs.join("peers.svg"));
                 compare(measuring, None, chart.as_deref(), docs.as_deref())?;
+                one_and_two(measuring, docs.as_deref())?;
             }
             Ok(())
         }
         Command::Peers { measuring, json, chart } => {
+            threads::stay_on_one()?;
             compare(measuring, json.as_deref(), chart.as_deref(), None)
         }
+        Command::Threads { measuring, docs } => one_and_two(measuring, docs.as_deref()),
     }
 }
 
@@ -130,10 +143,9 @@ fn compare(
     chart: Option<&Path>,
     docs: Option<&Path>,
 ) -> Result<()> {
-    let effort = if measuring.quick { Effort::Quick } else { Effort::Full };
     eprintln!("seed {}", measuring.seed);
     let start = Instant::now();
-    let report = peers::run(effort, measuring.seed, |name| {
+    let report = peers::run(effort(measuring), measuring.seed, |name| {
         eprintln!("{:5.1} s: {name}", start.elapsed().as_secs_f64());
     });
     println!("{}", peers::table(&report));
@@ -150,4 +162,21 @@ fn compare(
         document::fill(&docs.join("experiments.md"), &[("shortfalls", peers::shortfalls(&report))])?;
     }
     Ok(())
+}
+
+fn one_and_two(measuring: Measuring, docs: Option<&Path>) -> Result<()> {
+    let start = Instant::now();
+    let report = threads::run(effort(measuring), measuring.seed, |name| {
+        eprintln!("{:5.1} s: {name}", start.elapsed().as_secs_f64());
+    })?;
+    let table = threads::table(&report);
+    println!("{table}");
+    match docs {
+        Some(docs) => document::fill(&docs.join("experiments.md"), &[("threads", table)]),
+        None => Ok(()),
+    }
+}
+
+fn effort(measuring: Measuring) -> Effort {
+    if measuring.quick { Effort::Quick } else { Effort::Full }
 }

@@ -12,6 +12,7 @@ mod placement;
 pub mod polygon;
 pub mod query;
 mod shape;
+mod threads;
 pub mod tree;
 mod triangle_triangle;
 mod world;

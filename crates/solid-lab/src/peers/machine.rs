@@ -9,7 +9,7 @@ pub fn name() -> String {
     // The variant's name without what it holds.
     let level = format!("{:?}", solid3d::convex::simd::level());
     let level = level.split('(').next().unwrap_or_default();
-    format!("{model}, {cores} cores, {level}, one thread used")
+    format!("{model}, {cores} cores, {level}")
 }
 
 /// Today, as year-month-day.

@@ -20,10 +20,13 @@ mod table;
 mod targets;
 
 pub use bench::Bench;
+pub(crate) use cases::with_commas;
 pub use chart::draw;
 pub use contestants::{Library, Ours, Simulator};
 pub use effort::Effort;
+pub(crate) use machine::{date, name as machine};
 pub use report::{Kind, Peer, Report, Row};
+pub use spread::Spread;
 pub use table::{shortfalls, table};
 pub use targets::{TARGETS, Target};
 
@@ -34,5 +37,10 @@ pub fn run(effort: Effort, seed: u64, mut progress: impl FnMut(&str)) -> Report 
         progress(name);
         case(&mut bench);
     }
-    Report { seed, machine: machine::name(), date: machine::date(), rows: bench.into_rows() }
+    Report {
+        seed,
+        machine: format!("{}, one thread used", machine::name()),
+        date: machine::date(),
+        rows: bench.into_rows(),
+    }
 }

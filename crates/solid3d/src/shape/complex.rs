@@ -11,7 +11,8 @@ use super::topology::Topology;
 use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
-use crate::tree::{Slabs, Tree};
+use crate::threads::for_each_part;
+use crate::tree::{LeafPoints, Slabs, Tree};
 
 /// A soup of convex primitives. Clones share what a deformation leaves alone.
 #[derive(Clone, Debug)]
@@ -28,6 +29,8 @@ pub(crate) struct Complex {
     topology: OnceLock<Arc<Topology>>,
     /// How flat it is, at these positions, found when first asked for.
     slabs: OnceLock<Arc<Slabs>>,
+    /// What a refit reads, of this tree at any positions, found at the first deformation.
+    leaf_points: OnceLock<Arc<LeafPoints>>,
 }
 
 /// Which vertices make up each primitive: its hull is the primitive. Invariant: there is at least one, each names at
@@ -61,6 +64,7 @@ impl Primitives {
         }
     }
 
+    #[inline(always)]
     fn get(&self, primitive: u32) -> &[u32] {
         let i = primitive as usize;
         match self {
@@ -77,26 +81,12 @@ impl Primitives {
         }
     }
 
+    /// The box around a primitive.
+    #[inline(always)]
     fn bounds(&self, primitive: u32, vertices: &[DVec3]) -> Aabb {
-        self.union(&[primitive], vertices)
-    }
-
-    /// The box around some primitives, of which there is at least one.
-    fn union(&self, primitives: &[u32], vertices: &[DVec3]) -> Aabb {
         let mut bounds = Aabb::EMPTY;
-        match self {
-            Primitives::Triangles(triangles) => {
-                for &primitive in primitives {
-                    for &index in &triangles[primitive as usize] {
-                        bounds.grow(vertices[index as usize]);
-                    }
-                }
-            }
-            Primitives::Mixed { .. } => {
-                for &index in primitives.iter().flat_map(|&primitive| self.get(primitive)) {
-                    bounds.grow(vertices[index as usize]);
-                }
-            }
+        for &index in self.get(primitive) {
+            bounds.grow(vertices[index as usize]);
         }
         bounds
     }
@@ -134,6 +124,7 @@ impl Complex {
             parts: Arc::default(),
             topology: OnceLock::new(),
             slabs: OnceLock::new(),
+            leaf_points: OnceLock::new(),
         })
     }
 
@@ -233,8 +224,10 @@ impl Complex {
         let parts = self.parts.get().map_or(0, |parts| parts.capacity() * size_of::<u32>());
         let solid = self.solid.as_ref().map_or(0, |solid| solid.memory());
         let slabs = self.slabs.get().map_or(0, |slabs| slabs.bytes());
+        let leaf_points = self.leaf_points.get().map_or(0, |points| points.bytes());
         let vertices = self.vertices.capacity() * size_of::<DVec3>();
-        size_of::<Complex>() + self.primitives.memory() + vertices + self.tree.bytes() + solid + parts + slabs
+        let found = parts + slabs + leaf_points;
+        size_of::<Complex>() + self.primitives.memory() + vertices + self.tree.bytes() + solid + found
     }
 
     /// The tree over the primitives.
@@ -263,19 +256,29 @@ impl Complex {
 
     /// Takes new positions, which were checked.
     pub fn deform(&mut self, positions: &[DVec3]) {
-        self.vertices.copy_from_slice(positions);
-        self.tree.refit_leaves(|leaf| self.primitives.union(leaf, &self.vertices));
+        let part = validate::VERTICES_PART;
+        for_each_part(&mut self.vertices, part, validate::VERTICES_MANY, |i, vertices| {
+            vertices.copy_from_slice(&positions[i * part..][..vertices.len()]);
+        });
+        let Complex { primitives, vertices, tree, leaf_points, .. } = self;
+        let points = leaf_points
+            .get_or_init(|| Arc::new(LeafPoints::new(tree, |primitive| primitives.get(primitive))));
+        tree.refit_points(points, vertices);
         self.topology = OnceLock::new();
         self.slabs = OnceLock::new();
         if self.tree.degraded() {
             self.tree = build(&self.primitives, &self.vertices);
+            self.leaf_points = OnceLock::new();
         }
     }
 }
 
 fn build(primitives: &Primitives, vertices: &[DVec3]) -> Tree {
-    let boxes: Vec<Aabb> = (0..primitives.len() as u32).map(|i| primitives.bounds(i, vertices)).collect();
-    Tree::build(&boxes)
+    Tree::build_of(
+        primitives.len(),
+        #[inline(always)]
+        |primitive| primitives.bounds(primitive, vertices),
+    )
 }
 
 #[cfg(test)]

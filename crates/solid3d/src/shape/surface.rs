@@ -8,6 +8,7 @@ use solid_convex::Cuboid;
 use super::{Complex, Geometry, Shape};
 use crate::error::Result;
 use crate::hull::Hull;
+use crate::threads::alone;
 
 /// A shape's surface: facets under a tree.
 pub(crate) enum Surface<'a> {
@@ -46,7 +47,9 @@ impl Shape {
             }
         };
         let facets = hull_facets(&corners);
-        Ok(Some(Surface::OfConvex(Box::new(Complex::mesh(corners.into_owned(), facets)?))))
+        // A world asks this of pairs that it tests on several threads.
+        let complex = alone(|| Complex::mesh(corners.into_owned(), facets))?;
+        Ok(Some(Surface::OfConvex(Box::new(complex))))
     }
 }
 

@@ -4,17 +4,30 @@ use glam::DVec3;
 use solid_convex::MAGNITUDE_MAX;
 
 use crate::error::{Error, Result};
+use crate::threads::first_part_where;
 use crate::tree::PRIMITIVES_MAX;
 
 /// What 32-bit indices can name.
 pub(super) const NAMEABLE_MAX: usize = u32::MAX as usize;
 
+/// Vertices that are checked or copied in one piece.
+pub(super) const VERTICES_PART: usize = 1 << 12;
+
+/// So many, of some 1 ns each, are worth another thread.
+pub(super) const VERTICES_MANY: usize = 1 << 15;
+
 /// Every coordinate finite and in range.
 pub(super) fn vertices(vertices: &[DVec3]) -> Result<()> {
     // What is not a number is not in range either.
-    let in_range = |v: &DVec3| v.abs().cmple(DVec3::splat(MAGNITUDE_MAX)).all();
-    match vertices.iter().position(|v| !in_range(v)) {
-        Some(index) => Err(Error::Vertex { index, value: vertices[index] }),
+    let in_range = |v: &DVec3| {
+        (v.x.abs() <= MAGNITUDE_MAX) & (v.y.abs() <= MAGNITUDE_MAX) & (v.z.abs() <= MAGNITUDE_MAX)
+    };
+    // Without a branch within a part: nearly always all are.
+    let fails = |part: &[DVec3]| !part.iter().fold(true, |all, v| all & in_range(v));
+    let part = first_part_where(vertices, VERTICES_PART, VERTICES_MANY, fails);
+    let first = part.unwrap_or(0) * VERTICES_PART;
+    match part.and_then(|_| vertices[first..].iter().position(|v| !in_range(v))) {
+        Some(index) => Err(Error::Vertex { index: first + index, value: vertices[first + index] }),
         None => Ok(()),
     }
 }

@@ -1,8 +1,10 @@
 //! The surface-area heuristic as a measure of boxes and of trees.
 
 use super::Tree;
-use super::node::{Node, WIDTH};
+use super::node::{Node, WIDTH, halves};
 use super::packed::PackedBox;
+use crate::Aabb;
+use solid_convex::simd::{dispatch, level};
 
 /// A tree whose cost has grown by this factor since it was built is no longer worth refitting.
 ///
@@ -15,41 +17,89 @@ pub const DEGRADED_RATIO: f64 = 1.3;
 const QUERY_SIDE: f32 = 1.0 / 64.0;
 
 /// How likely a query meets a box: half its area and a little of its perimeter.
-#[inline]
+#[inline(always)]
 pub(super) fn measure(bounds: &PackedBox) -> f32 {
     measure_of([0, 1, 2].map(|axis| bounds.size(axis)))
 }
 
-#[inline]
-fn measure_of([x, y, z]: [f32; 3]) -> f32 {
+#[inline(always)]
+pub(super) fn measure_of([x, y, z]: [f32; 3]) -> f32 {
     x * y + y * z + z * x + QUERY_SIDE * (x + y + z)
 }
 
 /// The sum of the measures of a node's lanes.
-#[inline]
+#[inline(always)]
 pub(super) fn measure_lanes(node: &Node) -> f32 {
     let mut lanes = [0.0; WIDTH];
     for (lane, sum) in lanes.iter_mut().enumerate() {
         // Empty lanes are inverted: their sides count as zero.
-        *sum = measure_of([0, 1, 2].map(|axis| (node.max[axis][lane] - node.min[axis][lane]).max(0.0)));
+        let side = |axis: usize| {
+            let side = node.max[axis][lane] - node.min[axis][lane];
+            if side > 0.0 { side } else { 0.0 }
+        };
+        *sum = measure_of([side(0), side(1), side(2)]);
     }
-    lanes.iter().sum()
+    halves(&lanes, |a, b| a + b)
 }
 
+/// Measures are summed in blocks of so many nodes, and then those sums: so several threads can do it, and it has the same bits.
+pub(super) const BLOCK: usize = 256;
+
+/// What a pass over the nodes of a tree finds out about it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measured {
+    /// The tight union, in local coordinates.
+    pub bounds: Aabb,
+    /// Of the measures of all lanes, block by block from the last, in each from its last node.
+    pub sum: f64,
+}
+
+impl Measured {
+    /// Of no nodes.
+    pub const NONE: Measured = Measured { bounds: Aabb::EMPTY, sum: 0.0 };
+}
+
+/// The sum of the measures of all lanes.
+pub(super) fn sum(nodes: &[Node]) -> f64 {
+    let of_block = |block: &[Node]| -> f64 {
+        dispatch!(level(), _simd => {
+            let mut sum = 0.0;
+            for node in block.iter().rev() {
+                sum += f64::from(measure_lanes(node));
+            }
+            sum
+        })
+    };
+    #[cfg(feature = "rayon")]
+    if crate::threads::share(nodes.len(), NODES_MANY) {
+        use rayon::prelude::*;
+        let sums: Vec<f64> = nodes.par_chunks(BLOCK).map(of_block).collect();
+        return sums.into_iter().rev().fold(0.0, |sum, of_block| sum + of_block);
+    }
+    nodes.chunks(BLOCK).rev().map(of_block).fold(0.0, |sum, of_block| sum + of_block)
+}
+
+/// So many nodes, of some 10 ns each, are worth another thread.
+#[cfg(feature = "rayon")]
+const NODES_MANY: usize = 1 << 12;
+
 impl Tree {
-    /// The cost by the surface-area heuristic, of nodes and leaves alike, relative to the squared diagonal of the root.
+    /// Takes in what a pass over the nodes found out.
     ///
+    /// The cost by the surface-area heuristic is that of nodes and leaves alike, relative to the squared diagonal of the root.
     /// Relative to the area of the root it would be the expected visits of a query that meets the root; but a twist that fattens a
     /// flat root then hides its own cost: that measure grew by 1.02, 1.03 and
     /// 1.33 in the measurement of [`DEGRADED_RATIO`].
-    pub(super) fn cost_relative(&self) -> f64 {
-        if self.bounds.min == self.bounds.max {
-            return 0.0; // of a point: any extent that it is given later is worth a build
-        }
-        let sum: f64 = self.nodes.iter().map(|node| f64::from(measure_lanes(node))).sum();
-        let diagonal_squared: f64 =
-            [0, 1, 2].map(|axis| f64::from(self.root.size(axis)).powi(2)).iter().sum();
-        sum / diagonal_squared
+    pub(super) fn take(&mut self, measured: &Measured) {
+        self.bounds = measured.bounds;
+        self.root = self.nodes[0].union();
+        self.cost = if self.bounds.min == self.bounds.max {
+            0.0 // of a point: any extent that it is given later is worth a build
+        } else {
+            let diagonal_squared: f64 =
+                [0, 1, 2].map(|axis| f64::from(self.root.size(axis)).powi(2)).iter().sum();
+            measured.sum / diagonal_squared
+        };
     }
 
     /// Whether refits have made the boxes overlap so much that a new build pays: the cost by the surface-area heuristic has grown

@@ -15,8 +15,8 @@
 //! | `packed` | one box of `f32` |
 //! | `normal` | tree coordinates and the outward rounding |
 //! | `node` | the eight-wide node and its child words |
-//! | `split`, `build` | binned surface-area heuristic, the eight-wide build |
-//! | `refit`, `cost` | boxes anew in the same topology, and when that no longer pays |
+//! | `split`, `clusters`, `build` | binned surface-area heuristic, first on cells of a grid, and the eight-wide build |
+//! | `refit`, `leaf_points`, `cost` | boxes anew in the same topology, what they are around, and when that no longer pays |
 //! | `validate` | the invariants |
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
@@ -31,14 +31,16 @@
 //! 2. No overlapping pair is lost, whatever the affine map, the sizes and the distance from the origin; none nearer than the
 //!    reported distance either.
 //! 3. A build of boxes scaled by a power of two gives the same bits; so does a refit of unchanged boxes.
-//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses.
-//! 5. Every order is a function of the input alone.
+//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but a build on several threads.
+//! 5. Every order is a function of the input alone, not of the number of threads.
 
 mod build;
 mod cast_pairs;
+mod clusters;
 mod cost;
 mod crossing;
 mod lanes;
+mod leaf_points;
 mod metric;
 mod nearest;
 mod nearest_pairs;
@@ -62,6 +64,7 @@ pub use build::DEPTH_MAX;
 pub use cast_pairs::cast_pairs;
 pub use cost::DEGRADED_RATIO;
 pub(crate) use lanes::bits;
+pub(crate) use leaf_points::LeafPoints;
 pub use metric::PairMetric;
 pub(crate) use nearest::NearLeaves;
 pub use nearest_pairs::nearest_pairs;

@@ -45,7 +45,7 @@ impl Node {
     }
 
     /// Sets the box of a lane.
-    #[inline]
+    #[inline(always)]
     pub fn set_lane(&mut self, lane: usize, bounds: &PackedBox) {
         let (min, max) = (bounds.min(), bounds.max());
         for axis in 0..3 {
@@ -55,6 +55,7 @@ impl Node {
     }
 
     /// The union of all lanes.
+    #[inline(always)]
     pub fn union(&self) -> PackedBox {
         let mut bounds = PackedBox::EMPTY;
         for axis in 0..3 {
@@ -65,17 +66,23 @@ impl Node {
     }
 }
 
+#[inline(always)]
 fn least(lanes: &[f32; WIDTH]) -> f32 {
     halves(lanes, |a, b| if a < b { a } else { b })
 }
 
+#[inline(always)]
 fn greatest(lanes: &[f32; WIDTH]) -> f32 {
     halves(lanes, |a, b| if a > b { a } else { b })
 }
 
 /// Reduces eight lanes to one, half by half, as a vector unit does.
-fn halves(l: &[f32; WIDTH], f: impl Fn(f32, f32) -> f32) -> f32 {
-    let four: [f32; 4] = std::array::from_fn(|i| f(l[i], l[i + 4]));
+#[inline(always)]
+pub(super) fn halves(l: &[f32; WIDTH], f: impl Fn(f32, f32) -> f32) -> f32 {
+    let mut four = [0.0; 4];
+    for (i, x) in four.iter_mut().enumerate() {
+        *x = f(l[i], l[i + 4]);
+    }
     f(f(four[0], four[2]), f(four[1], four[3]))
 }
 
@@ -108,6 +115,15 @@ impl Child {
     pub fn leaf(range: Range<usize>) -> Self {
         debug_assert!((1..=LEAF_SIZE).contains(&range.len()) && range.end <= PRIMITIVES_MAX);
         Child(LEAF_BIT | ((range.len() - 1) as u32) << START_BITS | range.start as u32)
+    }
+
+    /// The same among nodes that stand after `first` others.
+    #[cfg(feature = "rayon")]
+    pub fn after(self, first: usize) -> Self {
+        match self.kind() {
+            Kind::Inner(node) => Child::inner(node + first),
+            Kind::Empty | Kind::Leaf(_) => self,
+        }
     }
 
     #[inline]

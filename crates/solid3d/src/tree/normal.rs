@@ -62,7 +62,7 @@ impl Normal {
     }
 
     /// A box in tree coordinates, which contains the exact image of `bounds`.
-    #[inline]
+    #[inline(always)]
     pub fn pack(&self, bounds: &Aabb) -> PackedBox {
         let (min, max) =
             ((bounds.min - self.origin) * self.inverse, (self.origin - bounds.max) * self.inverse);
@@ -88,7 +88,7 @@ impl Normal {
 }
 
 /// An `f32` at most `v`, even if `v` itself is off by a few relative 2^-53. Half of the growth is left after rounding.
-#[inline]
+#[inline(always)]
 pub(super) fn round_down(v: f64) -> f32 {
     (v - (v.abs() * GROWTH_RELATIVE + GROWTH)) as f32
 }

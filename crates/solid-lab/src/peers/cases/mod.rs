@@ -29,7 +29,7 @@ pub const ALL: [(&str, Case); 8] = [
 ];
 
 /// A number with commas between thousands.
-fn with_commas(n: usize) -> String {
+pub fn with_commas(n: usize) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {

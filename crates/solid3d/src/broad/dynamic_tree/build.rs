@@ -7,11 +7,17 @@
 //! One box far away would squeeze all others into one cell. So a range that shares one code, yet not one centre, is
 //! quantised again within its own bounds.
 
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
 use super::fat_box::FatBox;
 use super::node::{Child, Node, Place, WIDTH};
 use super::tree::{ROOT, Tree};
 use crate::broad::Proxy;
 use crate::broad::room::{push, room};
+use crate::threads::for_each_part;
+#[cfg(feature = "rayon")]
+use crate::threads::share;
 
 /// From this depth on ranges are halved by order instead of by code: with 2^28 leaves at most 28 more levels follow,
 /// fewer than `DEPTH_MAX` in all.
@@ -25,6 +31,12 @@ const CUT_BY_CODE_MIN: usize = 32;
 
 /// Bits of a code for each axis.
 const BITS: u32 = 10;
+
+/// Leaves that are looked at in one piece.
+const PART: usize = 1 << 11;
+
+/// So many, each of some 60 ns, are worth another thread.
+const MANY: usize = 1 << 13;
 
 /// The leaves in the making, kept for its memory.
 #[derive(Debug, Default)]
@@ -61,12 +73,7 @@ fn code(entry: u64) -> u32 {
 
 /// Gives the entries codes relative to their own bounds, and sorts them. False if all centres are one.
 fn encode(order: &mut [u64], boxes: &[FatBox]) -> bool {
-    let (mut min, mut max) = ([f32::MAX; 3], [-f32::MAX; 3]);
-    for &entry in order.iter() {
-        let center = boxes[proxy(entry) as usize].center();
-        min = std::array::from_fn(|k| min[k].min(center[k]));
-        max = std::array::from_fn(|k| max[k].max(center[k]));
-    }
+    let FatBox { min, max } = bounds_of_centers(order, boxes);
     // In `f64`: the extent of finite `f32` boxes may overflow, and the inverse of a tiny one too.
     let scale: [f64; 3] = std::array::from_fn(|k| {
         let extent = f64::from(max[k]) - f64::from(min[k]);
@@ -75,17 +82,43 @@ fn encode(order: &mut [u64], boxes: &[FatBox]) -> bool {
     if scale == [0.0; 3] {
         return false;
     }
-    for entry in order.iter_mut() {
-        let center = boxes[proxy(*entry) as usize].center();
-        let cell = |k: usize| {
-            let cell = (f64::from(center[k]) - f64::from(min[k])) * scale[k];
-            spread((cell as u32).min((1 << BITS) - 1))
-        };
-        let code = cell(0) | cell(1) << 1 | cell(2) << 2;
-        *entry = u64::from(code) << 32 | u64::from(proxy(*entry));
+    for_each_part(order, PART, MANY, |_, order| {
+        for entry in order {
+            let center = boxes[proxy(*entry) as usize].center();
+            let cell = |k: usize| {
+                let cell = (f64::from(center[k]) - f64::from(min[k])) * scale[k];
+                spread((cell as u32).min((1 << BITS) - 1))
+            };
+            let code = cell(0) | cell(1) << 1 | cell(2) << 2;
+            *entry = u64::from(code) << 32 | u64::from(proxy(*entry));
+        }
+    });
+    sort(order);
+    true
+}
+
+fn bounds_of_centers(order: &[u64], boxes: &[FatBox]) -> FatBox {
+    let none = FatBox { min: [f32::MAX; 3], max: [-f32::MAX; 3] };
+    let of_part = |order: &[u64]| {
+        order.iter().fold(none, |sum, &entry| {
+            let center = boxes[proxy(entry) as usize].center();
+            sum.union(&FatBox { min: center, max: center })
+        })
+    };
+    #[cfg(feature = "rayon")]
+    if share(order.len(), MANY) {
+        return order.par_chunks(PART).map(of_part).reduce(|| none, |a, b| a.union(&b));
+    }
+    of_part(order)
+}
+
+/// Entries are all different, so there is one order.
+fn sort(order: &mut [u64]) {
+    #[cfg(feature = "rayon")]
+    if share(order.len(), MANY) {
+        return order.par_sort_unstable();
     }
     order.sort_unstable();
-    true
 }
 
 /// Puts two zero bits between the ten low bits.

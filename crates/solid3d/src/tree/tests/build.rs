@@ -1,10 +1,13 @@
 //! Laws of build and refit.
 
+#[cfg(feature = "rayon")]
+use super::scenes::{boxes_of, torus};
 use super::scenes::{point, random_boxes, rng, torus_boxes};
 use crate::Aabb;
-use crate::tree::{DEPTH_MAX, Tree};
+use crate::tree::{DEPTH_MAX, LeafPoints, Tree};
 use glam::DVec3;
 use proptest::prelude::*;
+use solid_convex::simd::levels;
 
 fn checked(boxes: &[Aabb]) -> Tree {
     let tree = Tree::build(boxes);
@@ -67,6 +70,28 @@ fn the_depth_is_bounded() {
     assert_eq!(Tree::build(&[boxed(DVec3::ZERO, DVec3::ONE); 8 * 8 * 8 * 8]).depth(), 3);
 }
 
+/// Law: a build gives the same tree on any number of threads, whether or not there are clusters.
+#[cfg(feature = "rayon")]
+#[test]
+fn threads_change_no_tree() {
+    let mut cases = hard_cases(20_000);
+    cases.push(("a torus", boxes_of(&torus(400, 125, |p| p))));
+    cases.push(("boxes at random", random_boxes(&mut rng(3), 30_000, 0.02)));
+    for (name, boxes) in cases {
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| Tree::build(&boxes))
+        };
+        let one = on(1);
+        one.validate(&boxes);
+        for threads in [2, 3] {
+            let tree = on(threads);
+            assert!(tree.nodes == one.nodes && tree.order == one.order, "{name}, {threads} threads");
+            assert_eq!((tree.bounds, tree.cost.to_bits()), (one.bounds, one.cost.to_bits()), "{name}");
+        }
+    }
+}
+
 #[test]
 fn where_the_heuristic_ends_the_split_is_even() {
     // None of the hard cases gets as deep as the limit, so here it is lowered.
@@ -104,6 +129,49 @@ fn refit_follows_the_boxes() {
             .collect();
         tree.refit(|i| boxes[i as usize]);
         tree.validate(&boxes);
+    }
+}
+
+/// A grid of triangles, deformed: its vertices at a time, and its triangles.
+fn cloth(side: u32, time: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let at = |i: u32| DVec3::new(f64::from(i % side), f64::from(i / side), 0.0);
+    let wave = |p: DVec3| p + DVec3::new(0.0, 0.3 * time, (0.1 * p.x * p.y + time).sin());
+    let vertices = (0..side * side).map(|i| wave(at(i))).collect();
+    let corners = (0..side * (side - 1)).filter(|i| i % side + 1 < side);
+    let triangles = corners.flat_map(|i| [[i, i + 1, i + side], [i + 1, i + side + 1, i + side]]).collect();
+    (vertices, triangles)
+}
+
+/// Law: a refit from points gives the bits of one from boxes, on every level of instructions and any number of threads.
+#[test]
+fn a_refit_from_points_is_that_from_boxes() {
+    // The second is large enough for several threads.
+    for side in [20, 200] {
+        let (mut vertices, triangles) = cloth(side, 0.0);
+        let bounds =
+            |vertices: &[DVec3], i: u32| Aabb::of_points(triangles[i as usize].map(|v| vertices[v as usize]));
+        let boxes: Vec<Aabb> = (0..triangles.len() as u32).map(|i| bounds(&vertices, i)).collect();
+        let mut slow = Tree::build(&boxes);
+        let points = LeafPoints::new(&slow, |i| &triangles[i as usize]);
+        for time in [0.5, 0.0, 7.0, 1e6] {
+            vertices = cloth(side, time).0;
+            let before = slow.clone();
+            slow.refit(|i| bounds(&vertices, i));
+            for level in levels() {
+                let mut fast = before.clone();
+                fast.refit_points_on(level, &points, &vertices);
+                assert_eq!((&fast.nodes, fast.bounds), (&slow.nodes, slow.bounds), "{time}");
+                assert_eq!(fast.cost.to_bits(), slow.cost.to_bits(), "{time}");
+            }
+            #[cfg(feature = "rayon")]
+            for threads in [1, 2, 3] {
+                let mut fast = before.clone();
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| fast.refit_points(&points, &vertices));
+                assert_eq!((&fast.nodes, fast.bounds), (&slow.nodes, slow.bounds), "{time}, {threads}");
+                assert_eq!(fast.cost.to_bits(), slow.cost.to_bits(), "{time}, {threads}");
+            }
+        }
     }
 }
 
