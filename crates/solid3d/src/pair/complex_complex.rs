@@ -10,7 +10,7 @@ use solid_convex::{Closest, Witness, gjk};
 use super::containment::{PlacedSolid, part_inside};
 use super::crossing_point::{crossing_point, weighted};
 use super::frame::Frame;
-use super::row::{Near, Rows, distances, exceed, verdict};
+use super::row::{CONFIRMED, Near, Rows, distances, exceed, verdict};
 use super::scratch::PlacedPrimitive;
 use super::table::PlacedComplex;
 use super::triangle_triangle::{self, Triangle};
@@ -18,6 +18,12 @@ use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 use crate::shape::Complex;
 use crate::tree::{Facing, LeafPairs, NearLeafPairs, bits, nearest_pairs_on, pairs_on};
+
+/// Whether they intersect: as [`intersection`] says.
+pub(super) fn intersects(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> bool {
+    let mut found = |_, _| ControlFlow::Break(());
+    meeting_pairs_in(&frame(a, b), a, b, scratch, &mut found).is_break() || contained(a, b, scratch).is_some()
+}
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
     let mut first = None;
@@ -156,10 +162,6 @@ fn closest_pair(a: PlacedComplex, b: PlacedComplex, bound: f64, scratch: &mut Sc
     );
     approach.answer
 }
-
-/// A distance of triangles is taken for right when a lower bound comes as near, in the common frame, where the size of the
-/// data is from 1 to 2: well within the error that distances may have.
-const CONFIRMED: f64 = 1e-13;
 
 /// Looks for the closest primitives in pairs of leaves.
 struct Approach<'s> {

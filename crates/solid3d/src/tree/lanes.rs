@@ -68,10 +68,10 @@ pub(super) fn distances_squared<S: Simd>(
     probe: &Probe,
     on_lanes: &Weights,
     on_box: &Weights,
-) -> [f32; WIDTH] {
+) -> f32x8<S> {
     let along_lanes = weighed(simd, interval_gaps(simd, node, probe), on_lanes);
     let along_box = weighed(simd, projected_gaps(simd, node, crossing, probe), on_box);
-    along_lanes.max(along_box).to_array()
+    along_lanes.max(along_box)
 }
 
 /// Lower bounds of the squared distances between a box of the same tree coordinates and the lanes, up to the same rounding.
@@ -81,13 +81,13 @@ pub(super) fn distances_squared_to_box<S: Simd>(
     node: &Node,
     query: &PackedBox,
     weights: &Weights,
-) -> [f32; WIDTH] {
+) -> f32x8<S> {
     let (lo, hi) = (query.min(), query.max());
     let gaps = three(
         #[inline(always)]
         |axis| interval_gap(simd, node, axis, (lo[axis], hi[axis])),
     );
-    weighed(simd, gaps, weights).to_array()
+    weighed(simd, gaps, weights)
 }
 
 /// The gaps between the lanes and the single box on each axis of the lanes; negative where they overlap. The sign is exact.
@@ -200,8 +200,8 @@ mod tests {
         (
             overlapping_box(simd, node, bounds),
             overlapping_probe(simd, node, crossing, &probe),
-            distances.map(f32::to_bits),
-            to_box.map(f32::to_bits),
+            distances.to_array().map(f32::to_bits),
+            to_box.to_array().map(f32::to_bits),
             probe,
         )
     }
