@@ -22,7 +22,8 @@ use crate::tree::{Facing, LeafPairs, NearLeafPairs, bits, nearest_pairs_on, pair
 /// Whether they intersect: as [`intersection`] says.
 pub(super) fn intersects(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> bool {
     let mut found = |_, _| ControlFlow::Break(());
-    meeting_pairs_in(&frame(a, b), a, b, scratch, &mut found).is_break() || contained(a, b, scratch).is_some()
+    meeting_pairs_in(&frame(a, b), a, b, true, scratch, &mut found).is_break()
+        || contained(a, b, scratch).is_some()
 }
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
@@ -32,7 +33,7 @@ pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scr
         ControlFlow::Break(())
     };
     let frame = frame(a, b);
-    let _ = meeting_pairs_in(&frame, a, b, scratch, &mut found);
+    let _ = meeting_pairs_in(&frame, a, b, true, scratch, &mut found);
     match first {
         Some((i, j)) => Relation::Common(common_point(a, i, b, j, &frame.common)),
         None => contained(a, b, scratch).map_or(Relation::Separated { axis: None }, Relation::Common),
@@ -47,20 +48,21 @@ pub(super) fn meeting_pairs(
     scratch: &mut Scratch,
     found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    meeting_pairs_in(&frame(a, b), a, b, scratch, found)
+    meeting_pairs_in(&frame(a, b), a, b, false, scratch, found)
 }
 
 fn meeting_pairs_in(
     frame: &Frame,
     a: PlacedComplex,
     b: PlacedComplex,
+    wants_first: bool,
     scratch: &mut Scratch,
     found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     let Frame { relative, common, .. } = frame;
     rows.iter_mut().for_each(Rows::clear);
-    let mut meeting = Meeting { a, b, common, rows, primitive_tests, found };
+    let mut meeting = Meeting { a, b, common, wants_first, rows, primitive_tests, found };
     pairs_on(level(), a.0.tree(), b.0.tree(), relative, traversal, &mut meeting)
 }
 
@@ -69,12 +71,17 @@ struct Meeting<'s> {
     a: PlacedComplex<'s>,
     b: PlacedComplex<'s>,
     common: &'s [DAffine3; 2],
+    wants_first: bool,
     rows: &'s mut [Rows; 2],
     primitive_tests: &'s mut u64,
     found: &'s mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 }
 
 impl LeafPairs<()> for Meeting<'_> {
+    fn wants_first(&self) -> bool {
+        self.wants_first
+    }
+
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32]) -> ControlFlow<()> {
         let [rows_a, rows_b] = &mut *self.rows;

@@ -19,20 +19,22 @@ pub(super) fn overlapping_box<S: Simd>(simd: S, node: &Node, query: &PackedBox) 
     !((x.simd_gt(zero) | y.simd_gt(zero) | z.simd_gt(zero)).to_bitmask() as u32) & LANES
 }
 
-/// The lanes whose box may overlap a box of the other space, as bits.
+/// The lanes whose box may overlap a box of the other space, as bits; and how far each is apart from it on its own axes, below zero
+/// by how far it overlaps.
 #[inline(always)]
-pub(super) fn overlapping_probe<S: Simd>(simd: S, node: &Node, crossing: &Crossing, probe: &Probe) -> u32 {
+pub(super) fn overlapping_probe<S: Simd>(
+    simd: S,
+    node: &Node,
+    crossing: &Crossing,
+    probe: &Probe,
+) -> (u32, f32x8<S>) {
     let [x, y, z] = interval_gaps(simd, node, probe);
     let [u, v, w] = projected_gaps(simd, node, crossing, probe);
     let zero = f32x8::splat(simd, 0.0);
     // What is not a number is not greater: it separates nothing.
-    let apart: mask32x8<S> = x.simd_gt(zero)
-        | y.simd_gt(zero)
-        | z.simd_gt(zero)
-        | u.simd_gt(zero)
-        | v.simd_gt(zero)
-        | w.simd_gt(zero);
-    !(apart.to_bitmask() as u32) & LANES
+    let gap = x.max(y).max(z);
+    let apart: mask32x8<S> = gap.simd_gt(zero) | u.simd_gt(zero) | v.simd_gt(zero) | w.simd_gt(zero);
+    (!(apart.to_bitmask() as u32) & LANES, gap)
 }
 
 /// The sizes of the lanes, by which nodes compare: the sums of the sides.
@@ -199,7 +201,7 @@ mod tests {
         let to_box = distances_squared_to_box(simd, node, bounds, weights);
         (
             overlapping_box(simd, node, bounds),
-            overlapping_probe(simd, node, crossing, &probe),
+            overlapping_probe(simd, node, crossing, &probe).0,
             distances.to_array().map(f32::to_bits),
             to_box.to_array().map(f32::to_bits),
             probe,

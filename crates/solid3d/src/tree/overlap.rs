@@ -85,7 +85,7 @@ impl Tree {
         let bounds = normal.pack(&query.bounds);
         dispatch!(level(), simd => {
             let probe = crossing.probe(simd, &bounds);
-            self.walk(|node| overlapping_probe(simd, node, &crossing, &probe), traversal, visit)
+            self.walk(|node| overlapping_probe(simd, node, &crossing, &probe).0, traversal, visit)
         })
     }
 
