@@ -10,7 +10,7 @@ use solid_convex::{Closest, Witness, gjk};
 use super::containment::{PlacedSolid, part_inside};
 use super::crossing_point::{crossing_point, weighted};
 use super::frame::Frame;
-use super::row::{Near, Rows, distances, exceed, verdict};
+use super::row::{CONFIRMED, Near, Rows, distances, exceed, verdict};
 use super::scratch::PlacedPrimitive;
 use super::table::PlacedComplex;
 use super::triangle_triangle::{self, Triangle};
@@ -19,6 +19,13 @@ use crate::bounds::Aabb;
 use crate::shape::Complex;
 use crate::tree::{Facing, LeafPairs, NearLeafPairs, bits, nearest_pairs_on, pairs_on};
 
+/// Whether they intersect: as [`intersection`] says.
+pub(super) fn intersects(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> bool {
+    let mut found = |_, _| ControlFlow::Break(());
+    meeting_pairs_in(&frame(a, b), a, b, true, scratch, &mut found).is_break()
+        || contained(a, b, scratch).is_some()
+}
+
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
     let mut first = None;
     let mut found = |i, j| {
@@ -26,7 +33,7 @@ pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scr
         ControlFlow::Break(())
     };
     let frame = frame(a, b);
-    let _ = meeting_pairs_in(&frame, a, b, scratch, &mut found);
+    let _ = meeting_pairs_in(&frame, a, b, true, scratch, &mut found);
     match first {
         Some((i, j)) => Relation::Common(common_point(a, i, b, j, &frame.common)),
         None => contained(a, b, scratch).map_or(Relation::Separated { axis: None }, Relation::Common),
@@ -41,20 +48,21 @@ pub(super) fn meeting_pairs(
     scratch: &mut Scratch,
     found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    meeting_pairs_in(&frame(a, b), a, b, scratch, found)
+    meeting_pairs_in(&frame(a, b), a, b, false, scratch, found)
 }
 
 fn meeting_pairs_in(
     frame: &Frame,
     a: PlacedComplex,
     b: PlacedComplex,
+    wants_first: bool,
     scratch: &mut Scratch,
     found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     let Frame { relative, common, .. } = frame;
     rows.iter_mut().for_each(Rows::clear);
-    let mut meeting = Meeting { a, b, common, rows, primitive_tests, found };
+    let mut meeting = Meeting { a, b, common, wants_first, rows, primitive_tests, found };
     pairs_on(level(), a.0.tree(), b.0.tree(), relative, traversal, &mut meeting)
 }
 
@@ -63,12 +71,17 @@ struct Meeting<'s> {
     a: PlacedComplex<'s>,
     b: PlacedComplex<'s>,
     common: &'s [DAffine3; 2],
+    wants_first: bool,
     rows: &'s mut [Rows; 2],
     primitive_tests: &'s mut u64,
     found: &'s mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 }
 
 impl LeafPairs<()> for Meeting<'_> {
+    fn wants_first(&self) -> bool {
+        self.wants_first
+    }
+
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32]) -> ControlFlow<()> {
         let [rows_a, rows_b] = &mut *self.rows;
@@ -156,10 +169,6 @@ fn closest_pair(a: PlacedComplex, b: PlacedComplex, bound: f64, scratch: &mut Sc
     );
     approach.answer
 }
-
-/// A distance of triangles is taken for right when a lower bound comes as near, in the common frame, where the size of the
-/// data is from 1 to 2: well within the error that distances may have.
-const CONFIRMED: f64 = 1e-13;
 
 /// Looks for the closest primitives in pairs of leaves.
 struct Approach<'s> {

@@ -1,7 +1,8 @@
-//! A complex shape against a convex one: the tree is walked with the convex shape's box (thesis, section 6.3.4).
+//! A complex shape against a convex one: the tree is walked from the convex shape, nearest first (thesis, section 6.3.4).
 //!
-//! What parts one primitive from the convex shape mostly parts its neighbours too. So an axis is kept, and leaves are tested
-//! along it, eight primitives at a time, before GJK looks at what remains.
+//! Balls, capsules and boxes are held against eight triangles at a time in closed form ([`direct`](super::direct)), and what is clear
+//! is not asked of GJK. Of other shapes, what parts one primitive mostly parts its neighbours too: so an axis is kept, and
+//! leaves are tested along it before GJK looks at what remains.
 
 use std::ops::{ControlFlow, RangeInclusive};
 
@@ -11,18 +12,18 @@ use solid_convex::simd::level;
 use solid_convex::{Closest, Outcome, Support, Witness, gjk};
 
 use super::containment::PlacedSolid;
+use super::direct::{Direct, Round};
 use super::frame::{Frame, ROUNDINGS, Stretch};
 use super::reach::convex_bounds;
-use super::row::{Near, Row, distances_of_point, exceed};
+use super::row::{CONFIRMED, Near, Row, Verdict, distances_of_core, exceed};
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
-use crate::shape::Complex;
-use crate::tree::{Leaves, NearLeaves, bits};
+use crate::tree::{Around, NearLeaves, bits};
 
 /// A gap in the common frame, where the size of the data is from 1 to 2, at which GJK calls shapes separate without fail: four
 /// times the one at which it does so by a cached axis.
-const CLEARLY_APART: f64 = 1.0 / (1u64 << 24) as f64;
+pub(super) const CLEARLY_APART: f64 = 1.0 / (1u64 << 24) as f64;
 
 /// Vectors whose length comes out so long have squares that neither overflow nor lose digits to underflow.
 const LENGTHS: RangeInclusive<f64> = 1e-145..=1e145;
@@ -30,34 +31,56 @@ const LENGTHS: RangeInclusive<f64> = 1e-145..=1e145;
 /// A height along a direction is off by the slack of each coordinate, with that of the point it is measured from.
 const SLACKS: f64 = 4.0;
 
+/// Whether they intersect: as [`intersection`] says.
+pub(super) fn intersects(complex: PlacedComplex, convex: PlacedConvex, scratch: &mut Scratch) -> bool {
+    let mut found = |_, _| ControlFlow::Break(());
+    meeting_primitives(complex, convex, scratch, &mut found).is_break()
+        || contained(complex, convex, scratch).is_some()
+}
+
 pub(super) fn intersection(complex: PlacedComplex, convex: PlacedConvex, scratch: &mut Scratch) -> Relation {
     let mut first = None;
-    let mut found = |_, witness| {
-        first = Some(witness);
+    let mut found = |primitive, witness: Option<Witness>| {
+        first = Some((primitive, witness));
         ControlFlow::Break(())
     };
     let _ = meeting_primitives(complex, convex, scratch, &mut found);
-    let common = first.or_else(|| {
-        let (_, frame) = convex_in_complex(complex, convex);
-        contained(complex.0, convex.0, &frame, scratch)
-    });
+    let common = match first {
+        Some((primitive, witness)) => {
+            Some(witness.unwrap_or_else(|| closest_to(complex, primitive, convex).points))
+        }
+        None => contained(complex, convex, scratch),
+    };
     common.map_or(Relation::Separated { axis: None }, Relation::Common)
 }
 
-/// Calls `found` with the primitives that meet the convex shape, and a common point: all of them unless it breaks off.
+/// Calls `found` with the primitives that meet the convex shape, and a common point where GJK was asked: all of them unless it
+/// breaks off.
 pub(super) fn meeting_primitives(
     complex: PlacedComplex,
     convex: PlacedConvex,
     scratch: &mut Scratch,
-    found: &mut dyn FnMut(u32, Witness) -> ControlFlow<()>,
+    found: &mut dyn FnMut(u32, Option<Witness>) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let (query, frame) = convex_in_complex(complex, convex);
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
+    let row = row.get_or_insert_default();
     row.clear();
-    let shadow = Shadow::new(convex.0, &frame, CLEARLY_APART);
+    let direct = Direct::new(convex.0, &frame, CLEARLY_APART);
+    let shadow = Shadow::new(convex.0, &frame, &direct, CLEARLY_APART);
+    let map = match &direct {
+        Direct::Cube(cube) => cube.map,
+        _ => frame.common[0],
+    };
+    let around = shadow.around(&query, &frame, &direct);
+    let metric = frame.stretch[0].metric(&Stretch::NONE);
+    let end = ControlFlow::Continue(());
     let mut meeting =
-        Meeting { complex, convex, query, map: frame.common[0], shadow, row, primitive_tests, found };
-    complex.0.tree().overlapping_on(level(), &query, traversal, &mut meeting)
+        Meeting { complex, convex, query, direct, map, shadow, row, primitive_tests, found, end };
+    // What is clearly apart does not meet; nothing else is sought.
+    let mut limit = CLEARLY_APART;
+    complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut limit, traversal, &mut meeting);
+    meeting.end
 }
 
 /// The convex shape in the common frame.
@@ -73,11 +96,32 @@ struct Shadow<'s> {
 
 impl<'s> Shadow<'s> {
     /// With bounds grown by a margin.
-    fn new(shape: &'s dyn Support, frame: &Frame, margin: f64) -> Self {
+    fn new(shape: &'s dyn Support, frame: &Frame, direct: &Direct, margin: f64) -> Self {
         let map = frame.common[1];
-        let Aabb { min, max } = convex_bounds(shape, &map.matrix3);
-        let bounds = Aabb::new(min + map.translation, max + map.translation).inflated(margin);
-        Shadow { shape, map, bounds, axis: DVec3::ZERO, greatest: 0.0 }
+        let bounds = match direct {
+            Direct::Round(round) => round.bounds(),
+            _ => {
+                let Aabb { min, max } = convex_bounds(shape, &map.matrix3);
+                Aabb::new(min + map.translation, max + map.translation)
+            }
+        };
+        Shadow { shape, map, bounds: bounds.inflated(margin), axis: DVec3::ZERO, greatest: 0.0 }
+    }
+
+    /// Where the shape is, in the space of the complex one; `query` is a box around it there.
+    fn around(&self, query: &Aabb, frame: &Frame, direct: &Direct) -> Places {
+        let in_complex = |point: DVec3| frame.relative.b_to_a.transform_point3(point);
+        if let Direct::Round(round) = direct {
+            let bounds = Aabb::of_points(round.local_ends.map(in_complex));
+            let bounds = bounds.inflated(frame.relative.slack_in_a);
+            return Places::One([Around { bounds, radius: round.radius }]);
+        }
+        let center = self.shape.center();
+        let local = in_complex(center);
+        let bounds = Aabb::new(local, local).inflated(frame.relative.slack_in_a);
+        let placed = self.map.transform_point3(center);
+        let furthest = (self.bounds.max - placed).max(placed - self.bounds.min);
+        Places::Two([Around { bounds: *query, radius: 0.0 }, Around { bounds, radius: furthest.length() }])
     }
 
     /// Takes another axis.
@@ -105,42 +149,88 @@ impl<'s> Shadow<'s> {
     }
 }
 
+/// Where a convex shape is.
+enum Places {
+    One([Around; 1]),
+    Two([Around; 2]),
+}
+
+impl Places {
+    fn as_slice(&self) -> &[Around] {
+        match self {
+            Places::One(around) => around,
+            Places::Two(around) => around,
+        }
+    }
+}
+
 /// Looks for primitives that meet the convex shape.
 struct Meeting<'s> {
     complex: PlacedComplex<'s>,
     convex: PlacedConvex<'s>,
     query: Aabb,
+    direct: Direct,
+    /// Where primitives are placed: in the common frame, or the space of a box.
     map: DAffine3,
     shadow: Shadow<'s>,
     row: &'s mut Row,
     primitive_tests: &'s mut u64,
-    found: &'s mut dyn FnMut(u32, Witness) -> ControlFlow<()>,
+    found: &'s mut dyn FnMut(u32, Option<Witness>) -> ControlFlow<()>,
+    /// Whether `found` broke off.
+    end: ControlFlow<()>,
 }
 
-impl Leaves<()> for Meeting<'_> {
+impl NearLeaves for Meeting<'_> {
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32]) -> ControlFlow<()> {
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32], limit: &mut f64) {
+        self.end = self.look(simd, leaf);
+        if self.end.is_break() {
+            *limit = 0.0;
+        }
+    }
+}
+
+impl Meeting<'_> {
+    #[inline(always)]
+    fn look<S: Simd>(&mut self, simd: S, leaf: &[u32]) -> ControlFlow<()> {
         let (complex, at_complex) = self.complex;
         self.row.place(simd, complex, leaf, &self.map);
-        let mut near = self.row.overlapping(simd, &self.shadow.bounds);
-        if near != 0 {
-            near &= !self.shadow.beyond(simd, self.row, CLEARLY_APART);
+        let bounds = match &self.direct {
+            Direct::Cube(cube) => &cube.bounds(),
+            _ => &self.shadow.bounds,
+        };
+        let mut near = self.row.overlapping(simd, bounds);
+        if near == 0 {
+            return ControlFlow::Continue(());
         }
+        let triangles = near & self.row.triangles();
+        let sure = match &self.direct {
+            Direct::Round(round) => round.verdict(simd, self.row, triangles, CLEARLY_APART),
+            Direct::Cube(cube) => cube.verdict(simd, self.row, triangles),
+            Direct::None => Verdict { meet: 0, apart: self.shadow.beyond(simd, self.row, CLEARLY_APART) },
+        };
+        near &= !sure.apart;
+        *self.primitive_tests += u64::from(near.count_ones());
+        for lane in bits(near & sure.meet) {
+            (self.found)(self.row.primitive(lane), None)?;
+        }
+        near &= !sure.meet;
         while let Some(lane) = bits(near).next() {
             near &= near - 1;
             let primitive = self.row.primitive(lane);
             if !complex.primitive_bounds(primitive).overlaps(&self.query) {
                 continue;
             }
-            *self.primitive_tests += 1;
             let points = complex.primitive_hull(primitive);
             match gjk::intersection(&points, at_complex, self.convex.0, self.convex.1) {
                 Outcome::Separated { axis } => {
-                    self.shadow.turn(axis);
-                    near &= !self.shadow.beyond(simd, self.row, CLEARLY_APART);
+                    if matches!(self.direct, Direct::None) {
+                        self.shadow.turn(axis);
+                        near &= !self.shadow.beyond(simd, self.row, CLEARLY_APART);
+                    }
                 }
                 Outcome::Touching(witness) | Outcome::Intersecting(witness) => {
-                    (self.found)(primitive, witness)?;
+                    (self.found)(primitive, Some(witness))?;
                 }
             }
         }
@@ -154,22 +244,32 @@ pub(super) fn closest_within(
     bound: f64,
     scratch: &mut Scratch,
 ) -> Option<Closest> {
-    let (query, frame) = convex_in_complex(complex, convex);
-    if let Some(points) = contained(complex.0, convex.0, &frame, scratch) {
+    if let Some(points) = contained(complex, convex, scratch) {
         return Some(Closest { distance: 0.0, points });
     }
+    let (query, frame) = convex_in_complex(complex, convex);
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
+    let row = row.get_or_insert_default();
     row.clear();
-    let [of_complex, _] = &frame.stretch;
-    let metric = of_complex.metric(&Stretch::NONE);
+    let metric = frame.stretch[0].metric(&Stretch::NONE);
     // The best distance so far is kept in the common frame, as the bounds are.
     let mut best = frame.beyond(bound);
-    let shadow = Shadow::new(convex.0, &frame, ROUNDINGS);
+    // Of a box the distance has no closed form here.
+    let direct = Direct::round(convex.0, &frame);
+    let shadow = Shadow::new(convex.0, &frame, &direct, ROUNDINGS);
+    let around = shadow.around(&query, &frame, &direct);
     let from = [convex.0.center(); 2];
     let mut approach =
-        Approach { complex, convex, frame: &frame, shadow, from, row, primitive_tests, answer: None };
-    complex.0.tree().nearest_on(level(), &query, &metric, &mut best, traversal, &mut approach);
-    approach.answer.filter(|closest| closest.distance <= bound)
+        Approach { complex, convex, frame: &frame, direct, shadow, from, row, primitive_tests, answer: None };
+    complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut best, traversal, &mut approach);
+    let (primitive, closest) = approach.answer?;
+    let closest = closest.unwrap_or_else(|| closest_to(complex, primitive, convex));
+    (closest.distance <= bound).then_some(closest)
+}
+
+/// The closest points of a primitive and the convex shape.
+fn closest_to(complex: PlacedComplex, primitive: u32, convex: PlacedConvex) -> Closest {
+    gjk::closest_points(&complex.0.primitive_hull(primitive), complex.1, convex.0, convex.1)
 }
 
 /// Looks for the primitive closest to the convex shape.
@@ -177,6 +277,7 @@ struct Approach<'s> {
     complex: PlacedComplex<'s>,
     convex: PlacedConvex<'s>,
     frame: &'s Frame,
+    direct: Direct,
     /// Its axis is from the closest point of the convex shape to that of the complex one so far.
     shadow: Shadow<'s>,
     /// Points of the convex shape, in its space, from which to look: the way to what is closest to one of them is a direction
@@ -184,7 +285,8 @@ struct Approach<'s> {
     from: [DVec3; 2],
     row: &'s mut Row,
     primitive_tests: &'s mut u64,
-    answer: Option<Closest>,
+    /// The closest primitive so far; without points where the distance has a closed form.
+    answer: Option<(u32, Option<Closest>)>,
 }
 
 impl Approach<'_> {
@@ -208,91 +310,144 @@ impl Approach<'_> {
 
 impl NearLeaves for Approach<'_> {
     #[inline(always)]
-    fn raise(&self, bounds: &Aabb, bound: f64, best: f64) -> f64 {
-        let [center, nearest] = self.from;
-        let gap = self.gap(center, bounds);
-        if bound == 0.0 && gap <= 0.0 {
-            return gap;
+    fn raise(&self, bounds: impl FnOnce() -> Aabb, bound: f64, best: f64) -> f64 {
+        if matches!(self.direct, Direct::Round(_)) {
+            return bound; // of the core, and right
         }
-        let raised = if gap > bound { gap } else { bound };
+        let [center, nearest] = self.from;
+        let bounds = &bounds();
+        let raised = bound.max(self.gap(center, bounds));
         if raised >= best || nearest == center { raised } else { raised.max(self.gap(nearest, bounds)) }
     }
 
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32], best: &mut f64) {
-        let (complex, at_complex) = self.complex;
-        let [from_complex, from_convex] = &self.frame.common;
-        self.row.place(simd, complex, leaf, from_complex);
-        let mut near = self.row.nearer(simd, &self.shadow.bounds, *best * *best);
-        if near != 0 {
-            near &= !self.shadow.beyond(simd, self.row, *best);
-        }
+        self.row.place(simd, self.complex.0, leaf, &self.frame.common[0]);
+        let near = self.row.nearer(simd, &self.shadow.bounds, *best * *best);
         if near == 0 {
             return;
         }
+        match self.direct {
+            Direct::Round(round) => self.look_from_core(simd, &round, near, best),
+            _ => {
+                let near = near & !self.shadow.beyond(simd, self.row, *best - CONFIRMED);
+                self.look(simd, near, best);
+            }
+        }
+    }
+}
+
+// What is nearer by no more than `CONFIRMED` is not sought: primitives that share their closest point are many.
+impl Approach<'_> {
+    /// Looks at some lanes of the row from the core of a round shape.
+    #[inline(always)]
+    fn look_from_core<S: Simd>(&mut self, simd: S, round: &Round, mut near: u32, best: &mut f64) {
+        let known = round.distances(simd, self.row);
+        *self.primitive_tests += u64::from(near.count_ones());
+        while let Some(lane) = known.nearest(near) {
+            near &= !(1 << lane);
+            if self.row.triangles() >> lane & 1 == 1 {
+                if known.least[lane] - round.radius >= *best - CONFIRMED {
+                    continue;
+                }
+                let gap = known.distance[lane] - round.radius;
+                if gap > CLEARLY_APART && known.distance[lane] - known.least[lane] <= CONFIRMED {
+                    if gap < *best {
+                        *best = gap;
+                        self.answer = Some((self.row.primitive(lane), None));
+                    }
+                    continue;
+                }
+            }
+            self.ask(lane, best);
+            if *best == 0.0 {
+                return;
+            }
+        }
+    }
+
+    /// Looks at some lanes of the row from points of the shape.
+    #[inline(always)]
+    fn look<S: Simd>(&mut self, simd: S, mut near: u32, best: &mut f64) {
+        if near == 0 {
+            return;
+        }
+        let from_convex = &self.frame.common[1];
         let [center, nearest] = self.from.map(|point| from_convex.transform_point3(point));
-        let of_center = distances_of_point(simd, center, self.row);
+        let of_center = distances_of_core(simd, &[center], self.row);
         let mut of_nearest = None;
         while let Some(lane) = of_center.nearest(near) {
             near &= !(1 << lane);
             if self.row.triangles() >> lane & 1 == 1 {
-                if self.shadow.parted(center, &of_center, lane, *best) {
+                if self.shadow.parted(center, &of_center, lane, *best - CONFIRMED) {
                     continue;
                 }
                 let row = &*self.row;
                 if nearest != center {
                     let known = of_nearest.get_or_insert_with(
                         #[inline(always)]
-                        || distances_of_point(simd, nearest, row),
+                        || distances_of_core(simd, &[nearest], row),
                     );
-                    if self.shadow.parted(nearest, known, lane, *best) {
+                    if self.shadow.parted(nearest, known, lane, *best - CONFIRMED) {
                         continue;
                     }
                 }
             }
             *self.primitive_tests += 1;
-            let points = complex.primitive_hull(self.row.primitive(lane));
-            let closest = gjk::closest_points(&points, at_complex, self.convex.0, self.convex.1);
-            let distance = closest.distance * self.frame.scale;
-            if distance < *best {
-                *best = distance;
-                let on_complex = from_complex.transform_point3(closest.points.on_a);
-                let on_convex = from_convex.transform_point3(closest.points.on_b);
-                let axis = (on_complex - on_convex).normalize_or_zero();
-                self.shadow.turn(axis);
-                // Of what is round, a point of the core: of a ball this is the centre, which tells all.
-                let shape = self.convex.0;
-                self.from[1] = if shape.core_radius() > 0.0 {
-                    shape.core_support(from_convex.matrix3.transpose() * axis)
-                } else {
-                    closest.points.on_b
-                };
-                self.answer = Some(closest);
-                if distance == 0.0 {
+            if let Some(points) = self.ask(lane, best) {
+                if *best == 0.0 {
                     return;
                 }
-                near &= !self.shadow.beyond(simd, self.row, *best);
+                let [from_complex, from_convex] = &self.frame.common;
+                let on_complex = from_complex.transform_point3(points.on_a);
+                let on_convex = from_convex.transform_point3(points.on_b);
+                self.shadow.turn((on_complex - on_convex).normalize_or_zero());
+                self.from[1] = points.on_b;
+                near &= !self.shadow.beyond(simd, self.row, *best - CONFIRMED);
             }
         }
+    }
+
+    /// Asks GJK of a lane: the closest points, if they are nearer than all before.
+    #[inline(always)]
+    fn ask(&mut self, lane: usize, best: &mut f64) -> Option<Witness> {
+        let primitive = self.row.primitive(lane);
+        let points = self.complex.0.primitive_hull(primitive);
+        let bound = (*best - CONFIRMED).max(0.0) / self.frame.scale;
+        let closest =
+            gjk::closest_points_within(&points, self.complex.1, self.convex.0, self.convex.1, bound)?;
+        let distance = closest.distance * self.frame.scale;
+        (distance < *best).then(|| {
+            *best = distance;
+            self.answer = Some((primitive, Some(closest)));
+            closest.points
+        })
     }
 }
 
 /// The centre of the convex shape, when it is in a solid. (A part of the solid inside the convex shape meets it.)
 fn contained(
-    complex: &Complex,
-    convex: &dyn Support,
-    frame: &Frame,
+    (complex, at_complex): PlacedComplex,
+    convex: PlacedConvex,
     scratch: &mut Scratch,
 ) -> Option<Witness> {
+    if !complex.is_solid() {
+        return None;
+    }
+    let frame = frame((complex, at_complex), convex);
     let [from_complex, from_convex] = &frame.common;
-    let (solid, center) = (PlacedSolid::new(complex, from_complex)?, convex.center());
+    let (solid, center) = (PlacedSolid::new(complex, from_complex)?, convex.0.center());
     let inside = solid.contains(from_convex.transform_point3(center), scratch);
     inside.then(|| Witness { on_a: frame.relative.b_to_a.transform_point3(center), on_b: center })
 }
 
+fn frame(complex: PlacedComplex, convex: PlacedConvex) -> Frame {
+    Frame::new(complex.1, complex.0.reach(), convex.1, convex.0.reach())
+}
+
 /// A box around the convex shape in the space of the complex one, grown by the error of the map.
 pub(super) fn convex_in_complex(complex: PlacedComplex, convex: PlacedConvex) -> (Aabb, Frame) {
-    let frame = Frame::new(complex.1, complex.0.reach(), convex.1, convex.0.reach());
+    let frame = frame(complex, convex);
     let map = frame.relative.b_to_a;
     let bounds = convex_bounds(convex.0, &map.matrix3);
     let query = Aabb::new(bounds.min + map.translation, bounds.max + map.translation);

@@ -20,6 +20,7 @@ mod crossing;
 mod crossing_point;
 mod curve;
 mod depth;
+mod direct;
 mod fixed_box;
 mod frame;
 mod ray;
@@ -157,6 +158,13 @@ impl Mirror for Relation {
 impl Mirror for Closest {
     fn mirrored(self) -> Self {
         Closest { distance: self.distance, points: self.points.mirrored() }
+    }
+}
+
+/// Whether they intersect.
+impl Mirror for bool {
+    fn mirrored(self) -> Self {
+        self
     }
 }
 

@@ -30,8 +30,31 @@ pub(super) fn bounds_margin(size: f64) -> f64 {
 
 /// The smallest box around the image of a convex shape under a linear map, up to rounding.
 pub(super) fn convex_bounds(shape: &dyn Support, linear: &DMat3) -> Aabb {
+    if let Some(edges) = shape.half_edges() {
+        let [x, y, z] = edges.map(|edge| (*linear * edge).abs());
+        let (center, half) = (*linear * shape.center(), x + y + z);
+        return Aabb::new(center - half, center + half);
+    }
+    if let Some((ends, radius)) = core(shape) {
+        let rows = linear.transpose();
+        let half = radius * DVec3::new(length(rows.x_axis), length(rows.y_axis), length(rows.z_axis));
+        let Aabb { min, max } = Aabb::of_points(ends.map(|end| *linear * end));
+        return Aabb::new(min - half, max + half);
+    }
     let [min, max] = shape.image_bounds(linear);
     Aabb::new(min, max)
+}
+
+/// The core of what is round, and its radius: of a capsule the ends of a segment on the axis y, of a ball twice its centre.
+pub(super) fn core(shape: &dyn Support) -> Option<([DVec3; 2], f64)> {
+    let radius = shape.core_radius();
+    (radius > 0.0).then(|| ([shape.core_support(DVec3::NEG_Y), shape.core_support(DVec3::Y)], radius))
+}
+
+/// The length of a vector whose square may not be a number.
+fn length(v: DVec3) -> f64 {
+    let largest = v.abs().max_element();
+    if largest > 0.0 { largest * (v / largest).length() } else { 0.0 }
 }
 
 /// The largest magnitude of each coordinate over the image of a box under a linear map.

@@ -18,8 +18,8 @@ pub(crate) struct PlacedPrimitive {
 pub(crate) struct Scratch {
     /// For walks over trees.
     pub traversal: Traversal,
-    /// The primitives of a leaf, in a common frame, in vectors.
-    pub row: Row,
+    /// The primitives of a leaf, in a common frame, in vectors: none before it is needed, as it is large.
+    pub row: Option<Row>,
     /// The same for leaves of two shapes.
     pub rows: [Rows; 2],
     /// The primitives of two leaves, in a common frame.

@@ -42,7 +42,14 @@ pub(crate) fn intersects(a: Placed, b: Placed, scratch: &mut Scratch) -> bool {
             scratch.primitive_tests += 1;
             answer
         }
-        None => matches!(intersection(a, b, scratch), Relation::Common(_)),
+        None => {
+            const ROW: Row<bool> = Row {
+                convex_convex: |a, b, _| convex_convex::intersects(a, b),
+                complex_convex: complex_convex::intersects,
+                complex_complex: complex_complex::intersects,
+            };
+            ROW.apply(a, b, scratch)
+        }
     }
 }
 

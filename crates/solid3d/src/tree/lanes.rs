@@ -19,20 +19,22 @@ pub(super) fn overlapping_box<S: Simd>(simd: S, node: &Node, query: &PackedBox) 
     !((x.simd_gt(zero) | y.simd_gt(zero) | z.simd_gt(zero)).to_bitmask() as u32) & LANES
 }
 
-/// The lanes whose box may overlap a box of the other space, as bits.
+/// The lanes whose box may overlap a box of the other space, as bits; and how far each is apart from it on its own axes, below zero
+/// by how far it overlaps.
 #[inline(always)]
-pub(super) fn overlapping_probe<S: Simd>(simd: S, node: &Node, crossing: &Crossing, probe: &Probe) -> u32 {
+pub(super) fn overlapping_probe<S: Simd>(
+    simd: S,
+    node: &Node,
+    crossing: &Crossing,
+    probe: &Probe,
+) -> (u32, f32x8<S>) {
     let [x, y, z] = interval_gaps(simd, node, probe);
     let [u, v, w] = projected_gaps(simd, node, crossing, probe);
     let zero = f32x8::splat(simd, 0.0);
     // What is not a number is not greater: it separates nothing.
-    let apart: mask32x8<S> = x.simd_gt(zero)
-        | y.simd_gt(zero)
-        | z.simd_gt(zero)
-        | u.simd_gt(zero)
-        | v.simd_gt(zero)
-        | w.simd_gt(zero);
-    !(apart.to_bitmask() as u32) & LANES
+    let gap = x.max(y).max(z);
+    let apart: mask32x8<S> = gap.simd_gt(zero) | u.simd_gt(zero) | v.simd_gt(zero) | w.simd_gt(zero);
+    (!(apart.to_bitmask() as u32) & LANES, gap)
 }
 
 /// The sizes of the lanes, by which nodes compare: the sums of the sides.
@@ -68,10 +70,10 @@ pub(super) fn distances_squared<S: Simd>(
     probe: &Probe,
     on_lanes: &Weights,
     on_box: &Weights,
-) -> [f32; WIDTH] {
+) -> f32x8<S> {
     let along_lanes = weighed(simd, interval_gaps(simd, node, probe), on_lanes);
     let along_box = weighed(simd, projected_gaps(simd, node, crossing, probe), on_box);
-    along_lanes.max(along_box).to_array()
+    along_lanes.max(along_box)
 }
 
 /// Lower bounds of the squared distances between a box of the same tree coordinates and the lanes, up to the same rounding.
@@ -81,13 +83,13 @@ pub(super) fn distances_squared_to_box<S: Simd>(
     node: &Node,
     query: &PackedBox,
     weights: &Weights,
-) -> [f32; WIDTH] {
+) -> f32x8<S> {
     let (lo, hi) = (query.min(), query.max());
     let gaps = three(
         #[inline(always)]
         |axis| interval_gap(simd, node, axis, (lo[axis], hi[axis])),
     );
-    weighed(simd, gaps, weights).to_array()
+    weighed(simd, gaps, weights)
 }
 
 /// The gaps between the lanes and the single box on each axis of the lanes; negative where they overlap. The sign is exact.
@@ -199,9 +201,9 @@ mod tests {
         let to_box = distances_squared_to_box(simd, node, bounds, weights);
         (
             overlapping_box(simd, node, bounds),
-            overlapping_probe(simd, node, crossing, &probe),
-            distances.map(f32::to_bits),
-            to_box.map(f32::to_bits),
+            overlapping_probe(simd, node, crossing, &probe).0,
+            distances.to_array().map(f32::to_bits),
+            to_box.to_array().map(f32::to_bits),
             probe,
         )
     }

@@ -1,5 +1,8 @@
 //! What distances in two local spaces are worth in the world.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, f64x4};
+
 use super::lanes::Weights;
 use super::normal::Normal;
 use glam::DVec3;
@@ -71,9 +74,11 @@ impl Folded {
         Folded { a: weights(axes_a, norm_a), b: weights(axes_b, norm_b), unit }
     }
 
-    /// The lower bound in the world of a squared distance in units.
-    #[inline]
-    pub fn world(&self, squared: f32) -> f64 {
-        f64::from(squared).sqrt() * self.unit * (1.0 - ROUNDING)
+    /// The lower bounds in the world of eight squared distances in units.
+    #[inline(always)]
+    pub fn world<S: Simd>(&self, simd: S, squared: f32x8<S>) -> [f64x4<S>; 2] {
+        let (low, high) = simd.widen_f32x8(squared);
+        let (unit, rounding) = (f64x4::splat(simd, self.unit), f64x4::splat(simd, 1.0 - ROUNDING));
+        [low.sqrt() * unit * rounding, high.sqrt() * unit * rounding]
     }
 }

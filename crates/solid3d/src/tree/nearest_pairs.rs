@@ -1,12 +1,13 @@
 //! Branch and bound for two trees.
 
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 use solid_convex::simd::{Level, dispatch, level};
 
 use super::lanes::{distances_squared, extents};
 use super::metric::{Folded, PairMetric};
 use super::nearest::push_unless_far;
-use super::node::{Child, WIDTH};
+use super::node::WIDTH;
 use super::pairs::{Duel, Pair, Step, Tested};
 use super::relative::Relative;
 use super::slabs::{Faces, Facing};
@@ -116,12 +117,15 @@ fn walk<S: Simd>(
                 counters.box_tests += 1;
                 let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, &duel.b_to_a, b, pair.b));
                 let squared = distances_squared(simd, lanes, &duel.b_to_a, probe, &metric.a, &metric.b);
-                let mut bounds = bounds_in_world(&squared, metric);
+                let mut bounds = [0.0; WIDTH];
+                for (some, bounds) in bounds.chunks_exact_mut(4).zip(metric.world(simd, squared)) {
+                    bounds.store_slice(some);
+                }
                 if let Some(faces) = faces.filter(|_| some_below(&bounds, *best)) {
                     faces.raise_in_a(simd, a, node, b, pair.b, &mut bounds);
                 }
                 let extents = extents(simd, lanes);
-                for (lane, least) in in_use(&lanes.child, bounds) {
+                for (lane, least) in bounds.into_iter().enumerate() {
                     let pair = Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..pair };
                     push_unless_far((least, pair), *best, stack, from);
                 }
@@ -130,12 +134,15 @@ fn walk<S: Simd>(
                 counters.box_tests += 1;
                 let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, &duel.a_to_b, a, pair.a));
                 let squared = distances_squared(simd, lanes, &duel.a_to_b, probe, &metric.b, &metric.a);
-                let mut bounds = bounds_in_world(&squared, metric);
+                let mut bounds = [0.0; WIDTH];
+                for (some, bounds) in bounds.chunks_exact_mut(4).zip(metric.world(simd, squared)) {
+                    bounds.store_slice(some);
+                }
                 if let Some(faces) = faces.filter(|_| some_below(&bounds, *best)) {
                     faces.raise_in_b(simd, b, node, a, pair.a, &mut bounds);
                 }
                 let extents = extents(simd, lanes);
-                for (lane, least) in in_use(&lanes.child, bounds) {
+                for (lane, least) in bounds.into_iter().enumerate() {
                     let pair = Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..pair };
                     push_unless_far((least, pair), *best, stack, from);
                 }
@@ -145,24 +152,7 @@ fn walk<S: Simd>(
     }
 }
 
-/// The bounds in the world.
-#[inline(always)]
-fn bounds_in_world(squared: &[f32; WIDTH], metric: &Folded) -> [f64; WIDTH] {
-    let mut bounds = [0.0; WIDTH];
-    for (bound, &squared) in bounds.iter_mut().zip(squared) {
-        *bound = metric.world(squared);
-    }
-    bounds
-}
-
 #[inline(always)]
 fn some_below(bounds: &[f64; WIDTH], best: f64) -> bool {
     bounds.iter().any(|&bound| bound < best)
-}
-
-/// The lanes in use, with the bound of each.
-#[inline(always)]
-fn in_use(children: &[Child; WIDTH], bounds: [f64; WIDTH]) -> impl Iterator<Item = (usize, f64)> {
-    let used = children.map(|child| child != Child::EMPTY);
-    bounds.into_iter().enumerate().filter(move |(lane, _)| used[*lane])
 }

@@ -80,10 +80,12 @@ impl Normal {
 
     /// A box in local coordinates, which contains the exact image of `packed`.
     pub fn unpack(&self, packed: &PackedBox) -> Aabb {
-        let at = |u: f32, axis: usize| self.origin[axis] + f64::from(u) * self.scale;
-        let (min, max) = (packed.min(), packed.max());
-        let corner = |u: [f32; 3], f: fn(f64) -> f64| DVec3::from_array([0, 1, 2].map(|i| f(at(u[i], i))));
-        Aabb::new(corner(min, f64::next_down), corner(max, f64::next_up))
+        let [a, b, c, _, d, e, f, _] = packed.0.map(f64::from);
+        let min = self.origin + DVec3::new(a, b, c) * self.scale;
+        let max = self.origin - DVec3::new(d, e, f) * self.scale;
+        // More than half of the last place: the scale is a power of two, and only the sum is rounded.
+        let outward = |x: DVec3| x.abs() * f64::EPSILON + f64::MIN_POSITIVE;
+        Aabb::new(min - outward(min), max + outward(max))
     }
 }
 

@@ -1,7 +1,6 @@
 //! The leaves whose box overlaps one box.
 
-use fearless_simd::Simd;
-use solid_convex::simd::{Level, dispatch, level};
+use solid_convex::simd::{dispatch, level};
 
 use super::crossing::Crossing;
 use super::lanes::{bits, overlapping_box, overlapping_probe};
@@ -11,12 +10,6 @@ use super::relative::PlacedBox;
 use super::{Traversal, Tree};
 use crate::Aabb;
 use std::ops::ControlFlow;
-
-/// What is done with leaves, in vectors of the level of instructions that the walk runs on.
-pub(crate) trait Leaves<B> {
-    /// Called with every leaf.
-    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32]) -> ControlFlow<B>;
-}
 
 impl Tree {
     /// Visits the leaves whose box overlaps a box of the same space: all primitives that do, and some that do not.
@@ -77,30 +70,6 @@ impl Tree {
         })
     }
 
-    /// As [`overlapping`](Tree::overlapping), on a level of instructions.
-    pub(crate) fn overlapping_on<B>(
-        &self,
-        level: Level,
-        query: &Aabb,
-        traversal: &mut Traversal,
-        visitor: &mut impl Leaves<B>,
-    ) -> ControlFlow<B> {
-        if !query.overlaps(&self.bounds) {
-            return ControlFlow::Continue(());
-        }
-        let clipped = Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
-        let query = self.normal.pack(&clipped);
-        dispatch!(level, simd => {
-            self.walk(
-                #[inline(always)]
-                |node| overlapping_box(simd, node, &query),
-                traversal,
-                #[inline(always)]
-                |leaf| visitor.visit(simd, leaf),
-            )
-        })
-    }
-
     /// Visits the leaves whose box may overlap a box of another space (six facet axes): all primitives whose box does, and some
     /// whose box does not.
     ///
@@ -116,7 +85,7 @@ impl Tree {
         let bounds = normal.pack(&query.bounds);
         dispatch!(level(), simd => {
             let probe = crossing.probe(simd, &bounds);
-            self.walk(|node| overlapping_probe(simd, node, &crossing, &probe), traversal, visit)
+            self.walk(|node| overlapping_probe(simd, node, &crossing, &probe).0, traversal, visit)
         })
     }
 

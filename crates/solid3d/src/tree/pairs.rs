@@ -1,11 +1,12 @@
 //! The pairs of leaves of two trees whose boxes may overlap.
 
 use fearless_simd::Simd;
+use fearless_simd::prelude::*;
 use solid_convex::simd::{Level, dispatch, level};
 
 use super::crossing::{Crossing, Probe};
 use super::lanes::{bits, extents, overlapping_probe};
-use super::node::Kind;
+use super::node::{Kind, WIDTH};
 use super::packed::PackedBox;
 use super::relative::Relative;
 use super::traversal::STACK_USUAL;
@@ -45,6 +46,11 @@ pub fn pairs<B>(
 
 /// What is done with pairs of leaves, in vectors of the level of instructions that the walk runs on.
 pub(crate) trait LeafPairs<B> {
+    /// Whether the first pair that meets is all that is wanted: then what overlaps deepest is looked at first.
+    fn wants_first(&self) -> bool {
+        false
+    }
+
     /// Called with every pair of leaves.
     fn visit<S: Simd>(&mut self, simd: S, in_a: &[u32], in_b: &[u32]) -> ControlFlow<B>;
 }
@@ -86,6 +92,7 @@ fn walk<B, S: Simd>(
     stack.clear();
     stack.reserve(STACK_USUAL);
     stack.push(duel.roots());
+    let wants_first = visitor.wants_first();
     // Of the boxes tested last: several in a row are often the same.
     let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
     while let Some(pair) = stack.pop() {
@@ -98,22 +105,48 @@ fn walk<B, S: Simd>(
                 counters.box_tests += 1;
                 let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, &duel.b_to_a, b, pair.b));
                 let extents = extents(simd, lanes);
-                for lane in bits(overlapping_probe(simd, lanes, &duel.b_to_a, probe)) {
+                let (hits, gaps) = overlapping_probe(simd, lanes, &duel.b_to_a, probe);
+                let from = stack.len();
+                for lane in bits(hits) {
                     stack.push(Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..pair });
+                }
+                if wants_first {
+                    deepest_last(&mut stack[from..], hits, &gaps.to_array());
                 }
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
                 let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, &duel.a_to_b, a, pair.a));
                 let extents = extents(simd, lanes);
-                for lane in bits(overlapping_probe(simd, lanes, &duel.a_to_b, probe)) {
+                let (hits, gaps) = overlapping_probe(simd, lanes, &duel.a_to_b, probe);
+                let from = stack.len();
+                for lane in bits(hits) {
                     stack.push(Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..pair });
+                }
+                if wants_first {
+                    deepest_last(&mut stack[from..], hits, &gaps.to_array());
                 }
             }
             Step::Nothing => {}
         }
     }
     ControlFlow::Continue(())
+}
+
+/// Sorts the entries of some lanes by how deep they overlap, the deepest last; of equal ones the highest lane.
+#[inline(always)]
+fn deepest_last(entries: &mut [Pair], lanes: u32, gaps: &[f32; WIDTH]) {
+    let mut sorted = [f32::INFINITY; WIDTH];
+    for (count, lane) in bits(lanes).enumerate() {
+        let gap = gaps[lane];
+        let mut at = count;
+        while at > 0 && sorted[at - 1] < gap {
+            sorted[at] = sorted[at - 1];
+            entries.swap(at - 1, at);
+            at -= 1;
+        }
+        sorted[at] = gap;
+    }
 }
 
 /// A pair of subtrees.

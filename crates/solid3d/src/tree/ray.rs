@@ -12,16 +12,17 @@
 //! Traversal*, 2013). A direction nearly along a plane has its least coordinate raised to [`DIRECTION_MIN`]; over the few
 //! units of path that are left, the origin's box pays for that.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
 use glam::DVec3;
 use solid_convex::simd::{self, dispatch};
 use solid_convex::unit_scale;
 
 use super::lanes::bits;
 use super::nearest::push_unless_far;
-use super::node::{Child, Kind, Node, WIDTH};
+use super::node::{Kind, Node, WIDTH};
 use super::normal::round_down;
-use super::{Traversal, Tree};
+use super::{Place, Traversal, Tree};
 use crate::Aabb;
 
 /// A ray, or a box that moves along one, in the space of the tree: what is within `half_extents` of
@@ -185,13 +186,13 @@ impl Tree {
         let Traversal { counters, near: stack, .. } = traversal;
         stack.clear();
         stack.reserve(STACK);
-        stack.push((0.0, Child::inner(0)));
+        stack.push((0.0, Place::ROOT));
         let mut left = probe.until(*until);
-        while let Some((enter, child)) = stack.pop() {
+        while let Some((enter, place)) = stack.pop() {
             if enter > f64::from(left) {
                 continue;
             }
-            match child.kind() {
+            match self.child_at(place).kind() {
                 Kind::Empty => {}
                 Kind::Leaf(range) => {
                     counters.leaf_visits += 1;
@@ -204,12 +205,8 @@ impl Tree {
                     let (hits, enters) = entries(simd, node, probe, left);
                     let from = stack.len();
                     for lane in bits(hits) {
-                        push_unless_far(
-                            (f64::from(enters[lane]), node.child[lane]),
-                            f64::INFINITY,
-                            stack,
-                            from,
-                        );
+                        let entry = (f64::from(enters[lane]), Place::lane(index, lane));
+                        push_unless_far(entry, f64::INFINITY, stack, from);
                     }
                 }
             }

@@ -1,6 +1,6 @@
 //! What every query needs from its caller: a stack to work on, and counters to add to.
 
-use super::node::Child;
+use super::Place;
 use super::pairs::Pair;
 use std::ops::AddAssign;
 
@@ -45,7 +45,7 @@ pub struct Traversal {
     /// Pairs of subtrees to visit.
     pub(super) pairs: Vec<Pair>,
     /// Subtrees to visit, with the lower bound of their distance; of each node, the nearest last.
-    pub(super) near: Vec<(f64, Child)>,
+    pub(super) near: Vec<(f64, Place)>,
     /// The same for pairs of subtrees.
     pub(super) near_pairs: Vec<(f64, Pair)>,
 }

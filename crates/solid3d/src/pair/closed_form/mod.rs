@@ -20,7 +20,8 @@ use crate::shape::Simple;
 use boxes::PlacedBox;
 pub(super) use point::surface_point;
 use round::{Cores, PlacedRound};
-use similarity::{Similarity, plain_stretch};
+pub(super) use similarity::Similarity;
+use similarity::plain_stretch;
 
 /// The least gap or overlap that a closed form decides, relative to the size of the data, which here is that of the balls around
 /// the shapes and of the distance of their origins: no less than GJK's. Beyond GJK's error, by more than the errors of a

@@ -15,7 +15,7 @@ const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
 
 /// The linear part of a placement that is a rotation, or a reflection, with a uniform scale.
 #[derive(Clone, Copy)]
-pub(super) struct Similarity {
+pub(in crate::pair) struct Similarity {
     linear: DMat3,
     /// The scale.
     pub stretch: f64,

@@ -8,7 +8,7 @@ use super::super::containment::PlacedSolid;
 use super::super::frame::Frame;
 use super::super::table::PlacedComplex;
 use super::convex::hull_hits;
-use super::triangle::{Corners, LANES, Shear, TriangleHit};
+use super::triangle::{Corners, LANES, Shear, TriangleHit, put};
 use super::{FromInside, Hits, SurfaceHit, world_normal};
 use crate::bounds::Aabb;
 use crate::placement::inverse_linear;
@@ -95,7 +95,7 @@ impl LocalRay {
         for some in leaf.chunks(LANES) {
             let mut corners = Corners::default();
             for (lane, &primitive) in some.iter().enumerate() {
-                self.shear.put(&mut corners, lane, triangles[primitive as usize].map(corner));
+                put(&mut corners, lane, triangles[primitive as usize].map(corner));
             }
             for lane in bits(self.shear.candidates(&corners) & ((1 << some.len()) - 1)) {
                 let triangle = triangles[some[lane] as usize].map(|i| *corner(i));

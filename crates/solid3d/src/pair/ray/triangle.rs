@@ -37,8 +37,16 @@ pub(super) struct TriangleHit {
 /// Triangles that are looked at together.
 pub(super) const LANES: usize = 8;
 
-/// The corners of eight triangles: for each corner and each axis, those of a [`Shear`], the coordinates.
+/// The corners of eight triangles: for each corner and each axis of their space, the coordinates.
 pub(super) type Corners = [[[f64; LANES]; 3]; 3];
+
+/// Puts a triangle into a lane.
+#[inline]
+pub(super) fn put(corners: &mut Corners, lane: usize, triangle: [&DVec3; 3]) {
+    for ([x, y, z], corner) in corners.iter_mut().zip(triangle) {
+        (x[lane], y[lane], z[lane]) = (corner.x, corner.y, corner.z);
+    }
+}
 
 /// Rounding of a determinant of two products is below this times the sum of their magnitudes.
 const DETERMINANT_ERROR: f64 = 2.0 * f64::EPSILON;
@@ -52,17 +60,6 @@ impl Shear {
         let axes = if direction[main] < 0.0 { [last, next, main] } else { [next, last, main] };
         let shear = DVec2::new(direction[axes[0]], direction[axes[1]]) / direction[main];
         Shear { origin, axes, shear, scale, depth_to_t: 1.0 / scale / direction[main] }
-    }
-
-    /// Puts a triangle into a lane.
-    #[inline]
-    pub fn put(&self, corners: &mut Corners, lane: usize, triangle: [&DVec3; 3]) {
-        for (rows, corner) in corners.iter_mut().zip(triangle) {
-            let p = corner.to_array();
-            for (row, axis) in rows.iter_mut().zip(self.axes) {
-                row[lane] = p[axis];
-            }
-        }
     }
 
     /// The triangles that may be hit, as bits: of the others two edges surely pass the ray on different sides.
@@ -82,7 +79,7 @@ impl Shear {
             let mut local = [zero; 3];
             for axis in 0..3 {
                 let origin = f64x8::splat(simd, self.origin[self.axes[axis]]);
-                local[axis] = (f64x8::from_slice(simd, &rows[axis]) - origin) * scale;
+                local[axis] = (f64x8::from_slice(simd, &rows[self.axes[axis]]) - origin) * scale;
             }
             point[0] = local[0] - f64x8::splat(simd, self.shear.x) * local[2];
             point[1] = local[1] - f64x8::splat(simd, self.shear.y) * local[2];
@@ -246,7 +243,7 @@ mod tests {
             let shear = Shear::new(origin, (a + b + c) / 3.0 - origin, 1.0);
             let mut corners = Corners::default();
             for (lane, triangle) in triangles.iter().enumerate() {
-                shear.put(&mut corners, lane, triangle.each_ref());
+                put(&mut corners, lane, triangle.each_ref());
             }
             let found =
                 simd::levels().map(|level| dispatch!(level, simd => shear.candidates_on(simd, &corners)));

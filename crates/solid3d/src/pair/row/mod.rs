@@ -4,19 +4,22 @@
 //! |---|---|
 //! | `verdict` | the lanes that meet a triangle, and that do not, certainly |
 //! | `rows` | the rows placed lately |
-//! | `distance` | the distances of a triangle, or a point, and eight, each with a lower bound |
+//! | `distance` | the distances of a triangle, a segment or a point, and eight, each with a lower bound |
+//! | `unit_box` | the lanes that meet a box, and that do not, certainly |
 
 mod distance;
 mod rows;
+mod unit_box;
 mod verdict;
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::{DAffine3, DVec3};
 
-pub(super) use distance::{Near, distances, distances_of_point};
+pub(super) use distance::{CONFIRMED, Near, distances, distances_of_core};
 pub(crate) use rows::Rows;
-pub(super) use verdict::verdict;
+pub(super) use unit_box::{Cube, stretch_max};
+pub(super) use verdict::{Verdict, verdict};
 
 use super::triangle_triangle::Triangle;
 use crate::bounds::Aabb;

@@ -11,7 +11,7 @@ use crate::pair::Scratch;
 use crate::pair::containment::PlacedSolid;
 use crate::pair::frame::{Frame, Stretch};
 use crate::pair::table::PlacedComplex;
-use crate::tree::NearLeaves;
+use crate::tree::{Around, NearLeaves};
 use crate::triangle_triangle::Triangle;
 
 /// Nearer to a face, its own normal is better than the way from the nearest point, of which rounding has that part. In the common
@@ -33,7 +33,8 @@ pub(super) fn surface_point((mesh, at): PlacedComplex, point: DVec3, scratch: &m
     let inside = solid.contains(p, scratch);
 
     let local = frame.relative.b_to_a.translation;
-    let query = Aabb::new(local, local).inflated(frame.relative.slack_in_a);
+    let bounds = Aabb::new(local, local).inflated(frame.relative.slack_in_a);
+    let query = [Around { bounds, radius: 0.0 }];
     let [of_mesh, _] = &frame.stretch;
     let metric = of_mesh.metric(&Stretch::NONE);
     let Scratch { traversal, primitive_tests, .. } = scratch;
@@ -93,11 +94,6 @@ struct Nearest<'s, C> {
 }
 
 impl<C: Fn(u32) -> Triangle> NearLeaves for Nearest<'_, C> {
-    #[inline(always)]
-    fn raise(&self, _: &Aabb, bound: f64, _: f64) -> f64 {
-        bound
-    }
-
     #[inline(always)]
     fn visit<S: Simd>(&mut self, _: S, leaf: &[u32], best: &mut f64) {
         for &primitive in leaf {

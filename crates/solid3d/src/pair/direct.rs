@@ -1,0 +1,93 @@
+//! Convex shapes that are held against triangles in closed form, eight at a time: balls and capsules that their placement leaves
+//! what they are, and boxes under any placement.
+
+use fearless_simd::Simd;
+use glam::{DMat3, DVec3};
+use solid_convex::Support;
+
+use super::closed_form::Similarity;
+use super::frame::Frame;
+use super::reach::core;
+use super::row::{Cube, Near, Row, Verdict, distances_of_core, exceed, stretch_max};
+use crate::bounds::Aabb;
+use crate::placement::{inverse_linear, row_norm};
+use glam::DAffine3;
+
+/// What a convex shape is to triangles.
+pub(super) enum Direct {
+    Round(Round),
+    Cube(Cube),
+    /// Known by its support mapping.
+    None,
+}
+
+/// All that is within a radius of a core, in the common frame.
+#[derive(Clone, Copy)]
+pub(super) struct Round {
+    pub radius: f64,
+    /// The ends of the core, in the shape's own space: of a ball both the same.
+    pub local_ends: [DVec3; 2],
+    ends: [DVec3; 2],
+}
+
+impl Direct {
+    /// A gap of `gap` in the common frame is clear.
+    pub fn new(shape: &dyn Support, frame: &Frame, gap: f64) -> Direct {
+        match cube(shape, frame, gap) {
+            Some(cube) => Direct::Cube(cube),
+            None => Direct::round(shape, frame),
+        }
+    }
+
+    /// What is not round is known by its support mapping.
+    pub fn round(shape: &dyn Support, frame: &Frame) -> Direct {
+        Round::new(shape, frame).map_or(Direct::None, Direct::Round)
+    }
+}
+
+impl Round {
+    fn new(shape: &dyn Support, frame: &Frame) -> Option<Round> {
+        let (local_ends, radius) = core(shape)?;
+        let map = &frame.common[1];
+        let stretch = Similarity::new(&map.matrix3)?.stretch;
+        let ends = local_ends.map(|end| map.transform_point3(end));
+        Some(Round { radius: radius * stretch, local_ends, ends })
+    }
+
+    /// The box around it.
+    pub fn bounds(&self) -> Aabb {
+        Aabb::of_points(self.ends).inflated(self.radius)
+    }
+
+    /// The distances of the core and the triangles of a row.
+    #[inline(always)]
+    pub fn distances<S: Simd>(&self, simd: S, row: &Row) -> Near {
+        let [end, other] = self.ends;
+        if end == other {
+            distances_of_core(simd, &[end], row)
+        } else {
+            distances_of_core(simd, &self.ends, row)
+        }
+    }
+
+    /// Which of the triangles in some lanes meet it, and which do not, by a gap or an overlap of at least `gap`.
+    #[inline(always)]
+    pub fn verdict<S: Simd>(&self, simd: S, row: &Row, lanes: u32, gap: f64) -> Verdict {
+        let near = self.distances(simd, row);
+        let apart = exceed(simd, &near.least, self.radius + gap);
+        let meet = !exceed(simd, &near.distance, self.radius - gap);
+        Verdict { meet: meet & lanes, apart: apart & lanes }
+    }
+}
+
+/// The cube that a box is in a space of its own.
+fn cube(shape: &dyn Support, frame: &Frame, gap: f64) -> Option<Cube> {
+    let [x, y, z] = shape.half_edges()?;
+    let Frame { relative, stretch: [of_complex, _], .. } = frame;
+    let to_cube = inverse_linear(&DMat3::from_cols(x, y, z));
+    let linear = to_cube * relative.a_to_b.matrix3;
+    let translation = to_cube * (relative.a_to_b.translation - shape.center());
+    let growth = stretch_max(&linear) / of_complex.least;
+    let slack = relative.slack_in_b * row_norm(&to_cube);
+    Cube::new(DAffine3 { matrix3: linear, translation }, growth, gap, slack)
+}
