@@ -2,7 +2,7 @@
 //! what they are, and boxes under any placement.
 
 use fearless_simd::Simd;
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::Support;
 
 use super::closed_form::Similarity;
@@ -11,7 +11,6 @@ use super::reach::core;
 use super::row::{Cube, Near, Row, Verdict, distances_of_core, exceed, stretch_max};
 use crate::bounds::Aabb;
 use crate::placement::{inverse_linear, row_norm};
-use glam::DAffine3;
 
 /// What a convex shape is to triangles.
 pub(super) enum Direct {
