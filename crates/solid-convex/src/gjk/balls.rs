@@ -169,7 +169,7 @@ mod tests {
             let unit = [1.0, 1e-20, 1e20, 1e-9][k as usize / 7 % 4];
             let place = |k: u32, spread: f64| {
                 let DAffine3 { mut matrix3, translation } = placement(k);
-                if k % 3 > 0 {
+                if !k.is_multiple_of(3) {
                     matrix3 *= skew(k);
                 }
                 DAffine3 { matrix3: matrix3 * unit, translation: translation * (spread * unit) }

@@ -43,8 +43,8 @@ impl Rows {
         let rows: &[Row; N] = self.rows.first_chunk().expect("the rows were counted");
         let along = products(simd, direction);
         let mut dots = [f64x4::splat(simd, 0.0); N];
-        for k in 0..N {
-            dots[k] = along(&rows[k]);
+        for (dot, row) in dots.iter_mut().zip(rows) {
+            *dot = along(row);
         }
         let mut best = dots[0];
         for dot in &dots[1..] {
@@ -52,8 +52,8 @@ impl Rows {
         }
         let greatest = f64x4::splat(simd, best.reduce_max());
         let mut equal = 0;
-        for k in 0..N {
-            equal |= dots[k].simd_eq(greatest).to_bitmask() << (k * LANES);
+        for (k, dot) in dots.iter().enumerate() {
+            equal |= dot.simd_eq(greatest).to_bitmask() << (k * LANES);
         }
         if equal == 0 { usize::MAX } else { equal.trailing_zeros() as usize }
     }
