@@ -521,3 +521,25 @@ fn a_refused_deformation_leaves_the_shape_as_it_was() {
     let mut convex = Shape::cuboid(DVec3::ONE).unwrap();
     assert!(matches!(convex.deform(&[]), Err(Error::NotDeformable { .. })));
 }
+
+/// One triangle hovers a hair's breadth above the shape, where a search looks first; the other touches it at a corner.
+#[test]
+fn a_touch_is_not_hidden_by_what_is_a_hair_apart() {
+    let at = DVec3::new;
+    let corners: Vec<DVec3> =
+        (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|bit| f64::from(2 * bit - 1)).into()).collect();
+    let shapes = [Shape::convex_hull(&corners).unwrap(), Shape::cuboid([2.0, 2.0, 2.0]).unwrap()];
+    for hair in [1e-14, 5e-14, 1e-13, 3e-13, 1e-9] {
+        let near = 1.0 + hair;
+        let vertices = [
+            [at(-0.2, near, -0.2), at(0.2, near, -0.2), at(0.0, near, 0.2)],
+            [at(0.9, 1.0, 0.9), at(3.0, 3.0, 3.0), at(3.0, 3.0, 0.5)],
+        ];
+        let mesh = Shape::mesh(vertices.concat(), [[0, 1, 2], [3, 4, 5]]).unwrap();
+        for shape in &shapes {
+            let here = DAffine3::IDENTITY;
+            assert!(query::intersects(&mesh, &here, shape, &here).unwrap());
+            assert_eq!(query::distance(&mesh, &here, shape, &here).unwrap().distance, 0.0, "{hair:e}");
+        }
+    }
+}

@@ -330,14 +330,19 @@ impl NearLeaves for Approach<'_> {
         match self.direct {
             Direct::Round(round) => self.look_from_core(simd, &round, near, best),
             _ => {
-                let near = near & !self.shadow.beyond(simd, self.row, *best - CONFIRMED);
+                let near = near & !self.shadow.beyond(simd, self.row, sought(*best));
                 self.look(simd, near, best);
             }
         }
     }
 }
 
-// What is nearer by no more than `CONFIRMED` is not sought: primitives that share their closest point are many.
+/// The distance within which a nearer primitive is sought: one that is nearer by no more than [`CONFIRMED`] is not, since primitives that
+/// share their closest point are many; but where the shapes may touch, every one.
+fn sought(best: f64) -> f64 {
+    if best > CLEARLY_APART { best - CONFIRMED } else { best }
+}
+
 impl Approach<'_> {
     /// Looks at some lanes of the row from the core of a round shape.
     #[inline(always)]
@@ -347,7 +352,7 @@ impl Approach<'_> {
         while let Some(lane) = known.nearest(near) {
             near &= !(1 << lane);
             if self.row.triangles() >> lane & 1 == 1 {
-                if known.least[lane] - round.radius >= *best - CONFIRMED {
+                if known.least[lane] - round.radius >= sought(*best) {
                     continue;
                 }
                 let gap = known.distance[lane] - round.radius;
@@ -379,7 +384,7 @@ impl Approach<'_> {
         while let Some(lane) = of_center.nearest(near) {
             near &= !(1 << lane);
             if self.row.triangles() >> lane & 1 == 1 {
-                if self.shadow.parted(center, &of_center, lane, *best - CONFIRMED) {
+                if self.shadow.parted(center, &of_center, lane, sought(*best)) {
                     continue;
                 }
                 let row = &*self.row;
@@ -388,7 +393,7 @@ impl Approach<'_> {
                         #[inline(always)]
                         || distances_of_core(simd, &[nearest], row),
                     );
-                    if self.shadow.parted(nearest, known, lane, *best - CONFIRMED) {
+                    if self.shadow.parted(nearest, known, lane, sought(*best)) {
                         continue;
                     }
                 }
@@ -403,7 +408,7 @@ impl Approach<'_> {
                 let on_convex = from_convex.transform_point3(points.on_b);
                 self.shadow.turn((on_complex - on_convex).normalize_or_zero());
                 self.from[1] = points.on_b;
-                near &= !self.shadow.beyond(simd, self.row, *best - CONFIRMED);
+                near &= !self.shadow.beyond(simd, self.row, sought(*best));
             }
         }
     }
@@ -413,7 +418,7 @@ impl Approach<'_> {
     fn ask(&mut self, lane: usize, best: &mut f64) -> Option<Witness> {
         let primitive = self.row.primitive(lane);
         let points = self.complex.0.primitive_hull(primitive);
-        let bound = (*best - CONFIRMED).max(0.0) / self.frame.scale;
+        let bound = sought(*best) / self.frame.scale;
         let closest =
             gjk::closest_points_within(&points, self.complex.1, self.convex.0, self.convex.1, bound)?;
         let distance = closest.distance * self.frame.scale;
