@@ -55,7 +55,10 @@ impl Polytope {
     }
 
     /// The same, where the faces of the hull are known: the triangles `faces` of its points, which close it. Many pairs that are deep in
-    /// each other are then found without a search. Cost: O(n).
+    /// each other are then found without a search. Of faces that leave a hole, the answers may be wrong. Cost: O(n).
+    ///
+    /// # Panics
+    /// If a face names a point that there is not.
     ///
     /// ```
     /// use solid_convex::{Polytope, Support};
