@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use solid3d::broad::{BroadPhase, DynamicTree};
+use solid3d::broad::{BroadPhase, DynamicTree, Proxy};
 use solid3d::glam::{DAffine3, DVec3};
 use solid3d::{Aabb, Response, Shape, World, WorldOptions};
 
@@ -95,33 +95,38 @@ fn world(bench: &Bench, name: &str, objects: usize) -> Work {
 
 fn frames(bench: &Bench, name: &str, count: usize) -> Work {
     let mut swarm = Swarm::random(&mut bench.rng(name), count);
-    let mut boxes = |_| -> Vec<Aabb> {
+    let mut boxes = |_| -> Vec<(Proxy, Aabb)> {
         swarm.step(count);
-        (0..count).map(|i| swarm.bounds(i)).collect()
+        bounds_of(&swarm)
     };
     let mut broad = DynamicTree::default();
     // They come from somewhere, so that they are known to move.
-    (0..).zip(boxes(0)).for_each(|(proxy, bounds)| broad.insert(proxy, bounds));
-    let frames: Vec<Vec<Aabb>> = (0..FRAMES).map(&mut boxes).collect();
+    broad.insert_many(&boxes(0));
+    let frames: Vec<Vec<(Proxy, Aabb)>> = (0..FRAMES).map(&mut boxes).collect();
     broad.flush();
     let mut order = there_and_back(FRAMES);
     Box::new(move || {
         let boxes = &frames[order.next().unwrap_or(0)];
         time(|| {
-            (0..).zip(boxes).for_each(|(proxy, bounds)| broad.update(proxy, *bounds));
+            broad.update_many(boxes);
             broad.flush();
         })
     })
 }
 
+/// All boxes, by proxy.
+fn bounds_of(swarm: &Swarm) -> Vec<(Proxy, Aabb)> {
+    (0..).zip((0..swarm.count()).map(|i| swarm.bounds(i))).collect()
+}
+
 /// The tree and all pairs from nothing.
 fn fresh(bench: &Bench, name: &str, count: usize) -> Work {
     let swarm = Swarm::random(&mut bench.rng(name), count);
-    let boxes: Vec<Aabb> = (0..count).map(|i| swarm.bounds(i)).collect();
+    let boxes = bounds_of(&swarm);
     Box::new(move || {
         let mut broad = DynamicTree::default();
         time(|| {
-            (0..).zip(&boxes).for_each(|(proxy, bounds)| broad.insert(proxy, *bounds));
+            broad.insert_many(&boxes);
             broad.flush();
         })
     })

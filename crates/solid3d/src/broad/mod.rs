@@ -82,6 +82,37 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
     /// If the proxy is not in use, or if the box is empty or not finite.
     fn update(&mut self, proxy: Proxy, bounds: Aabb);
 
+    /// Adds many boxes; the same as to add them one by one, in this order. With the feature `rayon`, and if their proxies ascend, on the
+    /// threads of the current pool.
+    ///
+    /// ```
+    /// use solid3d::broad::{BroadPhase, DynamicTree};
+    /// use solid3d::{Aabb, glam::DVec3};
+    /// let unit_at = |x: f64| Aabb::new(DVec3::splat(x), DVec3::splat(x + 1.0));
+    /// let mut broad = DynamicTree::default();
+    /// broad.insert_many(&[(0, unit_at(0.0)), (1, unit_at(0.5)), (2, unit_at(5.0))]);
+    /// broad.flush();
+    /// assert_eq!(broad.sorted_pairs(), [(0, 1)]);
+    /// broad.update_many(&[(0, unit_at(4.5)), (1, unit_at(0.6))]);
+    /// broad.flush();
+    /// assert_eq!(broad.sorted_pairs(), [(0, 2)]);
+    /// ```
+    ///
+    /// # Panics
+    /// As [`insert`](Self::insert) for the first box that it would refuse; then any of the others were added.
+    fn insert_many(&mut self, boxes: &[(Proxy, Aabb)]) {
+        boxes.iter().for_each(|(proxy, bounds)| self.insert(*proxy, *bounds));
+    }
+
+    /// Moves many boxes; the same as to move them one by one, in this order. With the feature `rayon`, and if their proxies ascend, on the
+    /// threads of the current pool.
+    ///
+    /// # Panics
+    /// As [`update`](Self::update) for the first box that it would refuse; then any of the others were moved.
+    fn update_many(&mut self, boxes: &[(Proxy, Aabb)]) {
+        boxes.iter().for_each(|(proxy, bounds)| self.update(*proxy, *bounds));
+    }
+
     /// Takes a box out; its proxy may be used again at once.
     ///
     /// # Panics
@@ -237,9 +268,14 @@ impl BroadPhaseKind {
 #[inline]
 fn assert_valid(proxy: Proxy, bounds: &Aabb) {
     assert!(proxy <= PROXY_MAX, "proxy {proxy} is above PROXY_MAX = {PROXY_MAX}");
-    let is_finite =
-        (0..3).fold(true, |is, k| is & (bounds.min[k] >= -f64::MAX) & (bounds.max[k] <= f64::MAX));
-    assert!(is_ordered(bounds) & is_finite, "the box of proxy {proxy} is empty or not finite: {bounds:?}");
+    assert!(is_valid(bounds), "the box of proxy {proxy} is empty or not finite: {bounds:?}");
+}
+
+/// Whether a box is of finite numbers and not empty.
+#[inline]
+fn is_valid(bounds: &Aabb) -> bool {
+    let is_finite = |is, k| is & (bounds.min[k] >= -f64::MAX) & (bounds.max[k] <= f64::MAX);
+    is_ordered(bounds) & (0..3).fold(true, is_finite)
 }
 
 /// Whether a box is of numbers and not empty. Without a branch: this is asked of every box that moves.

@@ -284,6 +284,99 @@ fn the_number_of_threads_changes_nothing() {
     }
 }
 
+/// Law: many boxes told at once are as if told one by one, whatever their order: the same pairs in the same order, the same changes
+/// and counters.
+#[test]
+fn many_at_once_are_as_one_by_one() {
+    /// Enough for several threads to have something to do.
+    const BOXES: u32 = 10_000;
+    let mut rng = StdRng::seed_from_u64(11);
+    let mut anywhere = |scale: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(0.0..scale)));
+    let side = (8.0 * f64::from(BOXES)).cbrt();
+    let mut boxes: Vec<(Proxy, Aabb)> = (0..BOXES)
+        .map(|proxy| {
+            let min = anywhere(side);
+            (3 * proxy, Aabb::new(min, min + 1.0))
+        })
+        .collect();
+    let mut frames = vec![boxes.clone()];
+    // Few move, half, all; far, so that most leave their fat boxes, and little; then in no order, some twice.
+    for (share, scale) in [(20, 1.0), (2, 0.01), (1, 0.01), (1, 3.0), (1, 0.1)] {
+        for (_, b) in boxes.iter_mut().step_by(share) {
+            let way = anywhere(scale);
+            *b = Aabb::new(b.min + way, b.max + way);
+        }
+        frames.push(boxes.clone());
+    }
+    let mut shuffled = boxes.clone();
+    shuffled.reverse();
+    shuffled.extend_from_slice(&frames[1][..5000]);
+    frames.push(shuffled);
+    for kind in KINDS {
+        let run = |many: bool| {
+            let mut broad = kind.build();
+            let (mut pairs, mut changes) = (Vec::new(), Vec::new());
+            for (frame, boxes) in frames.iter().enumerate() {
+                match (frame, many) {
+                    (0, true) => broad.insert_many(boxes),
+                    (0, false) => boxes.iter().for_each(|(proxy, b)| broad.insert(*proxy, *b)),
+                    (_, true) => broad.update_many(boxes),
+                    (_, false) => boxes.iter().for_each(|(proxy, b)| broad.update(*proxy, *b)),
+                }
+                broad.validate();
+                broad.flush();
+                broad.for_each_pair(&mut |a, b| pairs.push((a, b)));
+                changes.extend_from_slice(broad.changes());
+            }
+            broad.validate();
+            (pairs, changes, broad.counters())
+        };
+        let one_by_one = run(false);
+        assert!(one_by_one.1.len() > 5_000, "{kind:?}: {} changes", one_by_one.1.len());
+        assert!(run(true) == one_by_one, "{kind:?}");
+        #[cfg(feature = "rayon")]
+        for threads in [1, 2, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert!(pool.install(|| run(true)) == one_by_one, "{kind:?}, {threads} threads");
+        }
+    }
+}
+
+/// Law: of many boxes the first that is refused is named, on any number of threads, and what was told before stands.
+#[test]
+fn many_boxes_with_a_bad_one_are_refused() {
+    const BOXES: u32 = 10_000;
+    let good: Vec<(Proxy, Aabb)> = (0..BOXES)
+        .map(|proxy| {
+            let min = DVec3::new(2.0 * f64::from(proxy), 0.0, 0.0);
+            (proxy, Aabb::new(min, min + 1.0))
+        })
+        .collect();
+    let mut bad = good.clone();
+    bad[7000].1.max.y = f64::NAN;
+    bad[7003].1.max.y = f64::INFINITY;
+    let run = || {
+        for insert in [true, false] {
+            let mut broad = BroadPhaseKind::DynamicTree.build();
+            if !insert {
+                broad.insert_many(&good);
+                broad.flush();
+            }
+            let told = std::panic::AssertUnwindSafe(|| {
+                if insert { broad.insert_many(&bad) } else { broad.update_many(&bad) }
+            });
+            let refused = std::panic::catch_unwind(told).unwrap_err();
+            let message = refused.downcast_ref::<String>().unwrap();
+            assert!(message.contains("the box of proxy 7000 is empty or not finite"), "{message}");
+            broad.flush();
+            broad.validate();
+        }
+    };
+    run();
+    #[cfg(feature = "rayon")]
+    rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap().install(run);
+}
+
 #[test]
 #[should_panic(expected = "changed since the last flush")]
 fn unflushed_pairs_are_refused() {

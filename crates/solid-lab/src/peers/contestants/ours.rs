@@ -127,7 +127,7 @@ impl Boxes for DynamicTree {
     }
 
     fn frame(&mut self, moved: &[(u32, Aabb)]) {
-        moved.iter().for_each(|(proxy, bounds)| self.update(*proxy, *bounds));
+        self.update_many(moved);
         self.flush();
     }
 

@@ -140,7 +140,7 @@ fn fill(tree: &mut Tree, at: u32, range: &mut [u64], boxes: &[FatBox], depth: us
         if let [entry] = *piece {
             let leaf = proxy(entry);
             let lane = tree.nodes[at as usize].push(Child::leaf(leaf), &boxes[leaf as usize]);
-            tree.places[leaf as usize] = Place::new(at, lane);
+            tree.places[leaf as usize].set(Place::new(at, lane));
         } else {
             let below = tree.nodes.len() as u32;
             let lane = tree.nodes[at as usize].count();

@@ -22,16 +22,22 @@ mod nearest;
 mod node;
 mod search;
 mod self_pairs;
+mod slots;
 mod status;
 mod tree;
 
 use super::pair_lists::PairLists;
-use super::room::{push, resize};
-use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid, is_ordered};
+use super::room::{push, resize, room};
+use super::{BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid};
 use crate::bounds::Aabb;
+#[cfg(feature = "rayon")]
+use crate::threads::share;
 use build::Builder;
 use fat_box::FatBox;
 use search::{Found, Search};
+use slots::{Fate, Slots};
+#[cfg(feature = "rayon")]
+use slots::{News, PART, ascend};
 use status::Status;
 use tree::{DEPTH_MAX, Tree};
 
@@ -44,6 +50,10 @@ const REBUILD_MIN: usize = 32;
 
 /// Where more than one in this many boxes moved, one pass over all pairs is cheaper than a walk along their lists.
 const REFRESH_ALL_AT_ONE_IN: usize = 4;
+
+/// So many boxes, of some 5 ns each, are worth another thread to tell them to.
+#[cfg(feature = "rayon")]
+const BOXES_MANY: usize = 1 << 12;
 
 /// Broad phase by a dynamic wide tree of fattened boxes; the default.
 ///
@@ -93,31 +103,62 @@ impl DynamicTree {
         self.status.get(proxy as usize).is_some_and(|s| s.is(Status::ALIVE))
     }
 
-    fn enqueue(&mut self, proxy: Proxy) {
-        if self.status[proxy as usize].put(Status::QUEUED) {
+    fn slots(&mut self) -> Slots<'_> {
+        Slots { first: 0, tight: &mut self.tight, fat: &mut self.fat, status: &mut self.status }
+    }
+
+    /// Notes what became of a box.
+    #[inline]
+    fn note(&mut self, proxy: Proxy, fate: Fate) {
+        self.dirty |= fate.changed;
+        if fate.moved && !self.all_moved {
+            push(&mut self.moved, proxy);
+            self.all_moved = self.moved.len() * REFRESH_ALL_AT_ONE_IN > self.alive;
+        }
+        if fate.queued {
             push(&mut self.queue, proxy);
         }
     }
 
-    /// Notes that a tight box changed.
-    fn note_moved(&mut self, proxy: Proxy) {
-        push(&mut self.moved, proxy);
-        self.all_moved = self.moved.len() * REFRESH_ALL_AT_ONE_IN > self.alive;
+    /// Makes room for proxies below `proxies`.
+    fn grow(&mut self, proxies: usize) {
+        if proxies > self.tight.len() {
+            resize(&mut self.tight, proxies, Aabb::EMPTY);
+            resize(&mut self.fat, proxies, FatBox { min: [0.0; 3], max: [0.0; 3] });
+            resize(&mut self.status, proxies, Status::default());
+            self.tree.grow(proxies);
+            self.pairs.grow(proxies);
+        }
     }
 
-    /// Gives a box another fat box, since it left the one that it had.
-    #[inline(never)]
-    fn leave(&mut self, proxy: Proxy, bounds: Aabb) {
-        assert_valid(proxy, &bounds);
+    #[cold]
+    fn refuse_insert(&self, proxy: Proxy, bounds: &Aabb) -> ! {
+        assert_valid(proxy, bounds);
+        panic!("proxy {proxy} is already in use");
+    }
+
+    #[cold]
+    fn refuse_update(&self, proxy: Proxy, bounds: &Aabb) -> ! {
         assert!(self.is_alive(proxy), "proxy {proxy} is not in use");
-        let slot = proxy as usize;
-        let was = std::mem::replace(&mut self.tight[slot], bounds);
-        self.dirty = true;
-        if self.status[slot].put(Status::MOVED) && !self.all_moved {
-            self.note_moved(proxy);
+        assert_valid(proxy, bounds);
+        unreachable!("such a box of such a proxy is not refused")
+    }
+
+    /// Notes what became of many boxes. The first that was refused.
+    #[cfg(feature = "rayon")]
+    fn note_many(&mut self, news: &[News]) -> Option<usize> {
+        self.dirty |= news.iter().any(|news| news.changed);
+        if !self.all_moved {
+            let moved = self.moved.len() + news.iter().map(|news| news.moved.len()).sum::<usize>();
+            self.all_moved = moved * REFRESH_ALL_AT_ONE_IN > self.alive;
         }
-        self.fat[slot] = FatBox::with_room(proxy, &was, &bounds);
-        self.enqueue(proxy);
+        for news in news {
+            if !self.all_moved {
+                self.moved.extend_from_slice(&news.moved);
+            }
+            self.queue.extend_from_slice(&news.queued);
+        }
+        news.iter().enumerate().find_map(|(i, news)| Some(i * PART + news.refused?))
     }
 
     /// Builds the tree anew from all living boxes.
@@ -222,7 +263,7 @@ impl DynamicTree {
         // Boxes that are near one another find the same nodes, and those are then at hand. Since the tree was built, its nodes are about
         // in the order of space.
         let places = &self.tree.places;
-        self.queue.sort_unstable_by_key(|&proxy| (places[proxy as usize], proxy));
+        self.queue.sort_unstable_by_key(|&proxy| (places[proxy as usize].get(), proxy));
         let few = self.queue.len() <= REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN);
         if few {
             self.part_queued();
@@ -244,40 +285,54 @@ fn overlap(tight: &[Aabb], a: Proxy, b: Proxy) -> bool {
 impl BroadPhase for DynamicTree {
     fn insert(&mut self, proxy: Proxy, bounds: Aabb) {
         assert_valid(proxy, &bounds);
-        let slot = proxy as usize;
-        if slot >= self.tight.len() {
-            resize(&mut self.tight, slot + 1, Aabb::EMPTY);
-            resize(&mut self.fat, slot + 1, FatBox { min: [0.0; 3], max: [0.0; 3] });
-            resize(&mut self.status, slot + 1, Status::default());
-            self.tree.grow(slot + 1);
-            self.pairs.grow(slot + 1);
+        self.grow(proxy as usize + 1);
+        match self.slots().insert(proxy, &bounds) {
+            Some(fate) => {
+                self.alive += 1;
+                self.note(proxy, fate);
+            }
+            None => self.refuse_insert(proxy, &bounds),
         }
-        assert!(self.status[slot].put(Status::ALIVE), "proxy {proxy} is already in use");
-        self.tight[slot] = bounds;
-        self.fat[slot] = FatBox::with_room(proxy, &bounds, &bounds);
-        self.alive += 1;
-        self.dirty = true;
-        self.enqueue(proxy);
     }
 
     #[inline]
     fn update(&mut self, proxy: Proxy, bounds: Aabb) {
-        let slot = proxy as usize;
-        if let (Some(tight), Some(fat), Some(status)) =
-            (self.tight.get_mut(slot), self.fat.get(slot), self.status.get_mut(slot))
-            // Nearly all stay inside. A fat box is finite: so is what lies in it.
-            && fat.contains(&bounds) & is_ordered(&bounds) & status.is(Status::ALIVE)
-        {
-            if *tight != bounds {
-                *tight = bounds;
-                self.dirty = true;
-                if status.put(Status::MOVED) && !self.all_moved {
-                    self.note_moved(proxy);
-                }
-            }
-        } else {
-            self.leave(proxy, bounds);
+        match self.slots().update(proxy, &bounds) {
+            Some(fate) => self.note(proxy, fate),
+            None => self.refuse_update(proxy, &bounds),
         }
+    }
+
+    fn insert_many(&mut self, boxes: &[(Proxy, Aabb)]) {
+        let end = boxes.iter().map(|(proxy, _)| *proxy).filter(|&proxy| proxy <= PROXY_MAX).max();
+        self.grow(end.map_or(0, |end| end as usize + 1));
+        let queued = self.queue.len() + boxes.len();
+        room(&mut self.queue, queued);
+        #[cfg(feature = "rayon")]
+        if share(boxes.len(), BOXES_MANY) && ascend(boxes) {
+            let news =
+                self.slots().for_each(boxes, false, |slots, proxy, bounds| slots.insert(proxy, bounds));
+            self.alive += news.iter().map(|news| news.taken).sum::<usize>();
+            if let Some(refused) = self.note_many(&news) {
+                self.refuse_insert(boxes[refused].0, &boxes[refused].1);
+            }
+            return;
+        }
+        boxes.iter().for_each(|(proxy, bounds)| self.insert(*proxy, *bounds));
+    }
+
+    fn update_many(&mut self, boxes: &[(Proxy, Aabb)]) {
+        #[cfg(feature = "rayon")]
+        if share(boxes.len(), BOXES_MANY) && ascend(boxes) {
+            let note_moved = !self.all_moved;
+            let news =
+                self.slots().for_each(boxes, note_moved, |slots, proxy, bounds| slots.update(proxy, bounds));
+            if let Some(refused) = self.note_many(&news) {
+                self.refuse_update(boxes[refused].0, &boxes[refused].1);
+            }
+            return;
+        }
+        boxes.iter().for_each(|(proxy, bounds)| self.update(*proxy, *bounds));
     }
 
     fn remove(&mut self, proxy: Proxy) {

@@ -1,5 +1,7 @@
 //! The 8-wide node: eight boxes as a structure of arrays.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
 
 use super::fat_box::FatBox;
@@ -53,6 +55,26 @@ impl Place {
 
     pub fn lane(self) -> usize {
         self.0 as usize % WIDTH
+    }
+}
+
+/// A [`Place`] that is written through a shared reference: a tree is built on several threads, each of which places its own leaves,
+/// and what they are called is anywhere among all.
+#[derive(Debug)]
+pub(super) struct PlaceCell(AtomicU32);
+
+impl PlaceCell {
+    pub fn new(place: Place) -> Self {
+        PlaceCell(AtomicU32::new(place.0))
+    }
+
+    pub fn get(&self) -> Place {
+        Place(self.0.load(Ordering::Relaxed))
+    }
+
+    pub fn set(&self, place: Place) {
+        // Nobody reads it before the threads are joined.
+        self.0.store(place.0, Ordering::Relaxed);
     }
 }
 

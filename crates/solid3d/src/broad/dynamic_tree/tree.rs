@@ -9,9 +9,9 @@ use fearless_simd::Simd;
 use solid_convex::simd::{dispatch, level};
 
 use super::fat_box::FatBox;
-use super::node::{Child, Kind, Node, Place, WIDTH, lanes};
+use super::node::{Child, Kind, Node, Place, PlaceCell, WIDTH, lanes};
 use crate::broad::Proxy;
-use crate::broad::room::{push, resize};
+use crate::broad::room::{push, room};
 
 /// No node stays deeper than this after a flush; recursion and stacks are bounded by it.
 pub(super) const DEPTH_MAX: usize = 64;
@@ -26,7 +26,7 @@ pub(super) struct Tree {
     /// Nodes not in use.
     pub free: Vec<u32>,
     /// By proxy: where its leaf hangs.
-    pub places: Vec<Place>,
+    pub places: Vec<PlaceCell>,
 }
 
 impl Default for Tree {
@@ -38,7 +38,13 @@ impl Default for Tree {
 impl Tree {
     /// Makes room for proxies below `proxies`.
     pub fn grow(&mut self, proxies: usize) {
-        resize(&mut self.places, proxies, Place::NONE);
+        room(&mut self.places, proxies);
+        self.places.resize_with(proxies, || PlaceCell::new(Place::NONE));
+    }
+
+    /// Where a leaf hangs.
+    pub fn place(&self, proxy: Proxy) -> Place {
+        self.places[proxy as usize].get()
     }
 
     /// Adds a leaf; gives its depth.
@@ -74,7 +80,7 @@ impl Tree {
 
     fn attach(&mut self, node: u32, proxy: Proxy, b: &FatBox, depth: usize) -> usize {
         let lane = self.nodes[node as usize].push(Child::leaf(proxy), b);
-        self.places[proxy as usize] = Place::new(node, lane);
+        self.places[proxy as usize].set(Place::new(node, lane));
         depth
     }
 
@@ -93,7 +99,8 @@ impl Tree {
 
     /// Takes a leaf out.
     pub fn remove(&mut self, proxy: Proxy) {
-        let mut place = std::mem::replace(&mut self.places[proxy as usize], Place::NONE);
+        let mut place = self.place(proxy);
+        self.places[proxy as usize].set(Place::NONE);
         // Ends at the root, which has no place.
         loop {
             let (at, lane) = (place.node(), place.lane());
@@ -101,7 +108,7 @@ impl Tree {
             node.swap_remove(lane);
             if lane < node.count() {
                 match node.child(lane) {
-                    Kind::Leaf(moved) => self.places[moved as usize] = place,
+                    Kind::Leaf(moved) => self.places[moved as usize].set(place),
                     Kind::Node(moved) => self.nodes[moved as usize].parent = place,
                 }
             } else if node.count() == 0 && at != ROOT {
@@ -115,13 +122,13 @@ impl Tree {
 
     /// Gives a leaf another box where it hangs.
     pub fn set_box(&mut self, proxy: Proxy, b: &FatBox) {
-        let place = self.places[proxy as usize];
+        let place = self.place(proxy);
         self.nodes[place.node() as usize].set_box(place.lane(), b);
         self.refit_above(place.node());
     }
 
     pub fn leaf_box(&self, proxy: Proxy) -> FatBox {
-        let place = self.places[proxy as usize];
+        let place = self.place(proxy);
         self.nodes[place.node() as usize].lane_box(place.lane())
     }
 
@@ -182,7 +189,7 @@ impl Tree {
                 let place = Place::new(at, lane);
                 match node.child(lane) {
                     Kind::Leaf(proxy) => {
-                        assert_eq!(self.places[proxy as usize], place);
+                        assert_eq!(self.place(proxy), place);
                         leaves += 1;
                     }
                     Kind::Node(below) => {
