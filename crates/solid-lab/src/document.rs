@@ -20,6 +20,20 @@ pub fn fill(document: &Path, results: &[(&str, String)]) -> Result<()> {
     fs::write(document, text).with_context(|| format!("cannot write {}", document.display()))
 }
 
+/// Asks for the documents before anything is measured that is to be put into them.
+///
+/// # Errors
+/// When one is not there.
+pub fn expect_in(folder: &Path) -> Result<()> {
+    for name in ["experiments.md", "peers.md"] {
+        let document = folder.join(name);
+        fs::metadata(&document).with_context(|| {
+            format!("--docs names the folder of the documents: no {}", document.display())
+        })?;
+    }
+    Ok(())
+}
+
 fn marks(name: &str) -> [String; 2] {
     [format!("<!-- results of {name} -->"), format!("<!-- end of {name} -->")]
 }
@@ -43,6 +57,16 @@ mod tests {
             fill(&document, &[("hits", "42 %".into()), ("misses", "1".into())]).expect_err("no marks");
         assert!(error.to_string().contains("no marks for misses"), "{error}");
         assert_eq!(fs::read_to_string(&document).expect("it can be read"), text, "half applied");
+    }
+
+    #[test]
+    fn documents_that_are_not_there_are_named() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        fs::write(folder.path().join("experiments.md"), "").expect("it can be written");
+        let error = expect_in(folder.path()).expect_err("one is missing");
+        assert!(error.to_string().contains("peers.md"), "{error}");
+        fs::write(folder.path().join("peers.md"), "").expect("it can be written");
+        assert!(expect_in(folder.path()).is_ok());
     }
 
     #[test]

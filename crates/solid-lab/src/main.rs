@@ -69,7 +69,11 @@ struct Measuring {
 }
 
 fn main() -> Result<()> {
-    match Cli::parse().command {
+    let command = Cli::parse().command;
+    if let Command::Run { docs: Some(docs), .. } | Command::Threads { docs: Some(docs), .. } = &command {
+        document::expect_in(docs)?;
+    }
+    match command {
         Command::List => {
             for experiment in experiments::all() {
                 println!("{:18} {}", experiment.name, experiment.reproduces);

@@ -7,7 +7,7 @@ use std::ops::{Index, IndexMut};
 
 use slotmap::{Key, KeyData};
 
-use super::object::{Object, ObjectId, Staleness};
+use super::object::{Object, ObjectId};
 use crate::broad::Proxy;
 use crate::broad::room::push;
 
@@ -75,11 +75,9 @@ impl Arena {
         self.slot_mut(id)?.object.as_mut()
     }
 
-    /// Notes that nothing of an object is out of date, if it is still there.
-    pub fn freshen(&mut self, id: ObjectId) {
-        if let Some(object) = self.get_mut(id) {
-            object.staleness = Staleness::Fresh;
-        }
+    /// The object in a slot, if there is one.
+    pub fn at(&self, slot: Proxy) -> Option<&Object> {
+        self.slots.get(slot as usize).and_then(|slot| slot.object.as_ref())
     }
 
     fn slot_mut(&mut self, id: ObjectId) -> Option<&mut Slot> {

@@ -6,22 +6,25 @@
 
 use glam::DVec3;
 
-use super::arena::Arena;
+use super::arena::slot_of;
 use super::findings::{FindingId, Findings};
 use super::near::{Near, Nearness};
-#[cfg(feature = "rayon")]
-use super::object::Object;
-use super::object::Staleness;
-use super::pair_map::PairMap;
-#[cfg(feature = "rayon")]
-use super::threads::{BATCH, Workers};
+use super::pair_map::{PairMap, Place};
+use super::stirred::Staleness;
 use super::{Contact, ObjectId, World};
+use crate::bounds::Aabb;
 use crate::broad::room::push;
 use crate::broad::{PairChange, PairId};
+use crate::threads::for_each_part;
 
-/// What the box of an object costs that moved, at least, in units of [`Workers::share`].
-#[cfg(feature = "rayon")]
-const UNITS_PER_BOX: u64 = 4;
+/// So many boxes of objects that moved are found at a time: what they take is bounded by it.
+const BOXES_AT_A_TIME: usize = 1 << 12;
+
+/// So many boxes, of some 100 ns each, are worth another thread.
+const BOXES_MANY: usize = 1000;
+
+/// One thread finds so many at a time.
+const BOXES_OF_A_PART: usize = 128;
 
 /// When one in so many objects changed, all candidates are looked at in one pass, rather than those of each that did.
 const MANY: usize = 4;
@@ -39,37 +42,67 @@ pub(super) struct Candidate {
     pub axis: Option<DVec3>,
     /// Its collision, if it had one when it was last examined.
     pub found: Option<FindingId>,
+    /// Whether that is one of which nothing is known but that it is there now.
+    pub is_plain: bool,
     /// Whether its response was not to ignore it when it was last examined.
     pub matters: bool,
     /// Whether it waits to be examined.
-    pub queued: bool,
+    queued: bool,
+    /// Whether what the last search for near pairs said of it still holds.
+    nearness_holds: bool,
+}
+
+impl Candidate {
+    /// Notes that something about it changed; whether it was not to be examined before.
+    fn stir(&mut self) -> bool {
+        self.nearness_holds = false;
+        !std::mem::replace(&mut self.queued, true)
+    }
+
+    /// Whether it depends on what of one of its objects is out of date.
+    fn depends_on(&self, staleness: Staleness, findings: &Findings) -> bool {
+        let looks_back = || match self.found {
+            Some(found) => matches!(findings.collision(found).contact, Contact::Smart { .. }),
+            None => false,
+        };
+        staleness > Staleness::Previous || staleness == Staleness::Previous && looks_back()
+    }
 }
 
 /// All candidates.
 #[derive(Debug, Default)]
 pub(super) struct Candidates {
     slots: PairMap<Candidate>,
-    /// Pairs to be examined, some of them twice; some may be none any more.
-    queue: Vec<PairId>,
+    /// Candidates to be examined, some of them twice; some may be none any more.
+    queue: Vec<Place>,
+    /// Whether others wait to be examined too.
+    more_wait: bool,
     /// How many matter.
     pub count: u64,
-    /// What the last search for near pairs said, by the broad phase's pair; as long as that search needed.
+    /// What the last search for near pairs said, as far as it holds; as long as that search needed.
     nearness: Vec<Nearness>,
 }
 
 impl Candidates {
     /// Adds a candidate, to be examined.
     fn begin(&mut self, pair: PairId, a: ObjectId, b: ObjectId) {
-        self.stir_nearness(pair);
-        let candidate = Candidate { a, b, axis: None, found: None, matters: false, queued: true };
-        self.slots.insert(pair, candidate);
-        push(&mut self.queue, pair);
+        let candidate = Candidate {
+            a,
+            b,
+            axis: None,
+            found: None,
+            is_plain: false,
+            matters: false,
+            queued: true,
+            nearness_holds: false,
+        };
+        let place = self.slots.insert(pair, candidate);
+        push(&mut self.queue, place);
     }
 
     /// Forgets a candidate and its collision.
     pub fn end(&mut self, pair: PairId, findings: &mut Findings) {
         if let Some(candidate) = self.slots.remove(pair) {
-            self.stir_nearness(pair);
             self.count -= u64::from(candidate.matters);
             if let Some(found) = candidate.found {
                 findings.remove(found);
@@ -79,97 +112,95 @@ impl Candidates {
 
     /// Has a candidate examined by the next test.
     pub fn enqueue(&mut self, pair: PairId) {
-        self.stir_nearness(pair);
-        if let Some(candidate) = self.slots.get_mut(pair)
-            && !std::mem::replace(&mut candidate.queued, true)
-        {
-            self.queue.push(pair);
-        }
+        self.enqueue_if(pair, |_| true);
     }
 
-    /// Has a candidate examined by the next test if it depends on what of one of its objects is out of date.
-    fn enqueue_if(&mut self, pair: PairId, staleness: Staleness, findings: &Findings) {
-        let looks_back = || match self.get(pair).found {
-            Some(found) => matches!(findings.collision(found).contact, Contact::Smart { .. }),
-            None => false,
-        };
-        if staleness > Staleness::Previous || staleness == Staleness::Previous && looks_back() {
-            self.enqueue(pair);
+    fn enqueue_if(&mut self, pair: PairId, is_concerned: impl Fn(&Candidate) -> bool) {
+        if let Some(place) = self.slots.place(pair)
+            && let Some(candidate) = self.slots.get_mut(place)
+            && is_concerned(candidate)
+            && candidate.stir()
+        {
+            self.queue.push(place);
         }
     }
 
     /// The same with every candidate: each is looked at once, in the order in which they are kept.
-    fn enqueue_stirred(&mut self, objects: &Arena, findings: &Findings) {
-        for pair in 0..self.slots.end() as PairId {
-            if let Some(&Candidate { a, b, .. }) = self.slots.get(pair) {
-                let staleness = objects[a].staleness.max(objects[b].staleness);
-                self.enqueue_if(pair, staleness, findings);
+    fn enqueue_where(&mut self, is_concerned: impl Fn(&Candidate) -> bool + Sync + Send) {
+        /// So many candidates, of some 5 ns each, are worth another thread.
+        const MANY: usize = 1 << 13;
+        /// One thread looks at so many at a time.
+        const PART: usize = 1 << 10;
+        self.more_wait = true;
+        for_each_part(self.slots.values_mut(), PART, MANY, |_, part| {
+            for candidate in part.iter_mut().flatten().filter(|candidate| is_concerned(candidate)) {
+                candidate.stir();
             }
-        }
+        });
     }
 
     /// Has every candidate examined by the next test.
     pub fn enqueue_all(&mut self) {
-        for pair in 0..self.slots.end() as PairId {
-            self.enqueue(pair);
-        }
+        self.enqueue_where(|_| true);
     }
 
     /// Forgets what was learned about pairs that may help to examine them.
     pub fn forget_axes(&mut self) {
-        self.slots.values_mut().for_each(|candidate| candidate.axis = None);
+        self.slots.values_mut().iter_mut().flatten().for_each(|candidate| candidate.axis = None);
     }
 
-    /// Moves the queue to `pairs`, each pair once.
-    pub fn take_queue(&mut self, pairs: &mut Vec<PairId>) {
-        pairs.clear();
-        for pair in self.queue.drain(..) {
-            if let Some(candidate) = self.slots.get_mut(pair)
-                && std::mem::replace(&mut candidate.queued, false)
-            {
-                pairs.push(pair);
-            }
-        }
-    }
-
-    /// Notes that a candidate may be nearer or further than it was.
-    fn stir_nearness(&mut self, pair: PairId) {
-        if let Some(nearness) = self.nearness.get_mut(pair as usize) {
-            *nearness = Nearness::Unknown;
+    /// Moves those that wait to be examined to `places`, each once.
+    pub fn take_queue(&mut self, places: &mut Vec<Place>) {
+        places.clear();
+        let Self { slots, queue, more_wait, .. } = self;
+        let take = |candidate: &mut Candidate| std::mem::take(&mut candidate.queued);
+        if std::mem::take(more_wait) {
+            queue.clear();
+            let values = (0..).zip(slots.values_mut());
+            places.extend(
+                values.filter_map(|(place, value)| value.as_mut().is_some_and(take).then_some(place)),
+            );
+        } else {
+            places.extend(queue.drain(..).filter(|&place| slots.get_mut(place).is_some_and(take)));
         }
     }
 
     /// Forgets how near all candidates are.
     pub fn forget_nearness(&mut self) {
-        self.nearness.clear();
+        self.slots.values_mut().iter_mut().flatten().for_each(|candidate| candidate.nearness_holds = false);
     }
 
-    /// Puts into `pairs` the candidates of which it is not known how near they are.
-    pub fn unknown(&mut self, pairs: &mut Vec<PairId>) {
-        pairs.clear();
-        self.nearness.resize(self.slots.end(), Nearness::Unknown);
-        let is_unknown = |&pair: &PairId| matches!(self.nearness[pair as usize], Nearness::Unknown);
-        pairs.extend(self.slots.keys().filter(is_unknown));
+    /// Puts into `places` the candidates of which it is not known how near they are.
+    pub fn unknown(&mut self, places: &mut Vec<Place>) {
+        places.clear();
+        self.nearness.resize(self.slots.values().len(), Nearness::Far);
+        let is_unknown = |value: &Option<Candidate>| value.is_some_and(|candidate| !candidate.nearness_holds);
+        places.extend(
+            (0..).zip(self.slots.values()).filter(|(_, value)| is_unknown(value)).map(|(place, _)| place),
+        );
     }
 
-    pub fn set_nearness(&mut self, pair: PairId, nearness: Nearness) {
-        self.nearness[pair as usize] = nearness;
+    pub fn set_nearness(&mut self, place: Place, nearness: Nearness) {
+        self.nearness[place as usize] = nearness;
+        self.get_mut(place).nearness_holds = true;
     }
 
     /// The candidates that are near, in any order.
     pub fn near(&self) -> impl Iterator<Item = &Near> {
-        self.nearness.iter().filter_map(|nearness| match nearness {
+        let holds = |value: &Option<Candidate>| value.is_some_and(|candidate| candidate.nearness_holds);
+        let known = self.slots.values().iter().zip(&self.nearness).filter(move |(value, _)| holds(value));
+        known.filter_map(|(_, nearness)| match nearness {
             Nearness::Near(near) => Some(near),
-            Nearness::Unknown | Nearness::Far => None,
+            Nearness::Far => None,
         })
     }
 
-    pub fn get(&self, pair: PairId) -> &Candidate {
-        self.slots.get(pair).expect("pairs in the queue are candidates")
+    pub fn get(&self, place: Place) -> &Candidate {
+        self.slots.get(place).expect("what waits to be examined is a candidate")
     }
 
-    pub fn get_mut(&mut self, pair: PairId) -> &mut Candidate {
-        self.slots.get_mut(pair).expect("pairs in the queue are candidates")
+    pub fn get_mut(&mut self, place: Place) -> &mut Candidate {
+        self.slots.get_mut(place).expect("what waits to be examined is a candidate")
     }
 }
 
@@ -190,55 +221,44 @@ impl World {
                 candidates.end(pair, findings);
             }
         }
-        if MANY * stirred.len() >= objects.len() {
-            candidates.enqueue_stirred(objects, findings);
-            stirred.drain(..).for_each(|id| objects.freshen(id));
-        }
-        for id in stirred.drain(..) {
-            let staleness = objects.get(id).map_or(Staleness::Fresh, |object| object.staleness);
-            objects.freshen(id);
-            if staleness > Staleness::Fresh {
-                let mut enqueue = |pair, _| candidates.enqueue_if(pair, staleness, findings);
-                broad.for_each_pair_of(super::proxy(id), &mut enqueue);
+        if MANY * stirred.slots().len() >= objects.len() {
+            candidates.enqueue_where(|candidate| {
+                let [a, b] = [candidate.a, candidate.b].map(|id| stirred.of(slot_of(id)));
+                candidate.depends_on(a.max(b), findings)
+            });
+        } else {
+            for &slot in stirred.slots() {
+                let staleness = stirred.of(slot);
+                broad.for_each_pair_of(slot, &mut |pair, _| {
+                    candidates.enqueue_if(pair, |candidate| candidate.depends_on(staleness, findings));
+                });
             }
         }
+        stirred.clear();
         if std::mem::take(&mut self.default_changed) {
             candidates.enqueue_all();
         }
     }
 
-    /// Gives the broad phase the boxes of what moved.
+    /// Gives the broad phase the boxes of what moved: in the order of slots, in which both have them in memory.
     fn update_broad(&mut self) {
-        #[cfg(feature = "rayon")]
-        if Workers::share(UNITS_PER_BOX * self.stirred.len() as u64) {
-            self.update_boxes_on_threads();
-            return self.broad.flush();
-        }
-        let Self { broad, objects, stirred, clearances, .. } = self;
-        for &id in stirred.iter() {
-            if let Some(object) = objects.get_mut(id).filter(|object| object.staleness == Staleness::Bounds) {
-                let bounds = object.bounds();
-                broad.update(super::proxy(id), clearances.grown(object.set_bounds(bounds)));
-            }
+        let Self { broad, objects, stirred, clearances, new_bounds, .. } = self;
+        stirred.sort();
+        for slots in stirred.slots().chunks(BOXES_AT_A_TIME) {
+            let elsewhere =
+                slots.iter().filter(|&&slot| stirred.is_elsewhere(slot) && objects.at(slot).is_some());
+            new_bounds.clear();
+            new_bounds.extend(elsewhere.map(|&slot| (slot, Aabb::EMPTY)));
+            for_each_part(new_bounds, BOXES_OF_A_PART, BOXES_MANY, |_, part| {
+                for (slot, bounds) in part {
+                    if let Some(object) = objects.at(*slot) {
+                        *bounds = clearances.grown(object.bounds());
+                    }
+                }
+            });
+            broad.update_many(new_bounds);
         }
         broad.flush();
-    }
-
-    #[cfg(feature = "rayon")]
-    fn update_boxes_on_threads(&mut self) {
-        let Self { broad, objects, stirred, clearances, workers, new_bounds, .. } = self;
-        for batch in stirred.chunks(BATCH) {
-            workers.map(batch, new_bounds, |&id, _| {
-                let object = objects.get(id).filter(|object| object.staleness == Staleness::Bounds);
-                object.map(Object::bounds)
-            });
-            for (&id, bounds) in batch.iter().zip(new_bounds.drain(..)) {
-                if let Some(bounds) = bounds {
-                    let bounds = objects[id].set_bounds(bounds);
-                    broad.update(super::proxy(id), clearances.grown(bounds));
-                }
-            }
-        }
     }
 
     /// Two objects of the world in the order of pairs.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use solid_convex::MAGNITUDE_MAX;
 
-use super::object::Staleness;
+use super::stirred::Staleness;
 use super::{ObjectId, World};
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};

@@ -19,6 +19,7 @@ mod rays;
 mod regions;
 mod response;
 mod statistics;
+mod stirred;
 mod test;
 mod threads;
 
@@ -35,7 +36,8 @@ pub use response::Response;
 pub use statistics::Statistics;
 pub use test::TestProgress;
 
-use crate::broad::{BroadPhase, PROXY_MAX, PairId};
+use crate::bounds::Aabb;
+use crate::broad::{BroadPhase, PROXY_MAX, Proxy};
 use crate::error::{Error, Result};
 use crate::placement;
 use crate::shape::Shape;
@@ -43,8 +45,9 @@ use arena::{Arena, slot_of as proxy};
 use candidates::{Candidates, PairKey};
 use clearance::Clearances;
 use findings::Findings;
-use object::{Object, Staleness};
+use object::Object;
 use response::ResponseTable;
+use stirred::{Staleness, Stirred};
 use threads::Workers;
 
 /// How many objects there may be: the slot of each is a proxy, and slot 0 is not used.
@@ -85,8 +88,7 @@ pub struct World {
     /// Of objects that are added.
     motion: Motion,
     caching: bool,
-    /// Objects about which something changed since the candidates were brought up to date, each once; some may have been removed.
-    stirred: Vec<ObjectId>,
+    stirred: Stirred,
     /// Objects whose previous frame differs from the current one.
     displaced: Vec<ObjectId>,
     candidates: Candidates,
@@ -95,14 +97,12 @@ pub struct World {
     stale: bool,
     /// Whether the default response did.
     default_changed: bool,
-    /// Working memory: the pairs that a test examines.
-    to_examine: Vec<PairId>,
-    /// Working memory: what examining them gave.
-    #[cfg(feature = "rayon")]
-    examined: Vec<test::Examined>,
+    /// Working memory: the candidates that a test examines.
+    to_examine: Vec<pair_map::Place>,
+    /// Working memory: what examining them gave, part by part.
+    verdicts: Vec<test::Verdicts>,
     /// Working memory: the boxes of what moved.
-    #[cfg(feature = "rayon")]
-    new_bounds: Vec<Option<object::Bounds>>,
+    new_bounds: Vec<(Proxy, Aabb)>,
     workers: Workers,
     statistics: Statistics,
 }
@@ -130,16 +130,14 @@ impl World {
             boxes: options.boxes,
             motion: options.motion,
             caching: options.caching,
-            stirred: Vec::new(),
+            stirred: Stirred::default(),
             displaced: Vec::new(),
             candidates: Candidates::default(),
             findings: Findings::default(),
             stale: false,
             default_changed: false,
             to_examine: Vec::new(),
-            #[cfg(feature = "rayon")]
-            examined: Vec::new(),
-            #[cfg(feature = "rayon")]
+            verdicts: Vec::new(),
             new_bounds: Vec::new(),
             workers: Workers::default(),
             statistics: Statistics::default(),
@@ -172,9 +170,8 @@ impl World {
                 limit: OBJECTS_MAX,
             });
         }
-        let mut object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
-        let bounds = object.bounds();
-        let bounds = self.clearances.grown(object.set_bounds(bounds));
+        let object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
+        let bounds = self.clearances.grown(object.bounds());
         let id = self.objects.insert(object);
         self.added += 1;
         self.stale = true;
@@ -329,11 +326,7 @@ impl World {
 
     /// Notes what of an object in the world is out of date.
     fn stir(&mut self, id: ObjectId, what: Staleness) {
-        let staleness = &mut self.objects[id].staleness;
-        if *staleness == Staleness::Fresh {
-            self.stirred.push(id);
-        }
-        *staleness = what.max(*staleness);
+        self.stirred.stir(proxy(id), what);
         self.stale = true;
     }
 }
@@ -357,7 +350,7 @@ mod tests {
         Ok(())
     }
 
-    /// The same with many at a time: what is left behind is a share of what is there, and `stirred` holds each once.
+    /// The same with many at a time: what is left behind is a share of what is there, and what is stirred holds each once.
     #[test]
     fn what_removed_objects_leave_is_bounded() -> Result<()> {
         let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
@@ -378,7 +371,7 @@ mod tests {
             world.proceed();
             world.set_placement(hub, DAffine3::IDENTITY)?;
         }
-        assert_eq!(world.stirred.len(), 1);
+        assert_eq!(world.stirred.slots().len(), 1);
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! Fast objects: what is tested between two frames (thesis, section 2.2.2).
 
-use super::object::Staleness;
+use super::stirred::Staleness;
 use super::{ObjectId, World};
 use crate::error::{Error, Result};
 use crate::pair::Scratch;
@@ -60,7 +60,7 @@ impl World {
     /// An object that is to be elsewhere without having moved there is [`Sampled`](Motion::Sampled) until the next
     /// [`proceed`](World::proceed).
     pub fn set_motion(&mut self, id: ObjectId, motion: Motion) -> Result<()> {
-        self.object_mut(id)?.motion = motion;
+        self.object_mut(id)?.set_motion(motion);
         self.stir(id, Staleness::Bounds);
         Ok(())
     }
@@ -97,12 +97,12 @@ impl World {
             self.object(a)?;
             return Err(Error::SameObject { id: a });
         }
-        let [a, b] = [self.object(a)?.way(), self.object(b)?.way()];
+        let [a, b] = [self.object(a)?.moving(), self.object(b)?.moving()];
         impact_of(&a, &b, options, &mut Scratch::default())
     }
 
     /// Where an object is tested.
     pub fn motion(&self, id: ObjectId) -> Result<Motion> {
-        Ok(self.object(id)?.motion)
+        Ok(self.object(id)?.motion())
     }
 }

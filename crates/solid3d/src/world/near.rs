@@ -2,10 +2,9 @@
 
 use glam::DVec3;
 
-#[cfg(feature = "rayon")]
-use super::threads::{BATCH, Workers};
+use super::pair_map::Place;
+use super::threads::{PART, Workers};
 use super::{ObjectId, Response, Statistics, World};
-use crate::broad::PairId;
 use crate::pair::{self, Approach, Scratch};
 
 /// Two objects that are nearer to each other than their clearance, as they are now: see [`World::near`].
@@ -27,11 +26,8 @@ pub struct Near {
 }
 
 /// What the last search for near pairs said of a candidate.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Nearness {
-    /// Something changed since.
-    #[default]
-    Unknown,
     Far,
     Near(Near),
 }
@@ -79,45 +75,39 @@ impl World {
         if !self.caching {
             self.candidates.forget_nearness();
         }
-        let mut pairs = std::mem::take(&mut self.to_examine);
-        self.candidates.unknown(&mut pairs);
-        self.look_at_all(&pairs);
-        self.to_examine = pairs;
+        let mut places = std::mem::take(&mut self.to_examine);
+        self.candidates.unknown(&mut places);
+        self.look_at_all(&places);
+        self.to_examine = places;
         let mut near: Vec<Near> = self.candidates.near().copied().collect();
         near.sort_unstable_by_key(|near| self.key(near.a, near.b));
         near
     }
 
     /// Looks at candidates, and keeps what that gave.
-    fn look_at_all(&mut self, pairs: &[PairId]) {
+    fn look_at_all(&mut self, places: &[Place]) {
+        let share = Workers::share(self.statistics.units_for(places.len()));
         let mut workers = std::mem::take(&mut self.workers);
-        #[cfg(feature = "rayon")]
-        if Workers::share(self.statistics.units_for(pairs.len())) {
-            let mut looked = Vec::new();
-            for batch in pairs.chunks(BATCH) {
-                workers.map(batch, &mut looked, |&pair, scratch| self.look_at(pair, scratch));
-                for (&pair, looked) in batch.iter().zip(looked.drain(..)) {
-                    self.keep(pair, looked);
-                }
+        let mut looked = Vec::new();
+        for batch in places.chunks(Workers::batch(share)) {
+            workers.each_part(share, batch, &mut looked, |places, looked: &mut Vec<_>, scratch| {
+                looked.extend(places.iter().map(|&place| self.look_at(place, scratch)));
+            });
+            for (places, looked) in batch.chunks(PART).zip(&mut looked) {
+                places.iter().zip(looked.drain(..)).for_each(|(&place, looked)| self.keep(place, looked));
             }
-            self.workers = workers;
-            return;
-        }
-        for &pair in pairs {
-            let looked = self.look_at(pair, workers.own());
-            self.keep(pair, looked);
         }
         self.workers = workers;
     }
 
-    fn keep(&mut self, pair: PairId, looked: Looked) {
+    fn keep(&mut self, place: Place, looked: Looked) {
         self.statistics += looked.work;
-        self.candidates.set_nearness(pair, looked.nearness);
+        self.candidates.set_nearness(place, looked.nearness);
     }
 
     /// How near the objects of a candidate are to each other; a function of the two, their response and their clearance alone.
-    fn look_at(&self, pair: PairId, scratch: &mut Scratch) -> Looked {
-        let candidate = self.candidates.get(pair);
+    fn look_at(&self, place: Place, scratch: &mut Scratch) -> Looked {
+        let candidate = self.candidates.get(place);
         let (a, b) = (candidate.a, candidate.b);
         let mut work = Statistics::default();
         if self.responses.of(a, b) == Response::Ignore {

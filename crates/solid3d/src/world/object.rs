@@ -17,27 +17,6 @@ slotmap::new_key_type! {
 /// The bits of a place in the creation order: more than any machine will count to.
 const RANK_SHIFT: u32 = 56;
 
-/// What of an object is out of date in the candidates: each includes those before it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Staleness {
-    /// Nothing.
-    #[default]
-    Fresh,
-    /// What depends on its previous frame.
-    Previous,
-    /// All that was found about its pairs.
-    Pairs,
-    /// Its box in the broad phase.
-    Bounds,
-}
-
-/// What is computed of an object when it has moved.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
-    deformation: Aabb,
-    around: Aabb,
-}
-
 /// An object.
 #[derive(Debug)]
 pub(super) struct Object {
@@ -50,9 +29,7 @@ pub(super) struct Object {
     /// What most objects do without.
     extra: Option<Box<Extra>>,
     /// Whether its way from the previous frame is tested.
-    pub motion: Motion,
-    /// What of it is out of date.
-    pub staleness: Staleness,
+    motion: Motion,
     /// Whether the previous frame is another.
     pub displaced: bool,
     /// How many pair responses were set for it and not reset; some may be for objects that were removed since.
@@ -66,7 +43,7 @@ struct Extra {
     previous_shape: Option<Shape>,
     /// The shape of the frame before the previous one, whose memory the next deformation takes.
     spare: Option<Shape>,
-    /// How its vertices moved since the previous frame; see [`deformation`]. Up to date unless the bounds are stale, when swept.
+    /// How its vertices moved on its way from the previous frame; see [`deformation`].
     deformation: Aabb,
     /// The radius about the local origin, when its box in the broad phase is to have a fixed size.
     radius: Option<f64>,
@@ -95,7 +72,6 @@ impl Object {
             placement,
             previous_placement: None,
             extra: radius.map(|_| Box::new(Extra { radius, ..Extra::default() })),
-            staleness: Staleness::Fresh,
             displaced: false,
             pair_responses: 0,
         }
@@ -126,28 +102,38 @@ impl Object {
 
     /// On its way from the previous frame; nowhere else than it is when only that is tested, or when it stood still.
     pub fn moving(&self) -> Moving<'_> {
-        self.moving_by(self.extra.as_ref().map_or(STILL, |extra| extra.deformation))
-    }
-
-    /// The same when its bounds may be stale. Cost: linear in a shape that deformed.
-    pub fn way(&self) -> Moving<'_> {
-        let moving = self.moving_by(STILL);
-        Moving { deformation: deformation(moving.from.shape, moving.to.shape), ..moving }
-    }
-
-    fn moving_by(&self, deformation: Aabb) -> Moving<'_> {
         let from = if self.has_way() {
             Placed { shape: self.shape_on_way(), placement: self.previous_placement() }
         } else {
             self.placed()
         };
+        let deformation = self.extra.as_ref().map_or(STILL, |extra| extra.deformation);
         Moving { from, to: self.placed(), deformation }
+    }
+
+    pub fn motion(&self) -> Motion {
+        self.motion
     }
 
     /// Whether there is a way from the previous frame to be tested.
     pub fn has_way(&self) -> bool {
         let moved = || self.placement != *self.previous_placement() || self.was_deformed();
         self.motion == Motion::Swept && self.displaced && moved()
+    }
+
+    /// Sets whether its way is tested. Cost: linear in a shape that deformed.
+    pub fn set_motion(&mut self, motion: Motion) {
+        self.motion = motion;
+        self.note_deformation();
+    }
+
+    /// Brings up to date what is kept of how its shape changed.
+    fn note_deformation(&mut self) {
+        let deforms = self.has_way() && self.was_deformed();
+        let deformation = if deforms { deformation(self.previous_shape(), &self.shape) } else { STILL };
+        if let Some(extra) = &mut self.extra {
+            extra.deformation = deformation;
+        }
     }
 
     /// Whether it is a deformation of what it was in the previous frame.
@@ -160,24 +146,13 @@ impl Object {
         if self.was_deformed() { self.previous_shape() } else { &self.shape }
     }
 
-    /// What is to be known of it as it is placed now, for [`set_bounds`](Self::set_bounds).
-    pub fn bounds(&self) -> Bounds {
-        if !self.has_way() {
-            return Bounds { deformation: STILL, around: self.bounds_of(self.placed()) };
+    /// The box for the broad phase: it contains the object on its way.
+    pub fn bounds(&self) -> Aabb {
+        if self.has_way() {
+            moving_bounds(&self.moving(), |placed| self.bounds_of(placed))
+        } else {
+            self.bounds_of(self.placed())
         }
-        let deformation = deformation(self.shape_on_way(), &self.shape);
-        Bounds {
-            deformation,
-            around: moving_bounds(&self.moving_by(deformation), |placed| self.bounds_of(placed)),
-        }
-    }
-
-    /// Takes what depends on the way; gives the box for the broad phase, which contains the object on its way.
-    pub fn set_bounds(&mut self, bounds: Bounds) -> Aabb {
-        if let Some(extra) = &mut self.extra {
-            extra.deformation = bounds.deformation;
-        }
-        bounds.around
     }
 
     fn bounds_of(&self, placed: Placed) -> Aabb {
@@ -211,6 +186,7 @@ impl Object {
         let extra = self.extra_mut();
         extra.previous_shape.get_or_insert(old);
         (extra.spare, extra.radius) = (None, radius);
+        self.note_deformation();
     }
 
     /// Takes new vertex positions; it is displaced. The previous frame keeps the old ones, so the first deformation of a frame
@@ -229,12 +205,14 @@ impl Object {
         let extra = self.extra_mut();
         extra.previous_shape = old.or(extra.previous_shape.take());
         (extra.spare, extra.radius) = (None, None);
+        self.note_deformation();
         Ok(())
     }
 
     /// What is now becomes the previous frame.
     pub fn proceed(&mut self) {
         self.displaced = false;
+        self.note_deformation();
         if let Some(extra) = &mut self.extra
             && let Some(old) = extra.previous_shape.take()
             && old.is_deformation_of(&self.shape)

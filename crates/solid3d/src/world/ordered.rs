@@ -74,6 +74,17 @@ impl<T: Copy> Ordered<T> {
         self.blocks.iter().flatten().copied()
     }
 
+    /// All entries but the first so many, in order. Cost: follows the number of blocks.
+    pub fn iter_from(&self, count: usize) -> impl Iterator<Item = (PairKey, T)> {
+        let (mut blocks, mut left) = (self.blocks.iter(), count);
+        let first = blocks.find(|block| {
+            let is_here = left < block.len();
+            left -= if is_here { 0 } else { block.len() };
+            is_here
+        });
+        first.into_iter().flat_map(move |block| &block[left..]).chain(blocks.flatten()).copied()
+    }
+
     pub fn clear(&mut self) {
         self.len = 0;
         for mut block in self.blocks.drain(..) {
@@ -147,6 +158,8 @@ mod tests {
                 assert_eq!(map.len(), truth.len());
                 if step % 1000 == 0 {
                     assert!(map.iter().eq(truth.iter().map(|(&key, &value)| (key, value))));
+                    let count = rng.random_range(0..=map.len() + 1);
+                    assert!(map.iter_from(count).eq(map.iter().skip(count)));
                     assert!(
                         map.blocks.iter().all(|block| !block.is_empty() && block.capacity() == BLOCK_MAX)
                     );

@@ -6,15 +6,18 @@ use crate::broad::room::{push, resize};
 /// No place.
 const NONE: u32 = u32::MAX;
 
+/// The place of a value: it keeps it while it is there.
+pub(super) type Place = u32;
+
 /// A map from pairs. The ids of pairs are dense, but more than half of them may be of boxes that do not overlap, of which
 /// nothing is known: so they have a word each, and only what there is has more.
 #[derive(Debug)]
 pub(super) struct PairMap<T> {
     /// By pair: where its value stands.
-    places: Vec<u32>,
-    values: Vec<T>,
-    /// Where values stand that were taken out.
-    unused: Vec<u32>,
+    places: Vec<Place>,
+    values: Vec<Option<T>>,
+    /// Places without a value.
+    unused: Vec<Place>,
 }
 
 impl<T> Default for PairMap<T> {
@@ -23,27 +26,22 @@ impl<T> Default for PairMap<T> {
     }
 }
 
-impl<T: Copy> PairMap<T> {
-    /// A number above that of every pair.
-    pub fn end(&self) -> usize {
-        self.places.len()
-    }
-
-    /// Sets what is known of a pair.
-    pub fn insert(&mut self, pair: PairId, value: T) {
+impl<T> PairMap<T> {
+    /// Sets what is known of a pair; gives its place.
+    pub fn insert(&mut self, pair: PairId, value: T) -> Place {
         let at = pair as usize;
         if at >= self.places.len() {
             resize(&mut self.places, at + 1, NONE);
         }
-        if let Some(old) = self.get_mut(pair) {
-            *old = value;
-        } else if let Some(place) = self.unused.pop() {
-            self.places[at] = place;
-            self.values[place as usize] = value;
-        } else {
-            self.places[at] = self.values.len() as u32;
-            push(&mut self.values, value);
+        if self.places[at] == NONE {
+            self.places[at] = self.unused.pop().unwrap_or_else(|| {
+                push(&mut self.values, None);
+                self.values.len() as Place - 1
+            });
         }
+        let place = self.places[at];
+        self.values[place as usize] = Some(value);
+        place
     }
 
     /// Forgets a pair.
@@ -51,25 +49,29 @@ impl<T: Copy> PairMap<T> {
         let place = self.places.get_mut(pair as usize).filter(|place| **place != NONE)?;
         let place = std::mem::replace(place, NONE);
         push(&mut self.unused, place);
-        Some(self.values[place as usize])
+        self.values[place as usize].take()
     }
 
-    pub fn get(&self, pair: PairId) -> Option<&T> {
-        self.places.get(pair as usize).and_then(|&place| self.values.get(place as usize))
+    /// Where the value of a pair stands.
+    pub fn place(&self, pair: PairId) -> Option<Place> {
+        self.places.get(pair as usize).copied().filter(|&place| place != NONE)
     }
 
-    pub fn get_mut(&mut self, pair: PairId) -> Option<&mut T> {
-        self.places.get(pair as usize).and_then(|&place| self.values.get_mut(place as usize))
+    pub fn get(&self, place: Place) -> Option<&T> {
+        self.values.get(place as usize)?.as_ref()
     }
 
-    /// The pairs of which something is known.
-    pub fn keys(&self) -> impl Iterator<Item = PairId> {
-        (0..).zip(&self.places).filter(|&(_, &place)| place != NONE).map(|(pair, _)| pair)
+    pub fn get_mut(&mut self, place: Place) -> Option<&mut T> {
+        self.values.get_mut(place as usize)?.as_mut()
     }
 
-    /// What is known, and what was before it was taken out.
-    pub fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
-        self.values.iter_mut()
+    /// By place.
+    pub fn values(&self) -> &[Option<T>] {
+        &self.values
+    }
+
+    pub fn values_mut(&mut self) -> &mut [Option<T>] {
+        &mut self.values
     }
 }
 
@@ -91,17 +93,19 @@ mod tests {
         for step in 0..10_000 {
             let pair = rng.random_range(0..100);
             hits += usize::from(truth.contains_key(&pair));
-            assert_eq!(map.get(pair), truth.get(&pair));
+            assert_eq!(map.place(pair).and_then(|place| map.get(place)), truth.get(&pair));
             if rng.random_bool(0.5) {
-                map.insert(pair, step);
+                let place = map.insert(pair, step);
+                assert_eq!((map.place(pair), map.get_mut(place)), (Some(place), Some(&mut { step })));
                 truth.insert(pair, step);
             } else {
                 assert_eq!(map.remove(pair), truth.remove(&pair));
             }
-            assert_eq!(map.get_mut(pair), truth.get_mut(&pair));
             most = most.max(truth.len());
         }
-        assert!(map.keys().eq(truth.keys().copied()));
+        let mut values: Vec<_> = map.values().iter().flatten().copied().collect();
+        values.sort_unstable();
+        assert!(values.iter().eq(truth.values().collect::<std::collections::BTreeSet<_>>()));
         assert!(map.values.len() == most && (3_000..7_000).contains(&hits), "{hits} hits, {most} values");
     }
 }

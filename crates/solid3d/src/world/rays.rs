@@ -1,6 +1,5 @@
 //! Rays against all objects of a world.
 
-use super::object::{Object, Staleness};
 use super::{ObjectId, World};
 use crate::bounds::Aabb;
 use crate::error::Result;
@@ -129,22 +128,17 @@ impl World {
         mut visit: impl FnMut(ObjectId, f64) -> f64,
     ) {
         let mut until = until;
-        for &id in self.stirred.iter().filter(|&&id| self.objects.get(id).is_some_and(is_out_of_date)) {
-            if bound(&world_bounds(self.objects[id].placed())) <= until {
-                until = visit(id, until);
+        for &slot in self.stirred.slots().iter().filter(|&&slot| self.stirred.is_elsewhere(slot)) {
+            let Some(object) = self.objects.at(slot) else { continue };
+            if bound(&world_bounds(object.placed())) <= until {
+                until = visit(self.objects.id_of(slot), until);
             }
         }
         self.broad.for_each_nearest(bound, until, &mut |proxy| {
-            let id = self.objects.id_of(proxy);
-            if self.objects.get(id).is_some_and(|object| !is_out_of_date(object)) {
-                until = visit(id, until);
+            if self.objects.at(proxy).is_some() && !self.stirred.is_elsewhere(proxy) {
+                until = visit(self.objects.id_of(proxy), until);
             }
             until
         });
     }
-}
-
-/// Whether the broad phase has an earlier box of the object.
-fn is_out_of_date(object: &Object) -> bool {
-    object.staleness == Staleness::Bounds
 }

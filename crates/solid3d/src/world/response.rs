@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use slotmap::SecondaryMap;
 
-use super::object::Staleness;
+use super::stirred::Staleness;
 use super::{ObjectId, World};
 use crate::error::{Error, Result};
 

@@ -22,7 +22,6 @@ pub struct Statistics {
     pub collisions: u64,
 }
 
-#[cfg(feature = "rayon")]
 impl Statistics {
     /// What `count` candidates will cost if they are like those examined so far, in units of about a box test.
     pub(super) fn units_for(&self, count: usize) -> u64 {

@@ -6,10 +6,9 @@ use glam::DVec3;
 
 use super::candidates::{Candidate, PairKey};
 use super::object::Object;
-#[cfg(feature = "rayon")]
-use super::threads::{BATCH, Workers};
+use super::pair_map::Place;
+use super::threads::{PART, Workers};
 use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
-use crate::broad::PairId;
 use crate::error::Result;
 use crate::pair::swept::{self, Encounter, Moving};
 use crate::pair::{self, Relation, Scratch, Separation};
@@ -23,11 +22,36 @@ pub struct TestProgress {
 
 /// What examining a candidate gave.
 #[derive(Debug, Default)]
-pub(super) struct Examined {
+struct Examined {
+    verdict: Verdict,
+    work: Statistics,
+}
+
+/// What is kept of it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Verdict {
     /// Whether its response is not to ignore it.
     matters: bool,
-    found: Option<(When, Contact)>,
+    outcome: Outcome,
     axis: Option<DVec3>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Outcome {
+    #[default]
+    Apart,
+    /// A collision of which nothing is known but that it is there now.
+    Plain,
+    /// A collision of which more is known, which stands elsewhere: it is large, and most pairs have none.
+    Described,
+}
+
+/// What examining some candidates gave.
+#[derive(Debug, Default)]
+pub(super) struct Verdicts {
+    each: Vec<Verdict>,
+    /// Of those that are so, in their order.
+    described: Vec<(When, Contact)>,
     work: Statistics,
 }
 
@@ -79,9 +103,7 @@ impl World {
     pub fn test_into(&mut self, collisions: &mut Vec<Collision>) {
         self.begin_test();
         self.statistics.collisions += self.findings.len() as u64;
-        collisions.clear();
-        collisions.reserve(self.findings.len());
-        collisions.extend(self.findings.iter().cloned());
+        self.findings.copy_to(collisions);
     }
 
     /// Like [`test`](World::test), but calls `respond` with each collision as it is found, and lets it change the world: move,
@@ -150,11 +172,16 @@ impl World {
         self.refresh();
         let mut workers = std::mem::take(&mut self.workers);
         let (a, b) = self.in_order(a, b);
-        let examined = self.examine(a, b, None, workers.own());
+        let mut described = Vec::new();
+        let Examined { verdict, work } = self.examine(a, b, None, workers.own(), &mut described);
         self.workers = workers;
-        let collisions = u64::from(examined.found.is_some());
-        self.statistics += Statistics { candidates: 1, collisions, ..examined.work };
-        Ok(examined.found.map(|(when, contact)| Collision { a, b, when, contact }))
+        let found = match verdict.outcome {
+            Outcome::Apart => None,
+            Outcome::Plain => Some((When::Now, Contact::Simple)),
+            Outcome::Described => described.pop(),
+        };
+        self.statistics += Statistics { candidates: 1, collisions: u64::from(found.is_some()), ..work };
+        Ok(found.map(|(when, contact)| Collision { a, b, when, contact }))
     }
 
     /// Brings the findings up to date, and counts the candidates.
@@ -170,72 +197,81 @@ impl World {
     fn examine_changed(&mut self) -> u64 {
         self.refresh();
         let before = self.statistics.examined;
-        let mut pairs = std::mem::take(&mut self.to_examine);
-        self.candidates.take_queue(&mut pairs);
-        self.examine_all(&pairs);
-        self.to_examine = pairs;
+        let mut places = std::mem::take(&mut self.to_examine);
+        self.candidates.take_queue(&mut places);
+        self.examine_all(&places);
+        self.to_examine = places;
         self.statistics.examined - before
     }
 
     /// Examines candidates, and keeps what that gave, in their order.
-    fn examine_all(&mut self, pairs: &[PairId]) {
-        #[cfg(feature = "rayon")]
-        if Workers::share(self.statistics.units_for(pairs.len())) {
-            return self.examine_on_threads(pairs);
-        }
+    fn examine_all(&mut self, places: &[Place]) {
+        let share = Workers::share(self.statistics.units_for(places.len()));
         let mut workers = std::mem::take(&mut self.workers);
-        for &pair in pairs {
-            let examined = self.examine_candidate(pair, workers.own());
-            self.note(pair, examined);
-        }
-        self.workers = workers;
-    }
-
-    #[cfg(feature = "rayon")]
-    fn examine_on_threads(&mut self, pairs: &[PairId]) {
-        let mut workers = std::mem::take(&mut self.workers);
-        let mut examined = std::mem::take(&mut self.examined);
-        for batch in pairs.chunks(BATCH) {
-            workers.map(batch, &mut examined, |&pair, scratch| self.examine_candidate(pair, scratch));
-            for (&pair, examined) in batch.iter().zip(examined.drain(..)) {
-                self.note(pair, examined);
+        let mut verdicts = std::mem::take(&mut self.verdicts);
+        for batch in places.chunks(Workers::batch(share)) {
+            workers.each_part(share, batch, &mut verdicts, |places, verdicts: &mut Verdicts, scratch| {
+                places.iter().for_each(|&place| self.examine_candidate(place, scratch, verdicts));
+            });
+            for (places, verdicts) in batch.chunks(PART).zip(&mut verdicts) {
+                self.note(places, verdicts);
             }
         }
-        self.examined = examined;
-        self.workers = workers;
+        (self.workers, self.verdicts) = (workers, verdicts);
     }
 
-    fn examine_candidate(&self, pair: PairId, scratch: &mut Scratch) -> Examined {
-        let &Candidate { a, b, axis, .. } = self.candidates.get(pair);
-        self.examine(a, b, axis, scratch)
+    fn examine_candidate(&self, place: Place, scratch: &mut Scratch, verdicts: &mut Verdicts) {
+        let &Candidate { a, b, axis, .. } = self.candidates.get(place);
+        let Examined { verdict, work } = self.examine(a, b, axis, scratch, &mut verdicts.described);
+        verdicts.each.push(verdict);
+        verdicts.work += work;
     }
 
-    /// Keeps what examining a candidate gave.
-    fn note(&mut self, pair: PairId, examined: Examined) {
-        self.statistics += examined.work;
-        let &Candidate { a, b, found, matters, .. } = self.candidates.get(pair);
-        let found = match (found, examined.found) {
-            (None, None) => None,
-            (None, Some((when, contact))) => {
-                Some(self.findings.add(self.key(a, b), Collision { a, b, when, contact }))
+    /// Keeps what examining candidates gave.
+    fn note(&mut self, places: &[Place], verdicts: &mut Verdicts) {
+        self.statistics += std::mem::take(&mut verdicts.work);
+        let Self { candidates, findings, objects, .. } = self;
+        let mut described = verdicts.described.drain(..);
+        for (&place, verdict) in places.iter().zip(verdicts.each.drain(..)) {
+            let candidate = candidates.get_mut(place);
+            let was_plain = std::mem::replace(&mut candidate.is_plain, verdict.outcome == Outcome::Plain);
+            let mattered = std::mem::replace(&mut candidate.matters, verdict.matters);
+            candidate.axis = verdict.axis;
+            let found = match verdict.outcome {
+                Outcome::Apart => None,
+                Outcome::Plain => Some((When::Now, Contact::Simple)),
+                Outcome::Described => described.next(),
+            };
+            let &mut Candidate { a, b, found: id, .. } = candidate;
+            match (id, found) {
+                (None, None) => {}
+                // As it was.
+                (Some(_), Some(_)) if was_plain && candidate.is_plain => {}
+                (None, Some((when, contact))) => {
+                    let key = (objects[a].order, objects[b].order);
+                    candidate.found = Some(findings.add(key, Collision { a, b, when, contact }));
+                }
+                (Some(id), None) => {
+                    findings.remove(id);
+                    candidate.found = None;
+                }
+                (Some(id), Some((when, contact))) => findings.replace(id, when, contact),
             }
-            (Some(id), None) => {
-                self.findings.remove(id);
-                None
-            }
-            (Some(id), Some((when, contact))) => {
-                self.findings.replace(id, when, contact);
-                Some(id)
-            }
-        };
-        self.candidates.count += u64::from(examined.matters);
-        self.candidates.count -= u64::from(matters);
-        let candidate = self.candidates.get_mut(pair);
-        (candidate.found, candidate.axis, candidate.matters) = (found, examined.axis, examined.matters);
+            candidates.count += u64::from(verdict.matters);
+            candidates.count -= u64::from(mattered);
+        }
     }
 
-    /// Whether two objects collide, of which `a` comes first; a function of the two, their response and the axis alone.
-    fn examine(&self, a: ObjectId, b: ObjectId, axis: Option<DVec3>, scratch: &mut Scratch) -> Examined {
+    /// Whether two objects collide, of which `a` comes first; a function of the two, their response and the axis alone. What more is
+    /// known of a collision is put into `described`.
+    fn examine(
+        &self,
+        a: ObjectId,
+        b: ObjectId,
+        axis: Option<DVec3>,
+        scratch: &mut Scratch,
+        described: &mut Vec<(When, Contact)>,
+    ) -> Examined {
         let response = self.responses.of(a, b);
         if response == Response::Ignore {
             return Examined::default();
@@ -250,52 +286,68 @@ impl World {
         let cached = axis.filter(|_| self.caching);
         if let Some(axis) = cached.filter(still_separated) {
             work.cache_hits = 1;
-            return Examined { matters: true, found: None, axis: Some(axis), work };
+            return Examined {
+                verdict: Verdict { matters: true, outcome: Outcome::Apart, axis: Some(axis) },
+                work,
+            };
         }
         let before = scratch.work();
-        let (found, axis) = match (now([a, b], response, scratch), &way) {
-            (Now::Collide(contact), _) => (Some((When::Now, contact)), None),
-            (Now::Apart { axis }, None) => (None, axis),
+        let (outcome, axis) = match (now([a, b], response, scratch, described), &way) {
+            (Now::Collide(outcome), _) => (outcome, None),
+            (Now::Apart { axis }, None) => (Outcome::Apart, axis),
             (Now::Apart { .. }, Some(way)) => {
                 work.sweeps = 1;
-                on_the_way([a, b], way, response, scratch)
+                on_the_way([a, b], way, response, scratch, described)
             }
         };
         let after = scratch.work();
         (work.box_tests, work.primitive_tests) = (after.0 - before.0, after.1 - before.1);
-        Examined { matters: true, found, axis: axis.filter(|_| self.caching), work }
+        Examined { verdict: Verdict { matters: true, outcome, axis: axis.filter(|_| self.caching) }, work }
     }
 }
 
 /// What two objects do as they are.
 enum Now {
-    Collide(Contact),
+    Collide(Outcome),
     /// With an axis that separates them, where there is one to keep.
     Apart {
         axis: Option<DVec3>,
     },
 }
 
-fn now([a, b]: [&Object; 2], response: Response, scratch: &mut Scratch) -> Now {
+fn now(
+    [a, b]: [&Object; 2],
+    response: Response,
+    scratch: &mut Scratch,
+    described: &mut Vec<(When, Contact)>,
+) -> Now {
     let (placed_a, placed_b) = (a.placed(), b.placed());
     if response == Response::Simple {
         return match pair::separation(placed_a, placed_b, scratch) {
             Some(Separation { axis }) => Now::Apart { axis },
-            None => Now::Collide(Contact::Simple),
+            None => Now::Collide(Outcome::Plain),
         };
     }
     let witness = match pair::intersection(placed_a, placed_b, scratch) {
         Relation::Separated { axis } => return Now::Apart { axis },
         Relation::Common(witness) => witness,
     };
-    Now::Collide(match response {
+    let contact = match response {
         Response::Ignore | Response::Simple => Contact::Simple,
         Response::Witness => Contact::witness(placed_a, placed_b, &witness),
         Response::Smart => smart([a, b], scratch),
         Response::Curve => Contact::curve(placed_a, placed_b, &witness, scratch),
         Response::Depth => Contact::depth(placed_a, placed_b, scratch),
         Response::Contacts => Contact::contacts(placed_a, placed_b, &witness, scratch),
-    })
+    };
+    Now::Collide(describe(When::Now, contact, described))
+}
+
+fn describe(when: When, contact: Contact, described: &mut Vec<(When, Contact)>) -> Outcome {
+    // No part ever has more: so a world in which as much happens as before takes no memory.
+    described.reserve_exact(PART.saturating_sub(described.len()));
+    described.push((when, contact));
+    Outcome::Described
 }
 
 /// Whether two objects that are apart now collided on the way; else an axis, when one separates them all the way.
@@ -304,9 +356,10 @@ fn on_the_way(
     [way_a, way_b]: &[Moving; 2],
     response: Response,
     scratch: &mut Scratch,
-) -> (Option<(When, Contact)>, Option<DVec3>) {
+    described: &mut Vec<(When, Contact)>,
+) -> (Outcome, Option<DVec3>) {
     let point = match swept::encounter(way_a, way_b, scratch) {
-        Encounter::None { axis } => return (None, axis),
+        Encounter::None { axis } => return (Outcome::Apart, axis),
         Encounter::At(point) => point,
     };
     let contact = match response {
@@ -318,7 +371,7 @@ fn on_the_way(
         Response::Depth => Contact::depth(a.placed(), b.placed(), scratch),
         Response::Contacts => Contact::Contacts { point, manifolds: Arc::default() },
     };
-    (Some((When::OnTheWay, contact)), None)
+    (describe(When::OnTheWay, contact, described), None)
 }
 
 fn smart([a, b]: [&Object; 2], scratch: &mut Scratch) -> Contact {

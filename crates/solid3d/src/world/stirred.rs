@@ -1,0 +1,68 @@
+//! What changed since the candidates were brought up to date.
+
+use crate::broad::Proxy;
+use crate::broad::room::{push, resize};
+
+/// What of an object is out of date in the candidates: each includes those before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Staleness {
+    /// Nothing.
+    #[default]
+    Fresh,
+    /// What depends on its previous frame.
+    Previous,
+    /// All that was found about its pairs.
+    Pairs,
+    /// Its box in the broad phase.
+    Bounds,
+}
+
+/// Objects about which something changed, by their slots; some may have been removed since, and others added in their slots.
+///
+/// Apart from the objects, because a test looks at this of both objects of every pair: a byte for each is at hand always.
+#[derive(Debug, Default)]
+pub(super) struct Stirred {
+    /// By slot, as far as any was stirred.
+    staleness: Vec<Staleness>,
+    /// Those that are not fresh, each once.
+    slots: Vec<Proxy>,
+}
+
+impl Stirred {
+    /// Notes what of an object is out of date.
+    pub fn stir(&mut self, slot: Proxy, what: Staleness) {
+        let at = slot as usize;
+        if at >= self.staleness.len() {
+            resize(&mut self.staleness, at + 1, Staleness::Fresh);
+        }
+        let staleness = &mut self.staleness[at];
+        if *staleness == Staleness::Fresh {
+            push(&mut self.slots, slot);
+        }
+        *staleness = what.max(*staleness);
+    }
+
+    pub fn of(&self, slot: Proxy) -> Staleness {
+        self.staleness.get(slot as usize).copied().unwrap_or_default()
+    }
+
+    /// Whether the broad phase has an earlier box of an object.
+    pub fn is_elsewhere(&self, slot: Proxy) -> bool {
+        self.of(slot) == Staleness::Bounds
+    }
+
+    pub fn slots(&self) -> &[Proxy] {
+        &self.slots
+    }
+
+    pub fn sort(&mut self) {
+        self.slots.sort_unstable();
+    }
+
+    /// Notes that nothing is out of date any more.
+    pub fn clear(&mut self) {
+        for slot in self.slots.drain(..) {
+            self.staleness[slot as usize] = Staleness::Fresh;
+        }
+    }
+}
