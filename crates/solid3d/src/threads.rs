@@ -35,6 +35,18 @@ pub(crate) fn first_part_where<T: Sync>(
     items.chunks(part).position(is)
 }
 
+/// Does two things: at the same time where there is another thread and it is worth it, else one after the other.
+pub(crate) fn both(worth: bool, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
+    #[cfg(feature = "rayon")]
+    if share(usize::from(worth), 1) {
+        rayon::join(one, other);
+        return;
+    }
+    let _ = worth;
+    one();
+    other();
+}
+
 /// Whether so many elements are worth another thread, there is one, and it may be asked.
 #[cfg(feature = "rayon")]
 pub(crate) fn share(elements: usize, enough: usize) -> bool {

@@ -24,10 +24,34 @@ pub(crate) fn push<T>(vector: &mut Vec<T>, element: T) {
     vector.push(element);
 }
 
+/// Adds elements.
+#[cfg(feature = "rayon")]
+pub(crate) fn extend<T: Copy>(vector: &mut Vec<T>, elements: &[T]) {
+    room(vector, vector.len() + elements.len());
+    vector.extend_from_slice(elements);
+}
+
 /// Makes a vector longer.
 pub(crate) fn resize<T: Clone>(vector: &mut Vec<T>, len: usize, element: T) {
     room(vector, len);
     vector.resize(len, element);
+}
+
+/// The same, of many elements on the threads of the current pool: memory that the machine gives for the first time it has to clear,
+/// which takes as long as to fill it.
+pub(crate) fn resize_on_threads<T: Clone + Send + Sync>(vector: &mut Vec<T>, len: usize, element: T) {
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        /// Fewer bytes than this are not worth another thread.
+        const BYTES_MANY: usize = 1 << 16;
+        let added = len.saturating_sub(vector.len());
+        if crate::threads::share(added * size_of::<T>(), BYTES_MANY) {
+            room(vector, len);
+            return vector.par_extend(rayon::iter::repeat_n(element, added));
+        }
+    }
+    resize(vector, len, element);
 }
 
 #[cfg(test)]

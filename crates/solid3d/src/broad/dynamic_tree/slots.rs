@@ -4,12 +4,18 @@
 //! threads may work on them. What concerns all of them is noted by each part and joined in their order. So everything is as if
 //! the boxes had been told one by one.
 
+use fearless_simd::Simd;
+use solid_convex::simd::{dispatch, level};
+
 use super::fat_box::FatBox;
 use super::status::Status;
 use crate::bounds::Aabb;
+#[cfg(feature = "rayon")]
+use crate::broad::room::extend;
+use crate::broad::room::push;
 use crate::broad::{Proxy, is_ordered, is_valid};
 #[cfg(feature = "rayon")]
-use crate::threads::{first_part_where, for_each_part};
+use crate::threads::{first_part_where, for_each_part, share};
 
 /// What is kept of the boxes of some proxies that follow one another.
 pub(super) struct Slots<'a> {
@@ -80,25 +86,105 @@ impl Slots<'_> {
     }
 }
 
-/// What became of many boxes.
-#[cfg(feature = "rayon")]
+/// What became of the boxes since the last flush.
 #[derive(Debug, Default)]
-pub(super) struct News {
+pub(super) struct Notes {
     /// Whether any is not what it was.
     pub changed: bool,
-    /// How many were taken.
-    pub taken: usize,
-    /// Those that moved for the first time since the last flush.
+    /// Those that moved, each once, unless it is all; some may have been removed since.
     pub moved: Vec<Proxy>,
-    /// Those to be placed in the tree that were not before.
-    pub queued: Vec<Proxy>,
-    /// The first that was refused; those after it were not looked at.
-    pub refused: Option<usize>,
+    /// Whether so many moved that no more of them are noted.
+    pub all_moved: bool,
+    /// Those whose fat boxes are not in the tree as they are, each once; some may have been removed since.
+    pub queue: Vec<Proxy>,
 }
+
+impl Notes {
+    /// `moved_max` is how many that moved are noted at most.
+    #[inline(always)]
+    pub fn note(&mut self, proxy: Proxy, fate: Fate, moved_max: usize) {
+        self.changed |= fate.changed;
+        if fate.moved && !self.all_moved {
+            push(&mut self.moved, proxy);
+            self.all_moved = self.moved.len() > moved_max;
+        }
+        if fate.queued {
+            push(&mut self.queue, proxy);
+        }
+    }
+
+    /// Adds what was noted after this.
+    #[cfg(feature = "rayon")]
+    fn append(&mut self, later: &Notes, moved_max: usize) {
+        self.changed |= later.changed;
+        self.all_moved |= later.all_moved || self.moved.len() + later.moved.len() > moved_max;
+        if !self.all_moved {
+            extend(&mut self.moved, &later.moved);
+        }
+        extend(&mut self.queue, &later.queue);
+    }
+}
+
+/// What is done with many boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Work {
+    Insert,
+    Update,
+}
+
+impl Slots<'_> {
+    /// Does a work with boxes one after the other, until one is refused: how many were not.
+    fn each(&mut self, work: Work, boxes: &[(Proxy, Aabb)], notes: &mut Notes, moved_max: usize) -> usize {
+        // Nothing here is written in vectors, but the compiler makes some where it may use wide ones.
+        dispatch!(level(), simd => self.each_with(simd, work, boxes, notes, moved_max))
+    }
+
+    #[inline(always)]
+    fn each_with<S: Simd>(
+        &mut self,
+        _simd: S,
+        work: Work,
+        boxes: &[(Proxy, Aabb)],
+        notes: &mut Notes,
+        moved_max: usize,
+    ) -> usize {
+        for (i, (proxy, bounds)) in boxes.iter().enumerate() {
+            let fate = match work {
+                Work::Insert => self.insert(*proxy, bounds),
+                Work::Update => self.update(*proxy, bounds),
+            };
+            match fate {
+                Some(fate) => notes.note(*proxy, fate, moved_max),
+                None => return i,
+            }
+        }
+        boxes.len()
+    }
+
+    /// Does a work with many boxes, as if one after the other. How many were taken, and the first that was refused, if one was.
+    pub fn many(
+        mut self,
+        work: Work,
+        boxes: &[(Proxy, Aabb)],
+        notes: &mut Notes,
+        moved_max: usize,
+    ) -> (usize, Option<usize>) {
+        #[cfg(feature = "rayon")]
+        if share(boxes.len(), MANY) && ascend(boxes) {
+            return self.on_threads(work, boxes, notes, moved_max);
+        }
+        let taken = self.each(work, boxes, notes, moved_max);
+        (taken, (taken < boxes.len()).then_some(taken))
+    }
+}
+
+/// So many boxes, of some 5 ns each, are worth another thread.
+#[cfg(feature = "rayon")]
+const MANY: usize = 1 << 12;
 
 /// Boxes in one part.
 #[cfg(feature = "rayon")]
-pub(super) const PART: usize = 1 << 10;
+const PART: usize = 1 << 10;
 
 #[cfg(feature = "rayon")]
 impl<'a> Slots<'a> {
@@ -117,49 +203,47 @@ impl<'a> Slots<'a> {
         }
     }
 
-    /// Does something with each of many boxes, whose proxies must ascend. What became of them, part by part.
-    pub fn for_each(
+    /// See [`many`](Self::many); the proxies ascend.
+    fn on_threads(
         mut self,
+        work: Work,
         boxes: &[(Proxy, Aabb)],
-        note_moved: bool,
-        work: impl Fn(&mut Slots, Proxy, &Aabb) -> Option<Fate> + Sync + Send,
-    ) -> Vec<News> {
+        notes: &mut Notes,
+        moved_max: usize,
+    ) -> (usize, Option<usize>) {
         struct Part<'a, 'b> {
-            boxes: &'b [(Proxy, Aabb)],
             slots: Slots<'a>,
-            news: News,
+            boxes: &'b [(Proxy, Aabb)],
+            notes: Notes,
+            taken: usize,
         }
         let mut parts: Vec<Part> = (boxes.chunks(PART))
             .map(|boxes| {
                 let end = boxes.last().map_or(0, |(proxy, _)| *proxy as usize + 1);
-                Part { boxes, slots: self.split_off(end), news: News::default() }
+                let notes = Notes { all_moved: notes.all_moved, ..Notes::default() };
+                Part { slots: self.split_off(end), boxes, notes, taken: 0 }
             })
             .collect();
         for_each_part(&mut parts, 1, 1, |_, parts| {
-            for Part { boxes, slots, news } in parts {
-                for (i, (proxy, bounds)) in boxes.iter().enumerate() {
-                    let Some(fate) = work(slots, *proxy, bounds) else {
-                        news.refused = Some(i);
-                        break;
-                    };
-                    news.changed |= fate.changed;
-                    news.taken += 1;
-                    if fate.moved && note_moved {
-                        news.moved.push(*proxy);
-                    }
-                    if fate.queued {
-                        news.queued.push(*proxy);
-                    }
-                }
+            for Part { slots, boxes, notes, taken } in parts {
+                *taken = slots.each(work, boxes, notes, moved_max);
             }
         });
-        parts.into_iter().map(|part| part.news).collect()
+        let (mut taken, mut refused) = (0, None);
+        for (i, part) in parts.iter().enumerate() {
+            notes.append(&part.notes, moved_max);
+            taken += part.taken;
+            if refused.is_none() && part.taken < part.boxes.len() {
+                refused = Some(i * PART + part.taken);
+            }
+        }
+        (taken, refused)
     }
 }
 
 /// Whether proxies ascend.
 #[cfg(feature = "rayon")]
-pub(super) fn ascend(boxes: &[(Proxy, Aabb)]) -> bool {
+fn ascend(boxes: &[(Proxy, Aabb)]) -> bool {
     let is_before = |(a, _): &(Proxy, Aabb), (b, _): &(Proxy, Aabb)| a < b;
     first_part_where(boxes, PART, 1, |part| !part.is_sorted_by(is_before)).is_none()
         && (PART..boxes.len()).step_by(PART).all(|next| is_before(&boxes[next - 1], &boxes[next]))
