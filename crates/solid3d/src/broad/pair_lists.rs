@@ -90,6 +90,11 @@ impl PairLists {
         resize(&mut self.heads, proxies, END);
     }
 
+    /// Gives back what room there is for more proxies.
+    pub fn trim(&mut self) {
+        self.heads.shrink_to_fit();
+    }
+
     /// Adds a pair that is not there yet.
     pub fn insert(&mut self, a: Proxy, b: Proxy, overlaps: bool) -> PairId {
         let id = self.take_slot();

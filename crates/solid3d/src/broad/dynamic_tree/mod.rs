@@ -87,6 +87,11 @@ impl DynamicTree {
         self.status.get(proxy as usize).is_some_and(|s| s.is(Status::ALIVE))
     }
 
+    /// More queued boxes than this are not placed one by one.
+    fn queue_max(&self) -> usize {
+        REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN)
+    }
+
     /// All boxes, and what is noted of them.
     fn slots(&mut self) -> (Slots<'_>, &mut Notes) {
         let Self { tight, fat, status, notes, .. } = self;
@@ -122,8 +127,18 @@ impl DynamicTree {
         unreachable!("such a box of such a proxy is not refused")
     }
 
+    /// Gives back what room there is for more boxes. After many have changed, which may be long before many change again.
+    fn trim(&mut self) {
+        self.tight.shrink_to_fit();
+        self.fat.shrink_to_fit();
+        self.status.shrink_to_fit();
+        self.tree.places.shrink_to_fit();
+        self.pairs.trim();
+    }
+
     /// Builds the tree anew from all living boxes.
     fn rebuild(&mut self) {
+        self.trim();
         let Self { status, fat, tree, .. } = self;
         for s in status.iter_mut() {
             s.set(Status::IN_TREE, s.is(Status::ALIVE));
@@ -221,7 +236,7 @@ impl DynamicTree {
 
     /// Brings the tree and the pairs of fat boxes up to date.
     fn admit_queued(&mut self) {
-        let few = self.notes.queue.len() <= REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN);
+        let few = self.notes.queue.len() <= self.queue_max();
         if few {
             // Boxes that are near one another find the same nodes, and those are then at hand. Since the tree was built, its nodes are
             // about in the order of space.
@@ -247,11 +262,9 @@ impl BroadPhase for DynamicTree {
     fn insert(&mut self, proxy: Proxy, bounds: Aabb) {
         assert_valid(proxy, &bounds);
         self.grow(proxy as usize + 1);
-        let moved_max = self.moved_max();
         let (mut slots, notes) = self.slots();
-        match slots.insert(proxy, &bounds) {
-            Some(fate) => notes.note(proxy, fate, moved_max),
-            None => self.refuse_insert(proxy, &bounds),
+        if !slots.insert(proxy, &bounds, notes) {
+            self.refuse_insert(proxy, &bounds);
         }
         self.alive += 1;
     }
@@ -260,9 +273,8 @@ impl BroadPhase for DynamicTree {
     fn update(&mut self, proxy: Proxy, bounds: Aabb) {
         let moved_max = self.moved_max();
         let (mut slots, notes) = self.slots();
-        match slots.update(proxy, &bounds) {
-            Some(fate) => notes.note(proxy, fate, moved_max),
-            None => self.refuse_update(proxy, &bounds),
+        if !slots.update(proxy, &bounds, notes, moved_max) {
+            self.refuse_update(proxy, &bounds);
         }
     }
 
@@ -316,6 +328,8 @@ impl BroadPhase for DynamicTree {
         for proxy in self.notes.queue.drain(..) {
             self.status[proxy as usize].set(Status::QUEUED, false);
         }
+        // The room that most flushes need: of more, all is built anew.
+        self.notes.queue.shrink_to(self.queue_max());
         if std::mem::take(&mut self.notes.all_moved) {
             self.status.iter_mut().for_each(|status| status.set(Status::MOVED, false));
         } else {
@@ -383,7 +397,10 @@ impl BroadPhase for DynamicTree {
             }
         }
         self.pairs.for_each_known(|[a, b], overlaps| {
-            assert!(self.notes.changed || overlaps == overlap(&self.tight, a, b), "pair ({a}, {b}): {overlaps}");
+            assert!(
+                self.notes.changed || overlaps == overlap(&self.tight, a, b),
+                "pair ({a}, {b}): {overlaps}"
+            );
             let (s, t) = (self.status[a as usize], self.status[b as usize]);
             assert!(
                 s.is(Status::IN_TREE) && t.is(Status::IN_TREE),

@@ -4,9 +4,6 @@
 //! threads may work on them. What concerns all of them is noted by each part and joined in their order. So everything is as if
 //! the boxes had been told one by one.
 
-use fearless_simd::Simd;
-use solid_convex::simd::{dispatch, level};
-
 use super::fat_box::FatBox;
 use super::status::Status;
 use crate::bounds::Aabb;
@@ -26,17 +23,6 @@ pub(super) struct Slots<'a> {
     pub status: &'a mut [Status],
 }
 
-/// What became of a box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Fate {
-    /// It is not what it was.
-    pub changed: bool,
-    /// It moved for the first time since the last flush.
-    pub moved: bool,
-    /// It is to be placed in the tree, and was not to be before.
-    pub queued: bool,
-}
-
 impl Slots<'_> {
     /// The slot of a proxy, if it is one of these.
     #[inline(always)]
@@ -45,44 +31,57 @@ impl Slots<'_> {
         Some((self.tight.get_mut(slot)?, self.fat.get_mut(slot)?, self.status.get_mut(slot)?))
     }
 
-    /// Moves a box. `None` if the proxy is not in use, or the box not valid.
+    /// Moves a box. False if the proxy is not in use, or the box not valid.
     #[inline(always)]
-    pub fn update(&mut self, proxy: Proxy, bounds: &Aabb) -> Option<Fate> {
+    pub fn update(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes, moved_max: usize) -> bool {
         if let Some((tight, fat, status)) = self.slot(proxy)
             // Nearly all stay inside. A fat box is finite: so is what lies in it.
             && fat.contains(bounds) & is_ordered(bounds) & status.is(Status::ALIVE)
         {
-            let changed = *tight != *bounds;
-            if changed {
+            if *tight != *bounds {
                 *tight = *bounds;
+                notes.changed = true;
+                if status.put(Status::MOVED) {
+                    notes.note_moved(proxy, moved_max);
+                }
             }
-            let moved = changed && status.put(Status::MOVED);
-            return Some(Fate { changed, moved, queued: false });
+            return true;
         }
-        self.leave(proxy, bounds)
+        self.leave(proxy, bounds, notes, moved_max)
     }
 
     /// Gives a box another fat box, since it left the one that it had.
     #[inline(never)]
-    fn leave(&mut self, proxy: Proxy, bounds: &Aabb) -> Option<Fate> {
-        let (tight, fat, status) = self.slot(proxy)?;
+    fn leave(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes, moved_max: usize) -> bool {
+        let Some((tight, fat, status)) = self.slot(proxy) else { return false };
         if !status.is(Status::ALIVE) || !is_valid(bounds) {
-            return None;
+            return false;
         }
         let was = std::mem::replace(tight, *bounds);
         *fat = FatBox::with_room(proxy, &was, bounds);
-        Some(Fate { changed: true, moved: status.put(Status::MOVED), queued: status.put(Status::QUEUED) })
+        notes.changed = true;
+        if status.put(Status::MOVED) {
+            notes.note_moved(proxy, moved_max);
+        }
+        if status.put(Status::QUEUED) {
+            push(&mut notes.queue, proxy);
+        }
+        true
     }
 
-    /// Adds a box. `None` if the proxy is in use, or the box not valid.
-    pub fn insert(&mut self, proxy: Proxy, bounds: &Aabb) -> Option<Fate> {
-        let (tight, fat, status) = self.slot(proxy)?;
+    /// Adds a box. False if the proxy is in use, or the box not valid.
+    pub fn insert(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes) -> bool {
+        let Some((tight, fat, status)) = self.slot(proxy) else { return false };
         if !is_valid(bounds) || !status.put(Status::ALIVE) {
-            return None;
+            return false;
         }
         *tight = *bounds;
         *fat = FatBox::with_room(proxy, bounds, bounds);
-        Some(Fate { changed: true, moved: false, queued: status.put(Status::QUEUED) })
+        notes.changed = true;
+        if status.put(Status::QUEUED) {
+            push(&mut notes.queue, proxy);
+        }
+        true
     }
 }
 
@@ -100,16 +99,12 @@ pub(super) struct Notes {
 }
 
 impl Notes {
-    /// `moved_max` is how many that moved are noted at most.
+    /// Notes that a box moved for the first time since the last flush; of more than `moved_max` only that they are so many.
     #[inline(always)]
-    pub fn note(&mut self, proxy: Proxy, fate: Fate, moved_max: usize) {
-        self.changed |= fate.changed;
-        if fate.moved && !self.all_moved {
+    fn note_moved(&mut self, proxy: Proxy, moved_max: usize) {
+        if !self.all_moved {
             push(&mut self.moved, proxy);
             self.all_moved = self.moved.len() > moved_max;
-        }
-        if fate.queued {
-            push(&mut self.queue, proxy);
         }
     }
 
@@ -135,30 +130,13 @@ pub(super) enum Work {
 impl Slots<'_> {
     /// Does a work with boxes one after the other, until one is refused: how many were not.
     fn each(&mut self, work: Work, boxes: &[(Proxy, Aabb)], notes: &mut Notes, moved_max: usize) -> usize {
-        // Nothing here is written in vectors, but the compiler makes some where it may use wide ones.
-        dispatch!(level(), simd => self.each_with(simd, work, boxes, notes, moved_max))
-    }
-
-    #[inline(always)]
-    fn each_with<S: Simd>(
-        &mut self,
-        _simd: S,
-        work: Work,
-        boxes: &[(Proxy, Aabb)],
-        notes: &mut Notes,
-        moved_max: usize,
-    ) -> usize {
-        for (i, (proxy, bounds)) in boxes.iter().enumerate() {
-            let fate = match work {
-                Work::Insert => self.insert(*proxy, bounds),
-                Work::Update => self.update(*proxy, bounds),
-            };
-            match fate {
-                Some(fate) => notes.note(*proxy, fate, moved_max),
-                None => return i,
+        let refused = match work {
+            Work::Insert => boxes.iter().position(|(proxy, bounds)| !self.insert(*proxy, bounds, notes)),
+            Work::Update => {
+                boxes.iter().position(|(proxy, bounds)| !self.update(*proxy, bounds, notes, moved_max))
             }
-        }
-        boxes.len()
+        };
+        refused.unwrap_or(boxes.len())
     }
 
     /// Does a work with many boxes, as if one after the other. How many were taken, and the first that was refused, if one was.
