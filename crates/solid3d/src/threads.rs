@@ -86,6 +86,11 @@ mod tests {
             assert!(numbers.iter().enumerate().all(|(i, &number)| number == i / 7));
             assert_eq!(first_part_where(&numbers, 7, 1, |part| part[0] >= 20), Some(20));
             assert_eq!(first_part_where(&numbers, 7, 1, |part| part[0] > 1000), None);
+            let (mut one, mut other) = (0, 0);
+            for worth in [true, false] {
+                both(worth, || one += 1, || other += 2);
+            }
+            assert_eq!((one, other), (2, 4));
         };
         run();
         alone(run);

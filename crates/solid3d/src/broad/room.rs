@@ -73,4 +73,20 @@ mod tests {
         assert!(growths < 100, "{growths} growths");
         assert!(pushed.iter().copied().eq(1..=100_000));
     }
+
+    /// Law: on threads or not, a vector is made longer by the same elements, and shorter.
+    #[test]
+    fn threads_make_a_vector_as_long() {
+        let run = || {
+            let mut vector = vec![1_u64; 10];
+            for len in [10, 100_000, 100_001, 50, 200_000] {
+                resize_on_threads(&mut vector, len, 7);
+                assert_eq!(vector.len(), len);
+                assert!(vector.iter().zip(0..).all(|(&x, i)| x == if i < 10 { 1 } else { 7 }), "{len}");
+            }
+        };
+        run();
+        #[cfg(feature = "rayon")]
+        rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap().install(run);
+    }
 }

@@ -279,16 +279,22 @@ impl BroadPhase for DynamicTree {
     }
 
     fn insert_many(&mut self, boxes: &[(Proxy, Aabb)]) {
-        let end = boxes.iter().map(|(proxy, _)| *proxy).filter(|&proxy| proxy <= PROXY_MAX).max();
-        self.grow(end.map_or(0, |end| end as usize + 1));
-        let moved_max = self.moved_max();
-        let (slots, notes) = self.slots();
-        let queued = notes.queue.len() + boxes.len();
-        room(&mut notes.queue, queued);
-        let (taken, refused) = slots.many(Work::Insert, boxes, notes, moved_max);
-        self.alive += taken;
-        if let Some(&(proxy, bounds)) = refused.and_then(|refused| boxes.get(refused)) {
-            self.refuse_insert(proxy, &bounds);
+        // Of proxies that ascend this is the greatest; for others room is made as they come.
+        let last = boxes.iter().map(|(proxy, _)| *proxy).rfind(|&proxy| proxy <= PROXY_MAX);
+        self.grow(last.map_or(0, |last| last as usize + 1));
+        let queued = self.notes.queue.len() + boxes.len();
+        room(&mut self.notes.queue, queued);
+        let mut rest = boxes;
+        // Ends, because there are fewer boxes each time.
+        while !rest.is_empty() {
+            let moved_max = self.moved_max();
+            let (slots, notes) = self.slots();
+            let (taken, refused) = slots.many(Work::Insert, rest, notes, moved_max);
+            self.alive += taken;
+            let Some(refused) = refused else { return };
+            let (proxy, bounds) = rest[refused];
+            self.insert(proxy, bounds);
+            rest = &rest[refused + 1..];
         }
     }
 

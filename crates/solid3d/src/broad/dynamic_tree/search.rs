@@ -12,8 +12,8 @@ const NODES: [usize; 2] = [32, 512];
 /// Pieces that are searched before their pairs are handed on: what these take is bounded by it, and threads have enough of them.
 const PIECES: usize = 16;
 
-/// So many pieces are worth another thread.
-const PIECES_MANY: usize = 4;
+/// So many nodes, of some 0.3 us each, are worth another thread.
+const NODES_MANY: usize = 512;
 
 /// About so many times pairs are handed on in all: meanwhile the next are sought.
 const ROUNDS: usize = 8;
@@ -49,6 +49,8 @@ impl Search {
         next.resize_with(PIECES, Piece::default);
         let count = tree.nodes.len();
         let nodes = (count / (PIECES * ROUNDS)).clamp(NODES[0], NODES[1]);
+        let worth = count >= NODES_MANY;
+        let enough = if worth { 1 } else { usize::MAX };
         let mut visits = 0;
         for first in (0..count).step_by(nodes * PIECES) {
             let pieces = PIECES.min((count - first).div_ceil(nodes));
@@ -60,8 +62,8 @@ impl Search {
                 }
             };
             both(
-                pieces >= PIECES_MANY,
-                || for_each_part(next, 1, PIECES_MANY, search),
+                worth,
+                || for_each_part(next, 1, enough, search),
                 || done.iter().flat_map(|piece| &piece.found).for_each(&mut visit),
             );
             visits += next.iter().map(|piece| piece.visits).sum::<u64>();

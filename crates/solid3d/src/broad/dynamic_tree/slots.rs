@@ -198,7 +198,14 @@ impl<'a> Slots<'a> {
         let mut parts: Vec<Part> = (boxes.chunks(PART))
             .map(|boxes| {
                 let end = boxes.last().map_or(0, |(proxy, _)| *proxy as usize + 1);
-                let notes = Notes { all_moved: notes.all_moved, ..Notes::default() };
+                let moved_max = if notes.all_moved || work == Work::Insert { 0 } else { boxes.len() };
+                let queue_max = if work == Work::Insert { boxes.len() } else { 0 };
+                let notes = Notes {
+                    changed: false,
+                    moved: Vec::with_capacity(moved_max),
+                    all_moved: notes.all_moved,
+                    queue: Vec::with_capacity(queue_max),
+                };
                 Part { slots: self.split_off(end), boxes, notes, taken: 0 }
             })
             .collect();
