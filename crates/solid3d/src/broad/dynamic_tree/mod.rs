@@ -13,6 +13,9 @@
 //! one by one, each of which goes down from the root. Either path gives the same pairs. (A million boxes: 0.3 s at first, where a
 //! search for each box took 0.85 s.)
 //!
+//! With the feature `rayon`, where there is much to do, boxes that are told many at a time, the pass over all pairs and all of a
+//! rebuild are shared among threads; pairs that were found are linked by one of them while the others seek the next.
+//!
 //! What is done for everything that moves is free of branches and reads memory in order, or many places at a time: while all move
 //! and stay inside, a frame of 10,000 boxes takes 97 us, where the same work with branches took 240 us.
 
