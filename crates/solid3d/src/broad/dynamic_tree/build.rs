@@ -10,6 +10,8 @@
 //! The upper levels are cut first, into ranges small enough that there are many of them. Each is then planned, which says how many nodes
 //! it takes, and hung into its own stretch of the nodes: both on all threads. Ranges depend on the boxes alone, so the tree does.
 
+use std::ops::Range;
+
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
@@ -17,10 +19,10 @@ use super::fat_box::FatBox;
 use super::node::{Child, Node, Place, PlaceCell, WIDTH};
 use super::tree::{ROOT, Tree};
 use crate::broad::Proxy;
-use crate::broad::room::resize_on_threads;
-use crate::threads::for_each_part;
+use crate::broad::room::{push, resize_on_threads, room};
 #[cfg(feature = "rayon")]
 use crate::threads::share;
+use crate::threads::{both, for_each_part};
 
 /// From this depth on ranges are halved by order instead of by code: with 2^28 leaves at most 28 more levels follow,
 /// fewer than `DEPTH_MAX` in all.
@@ -38,121 +40,165 @@ const PART: usize = 1 << 11;
 /// So many, each of some 60 ns, are worth another thread.
 const MANY: usize = 1 << 13;
 
-/// So many subtrees are.
-const SUBTREES_MANY: usize = 4;
+/// So many nodes to make are.
+const NODES_MANY: usize = 1 << 10;
 
-/// Makes `tree` a tree of the given leaves, whose boxes are found in `boxes` by proxy.
-pub(super) fn build(tree: &mut Tree, leaves: impl Iterator<Item = Proxy>, boxes: &[FatBox]) {
-    tree.free.clear();
-    // Code in the high half, proxy in the low half: sorting is a sort of plain integers.
-    let mut order: Vec<u64> = Vec::with_capacity(boxes.len());
-    order.extend(leaves.map(u64::from));
-    if order.is_empty() {
-        tree.nodes.clear();
-        tree.nodes.push(Node::empty(Place::NONE));
-        return;
-    }
-    encode(&mut order, boxes);
-    let mut upper = Upper::default();
-    upper.cut(&mut order, Place::NONE, boxes, 1);
-    hang(tree, upper, boxes);
-}
-
-/// The upper levels of a tree in the making.
+/// A tree in the making, kept for its memory.
 #[derive(Debug, Default)]
-struct Upper<'a> {
-    /// Each before those below it; leaves hang in them, what else is below does not yet.
-    nodes: Vec<Node>,
-    /// Leaves in `nodes`.
+pub(super) struct Builder {
+    /// The leaves: code in the high half, proxy in the low half. So sorting is a sort of plain integers.
+    order: Vec<u64>,
+    /// The upper levels, each node before those below it; leaves hang in them, what else is below does not yet.
+    upper: Vec<Node>,
+    /// Leaves in the upper levels.
     leaves: Vec<(Proxy, Place)>,
-    below: Vec<Subtree<'a>>,
+    /// What is below the upper levels, in order.
+    below: Vec<Subtree>,
+    /// How many of `below` there are.
+    subtrees: usize,
 }
 
 /// A subtree in the making.
 #[derive(Debug)]
-struct Subtree<'a> {
-    range: &'a mut [u64],
+struct Subtree {
+    /// Its leaves in the order.
+    leaves: Range<usize>,
     depth: usize,
     /// Where its root hangs.
     place: Place,
     /// How it is cut: of each range of more than `CUT_BY_CODE_MIN` leaves, each before those in it, the number of pieces and their ends.
     plan: Vec<u32>,
-    nodes: usize,
+    /// What its nodes are called.
+    nodes: Range<usize>,
 }
 
-impl<'a> Upper<'a> {
-    /// Cuts a range until what is left is small.
-    fn cut(&mut self, mut range: &'a mut [u64], place: Place, boxes: &[FatBox], depth: usize) {
-        if range.len() <= PART {
-            self.below.push(Subtree { range, depth, place, plan: Vec::new(), nodes: 0 });
+impl Builder {
+    /// Makes `tree` a tree of the given leaves, whose boxes are found in `boxes` by proxy.
+    pub fn build(&mut self, tree: &mut Tree, leaves: impl Iterator<Item = Proxy>, boxes: &[FatBox]) {
+        tree.free.clear();
+        self.order.clear();
+        room(&mut self.order, boxes.len());
+        self.order.extend(leaves.map(u64::from));
+        if self.order.is_empty() {
+            tree.nodes.clear();
+            tree.nodes.push(Node::empty(Place::NONE));
             return;
         }
-        let at = self.nodes.len() as u32;
-        self.nodes.push(Node::empty(place));
+        encode(&mut self.order, boxes);
+        self.upper.clear();
+        self.leaves.clear();
+        self.subtrees = 0;
+        self.cut(0..self.order.len(), Place::NONE, boxes, 1);
+        plan(&mut self.below[..self.subtrees], 0, &mut self.order, boxes);
+        self.hang(tree, boxes);
+    }
+
+    /// Cuts a range until what is left is small.
+    fn cut(&mut self, leaves: Range<usize>, place: Place, boxes: &[FatBox], depth: usize) {
+        if leaves.len() <= PART {
+            if self.subtrees == self.below.len() {
+                let (leaves, nodes) = (0..0, 0..0);
+                push(&mut self.below, Subtree { leaves, depth, place, plan: Vec::new(), nodes });
+            }
+            let subtree = &mut self.below[self.subtrees];
+            (subtree.leaves, subtree.depth, subtree.place) = (leaves, depth, place);
+            self.subtrees += 1;
+            return;
+        }
+        let at = self.upper.len() as u32;
+        self.upper.push(Node::empty(place));
         let mut ends = [0; WIDTH];
-        let pieces = split(range, boxes, depth, &mut ends);
-        let mut start = 0;
+        let pieces = split(&mut self.order[leaves.clone()], boxes, depth, &mut ends);
+        let mut start = leaves.start;
         for &end in &ends[..pieces] {
-            let (piece, rest) = range.split_at_mut(end - start);
-            (start, range) = (end, rest);
-            let lane = self.nodes[at as usize].count();
-            let here = Place::new(at, lane);
-            if let [entry] = *piece {
-                let leaf = proxy(entry);
-                self.nodes[at as usize].push(Child::leaf(leaf), &boxes[leaf as usize]);
+            let piece = start..leaves.start + end;
+            start = piece.end;
+            let node = &mut self.upper[at as usize];
+            let here = Place::new(at, node.count());
+            if piece.len() == 1 {
+                let leaf = proxy(self.order[piece.start]);
+                node.push(Child::leaf(leaf), &boxes[leaf as usize]);
                 self.leaves.push((leaf, here));
             } else {
                 // What hangs there, and its box, is known later.
-                self.nodes[at as usize].push(Child::node(ROOT), &FatBox { min: [0.0; 3], max: [0.0; 3] });
+                node.push(Child::node(ROOT), &FatBox { min: [0.0; 3], max: [0.0; 3] });
                 self.cut(piece, here, boxes, depth + 1);
             }
         }
     }
+
+    /// Makes the nodes of the subtrees and hangs them below the upper levels.
+    fn hang(&mut self, tree: &mut Tree, boxes: &[FatBox]) {
+        let Self { order, upper, leaves, below, subtrees } = self;
+        let below = &mut below[..*subtrees];
+        let mut count = upper.len();
+        for subtree in below.iter_mut() {
+            subtree.nodes = count..count + subtree.nodes.len();
+            count = subtree.nodes.end;
+        }
+        resize_on_threads(&mut tree.nodes, count, Node::empty(Place::NONE));
+        let (upper_nodes, lower_nodes) = tree.nodes.split_at_mut(upper.len());
+        upper_nodes.clone_from_slice(upper);
+        hang(below, lower_nodes, order, boxes, &tree.places);
+        for &(leaf, place) in leaves.iter() {
+            tree.places[leaf as usize].set(place);
+        }
+        for subtree in below.iter() {
+            tree.hang(subtree.place, subtree.nodes.start as u32);
+        }
+        // Each after those below it.
+        for at in (1..upper.len() as u32).rev() {
+            tree.hang(tree.nodes[at as usize].parent, at);
+        }
+    }
 }
 
-/// Makes the subtrees and hangs them below the upper levels.
-fn hang(tree: &mut Tree, upper: Upper, boxes: &[FatBox]) {
-    let Upper { nodes: upper, leaves, mut below } = upper;
-    for_each_part(&mut below, 1, SUBTREES_MANY, |_, subtrees| {
-        for subtree in subtrees {
-            let mut planner = Planner { boxes, plan: &mut subtree.plan };
-            subtree.nodes = planner.count(subtree.range, subtree.depth);
+/// Plans subtrees, whose leaves are in `order` from `first` on.
+fn plan(below: &mut [Subtree], first: usize, order: &mut [u64], boxes: &[FatBox]) {
+    match below {
+        [] => {}
+        [Subtree { leaves, depth, plan, nodes, .. }] => {
+            plan.clear();
+            let range = &mut order[leaves.start - first..leaves.end - first];
+            *nodes = 0..Planner { boxes, plan }.count(range, *depth);
         }
-    });
-    let count = upper.len() + below.iter().map(|subtree| subtree.nodes).sum::<usize>();
-    if count > tree.nodes.capacity() {
-        // Not one more: most trees that are built are as large until the next is.
-        tree.nodes = Vec::new();
-        tree.nodes.reserve_exact(count);
-    }
-    resize_on_threads(&mut tree.nodes, count, Node::empty(Place::NONE));
-    let (upper_nodes, mut rest) = tree.nodes.split_at_mut(upper.len());
-    upper_nodes.clone_from_slice(&upper);
-    let mut first = upper.len() as u32;
-    let mut hangers: Vec<Hanger> = Vec::with_capacity(below.len());
-    for subtree in &below {
-        let (nodes, others) = rest.split_at_mut(subtree.nodes);
-        rest = others;
-        let plan = subtree.plan.iter();
-        hangers.push(Hanger { subtree, boxes, places: &tree.places, plan, first, nodes, used: 0 });
-        first += subtree.nodes as u32;
-    }
-    for_each_part(&mut hangers, 1, SUBTREES_MANY, |_, hangers| {
-        for hanger in hangers {
-            hanger.hang(hanger.subtree.range, hanger.subtree.place);
+        _ => {
+            let (left, right) = below.split_at_mut(below.len() / 2);
+            let middle = right[0].leaves.start;
+            let (left_order, right_order) = order.split_at_mut(middle - first);
+            both(
+                left_order.len() + right_order.len() >= MANY,
+                || plan(left, first, left_order, boxes),
+                || plan(right, middle, right_order, boxes),
+            );
         }
-    });
-    for (leaf, place) in leaves {
-        tree.places[leaf as usize].set(place);
     }
-    let mut first = upper.len() as u32;
-    for subtree in &below {
-        tree.hang(subtree.place, first);
-        first += subtree.nodes as u32;
-    }
-    // Each after those below it.
-    for at in (1..upper.len() as u32).rev() {
-        tree.hang(tree.nodes[at as usize].parent, at);
+}
+
+/// Makes the nodes of subtrees, which `nodes` has room for.
+fn hang(below: &[Subtree], nodes: &mut [Node], order: &[u64], boxes: &[FatBox], places: &[PlaceCell]) {
+    match below {
+        [] => {}
+        [subtree] => {
+            let mut hanger = Hanger {
+                boxes,
+                places,
+                plan: subtree.plan.iter(),
+                first: subtree.nodes.start,
+                nodes,
+                used: 0,
+            };
+            hanger.hang(&order[subtree.leaves.clone()], subtree.place);
+        }
+        [head, ..] => {
+            let (left, right) = below.split_at(below.len() / 2);
+            let (left_nodes, right_nodes) = nodes.split_at_mut(right[0].nodes.start - head.nodes.start);
+            both(
+                left_nodes.len() + right_nodes.len() >= NODES_MANY,
+                || hang(left, left_nodes, order, boxes, places),
+                || hang(right, right_nodes, order, boxes, places),
+            );
+        }
     }
 }
 
@@ -196,12 +242,11 @@ impl Planner<'_> {
 
 /// Makes the nodes of a subtree, by its plan.
 struct Hanger<'a> {
-    subtree: &'a Subtree<'a>,
     boxes: &'a [FatBox],
     places: &'a [PlaceCell],
     plan: std::slice::Iter<'a, u32>,
     /// What the first of `nodes` is called.
-    first: u32,
+    first: usize,
     nodes: &'a mut [Node],
     used: usize,
 }
@@ -212,7 +257,7 @@ impl Hanger<'_> {
         let at = self.used;
         self.used += 1;
         self.nodes[at] = Node::empty(place);
-        let name = self.first + at as u32;
+        let name = (self.first + at) as u32;
         let mut ends = [0; WIDTH];
         let pieces = self.ends(range.len(), &mut ends);
         let mut start = 0;

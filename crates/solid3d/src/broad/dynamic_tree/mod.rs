@@ -33,6 +33,7 @@ use super::pair_lists::PairLists;
 use super::room::{resize, resize_on_threads, room};
 use super::{BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid};
 use crate::bounds::Aabb;
+use build::Builder;
 use fat_box::FatBox;
 use search::{Found, Search};
 use slots::{Notes, Slots, Work};
@@ -81,6 +82,7 @@ pub struct DynamicTree {
     /// Changes of the tree since it was last built.
     changes: usize,
     counters: Counters,
+    builder: Builder,
     stack: Vec<u32>,
     search: Search,
 }
@@ -130,24 +132,28 @@ impl DynamicTree {
         unreachable!("such a box of such a proxy is not refused")
     }
 
-    /// Gives back what room there is for more boxes. After many have changed, which may be long before many change again.
+    /// Gives back memory for more boxes, and for building anew. The first tree is of all boxes, and is the only one where few leave
+    /// their fat boxes at a time; where it is not, it is not worth while, since it is needed again.
     fn trim(&mut self) {
         self.tight.shrink_to_fit();
         self.fat.shrink_to_fit();
         self.status.shrink_to_fit();
+        self.tree.nodes.shrink_to_fit();
         self.tree.places.shrink_to_fit();
         self.pairs.trim();
+        self.notes.queue = Vec::new();
+        self.builder = Builder::default();
+        self.search = Search::default();
     }
 
     /// Builds the tree anew from all living boxes.
     fn rebuild(&mut self) {
-        self.trim();
-        let Self { status, fat, tree, .. } = self;
+        let Self { status, fat, tree, builder, .. } = self;
         for s in status.iter_mut() {
             s.set(Status::IN_TREE, s.is(Status::ALIVE));
         }
         let living = (0..).zip(status.iter()).filter_map(|(proxy, s)| s.is(Status::ALIVE).then_some(proxy));
-        build::build(tree, living, fat);
+        builder.build(tree, living, fat);
         self.changes = 0;
         self.counters.rebuilds += 1;
     }
@@ -329,6 +335,7 @@ impl BroadPhase for DynamicTree {
         if !std::mem::take(&mut self.notes.changed) {
             return;
         }
+        let rebuilds = self.counters.rebuilds;
         self.refresh_moved();
         self.drop_removed();
         if !self.notes.queue.is_empty() {
@@ -337,8 +344,9 @@ impl BroadPhase for DynamicTree {
         for proxy in self.notes.queue.drain(..) {
             self.status[proxy as usize].set(Status::QUEUED, false);
         }
-        // The room that most flushes need: of more, all is built anew.
-        self.notes.queue.shrink_to(self.queue_max());
+        if self.counters.rebuilds > rebuilds && rebuilds == 0 {
+            self.trim();
+        }
         if std::mem::take(&mut self.notes.all_moved) {
             self.status.iter_mut().for_each(|status| status.set(Status::MOVED, false));
         } else {

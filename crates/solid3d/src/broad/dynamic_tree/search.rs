@@ -45,19 +45,18 @@ impl Search {
     /// of nodes visited.
     pub fn run(&mut self, tree: &Tree, tight: &[Aabb], mut visit: impl FnMut(&Found) + Send) -> u64 {
         let Self { next, done } = self;
-        done.clear();
         next.resize_with(PIECES, Piece::default);
+        done.resize_with(PIECES, Piece::default);
+        done.iter_mut().for_each(|piece| piece.found.clear());
         let count = tree.nodes.len();
         let nodes = (count / (PIECES * ROUNDS)).clamp(NODES[0], NODES[1]);
         let worth = count >= NODES_MANY;
         let enough = if worth { 1 } else { usize::MAX };
         let mut visits = 0;
         for first in (0..count).step_by(nodes * PIECES) {
-            let pieces = PIECES.min((count - first).div_ceil(nodes));
-            next.resize_with(pieces, Piece::default);
             let search = |i: usize, pieces: &mut [Piece]| {
                 for piece in pieces {
-                    let first = first + i * nodes;
+                    let first = count.min(first + i * nodes);
                     piece.search(tree, tight, first..count.min(first + nodes));
                 }
             };
