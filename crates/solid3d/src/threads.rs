@@ -35,6 +35,18 @@ pub(crate) fn first_part_where<T: Sync>(
     items.chunks(part).position(is)
 }
 
+/// Does two things: at the same time where there is another thread and it is worth it, else one after the other.
+pub(crate) fn both(worth: bool, one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
+    #[cfg(feature = "rayon")]
+    if share(usize::from(worth), 1) {
+        rayon::join(one, other);
+        return;
+    }
+    let _ = worth;
+    one();
+    other();
+}
+
 /// Whether so many elements are worth another thread, there is one, and it may be asked.
 #[cfg(feature = "rayon")]
 pub(crate) fn share(elements: usize, enough: usize) -> bool {
@@ -74,6 +86,11 @@ mod tests {
             assert!(numbers.iter().enumerate().all(|(i, &number)| number == i / 7));
             assert_eq!(first_part_where(&numbers, 7, 1, |part| part[0] >= 20), Some(20));
             assert_eq!(first_part_where(&numbers, 7, 1, |part| part[0] > 1000), None);
+            let (mut one, mut other) = (0, 0);
+            for worth in [true, false] {
+                both(worth, || one += 1, || other += 2);
+            }
+            assert_eq!((one, other), (2, 4));
         };
         run();
         alone(run);

@@ -90,6 +90,11 @@ impl PairLists {
         resize(&mut self.heads, proxies, END);
     }
 
+    /// Gives back what room there is for more proxies.
+    pub fn trim(&mut self) {
+        self.heads.shrink_to_fit();
+    }
+
     /// Adds a pair that is not there yet.
     pub fn insert(&mut self, a: Proxy, b: Proxy, overlaps: bool) -> PairId {
         let id = self.take_slot();
@@ -379,7 +384,7 @@ fn for_each_block(ends: &[Ends], marks: &mut [u64], mark: impl Fn((&[Ends], &mut
         use rayon::prelude::*;
         /// Fewer words than this, of pairs that take some 5 ns each, are not worth another thread.
         const SHARE_MIN: usize = 128;
-        if marks.len() >= SHARE_MIN && rayon::current_num_threads() > 1 {
+        if crate::threads::share(marks.len(), SHARE_MIN) {
             let blocks = ends.par_chunks(MARKS).zip(marks);
             return blocks.with_min_len(SHARE_MIN / 2).for_each(mark);
         }

@@ -24,10 +24,34 @@ pub(crate) fn push<T>(vector: &mut Vec<T>, element: T) {
     vector.push(element);
 }
 
+/// Adds elements.
+#[cfg(feature = "rayon")]
+pub(crate) fn extend<T: Copy>(vector: &mut Vec<T>, elements: &[T]) {
+    room(vector, vector.len() + elements.len());
+    vector.extend_from_slice(elements);
+}
+
 /// Makes a vector longer.
 pub(crate) fn resize<T: Clone>(vector: &mut Vec<T>, len: usize, element: T) {
     room(vector, len);
     vector.resize(len, element);
+}
+
+/// The same, of many elements on the threads of the current pool: memory that the machine gives for the first time it has to clear,
+/// which takes as long as to fill it.
+pub(crate) fn resize_on_threads<T: Clone + Send + Sync>(vector: &mut Vec<T>, len: usize, element: T) {
+    #[cfg(feature = "rayon")]
+    {
+        use rayon::prelude::*;
+        /// Fewer bytes than this are not worth another thread.
+        const BYTES_MANY: usize = 1 << 16;
+        let added = len.saturating_sub(vector.len());
+        if crate::threads::share(added * size_of::<T>(), BYTES_MANY) {
+            room(vector, len);
+            return vector.par_extend(rayon::iter::repeat_n(element, added));
+        }
+    }
+    resize(vector, len, element);
 }
 
 #[cfg(test)]
@@ -48,5 +72,21 @@ mod tests {
         }
         assert!(growths < 100, "{growths} growths");
         assert!(pushed.iter().copied().eq(1..=100_000));
+    }
+
+    /// Law: on threads or not, a vector is made longer by the same elements, and shorter.
+    #[test]
+    fn threads_make_a_vector_as_long() {
+        let run = || {
+            let mut vector = vec![1_u64; 10];
+            for len in [10, 100_000, 100_001, 50, 200_000] {
+                resize_on_threads(&mut vector, len, 7);
+                assert_eq!(vector.len(), len);
+                assert!(vector.iter().zip(0..).all(|(&x, i)| x == if i < 10 { 1 } else { 7 }), "{len}");
+            }
+        };
+        run();
+        #[cfg(feature = "rayon")]
+        rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap().install(run);
     }
 }

@@ -13,6 +13,9 @@
 //! one by one, each of which goes down from the root. Either path gives the same pairs. (A million boxes: 0.3 s at first, where a
 //! search for each box took 0.85 s.)
 //!
+//! With the feature `rayon`, where there is much to do, boxes that are told many at a time, the pass over all pairs and all of a
+//! rebuild are shared among threads; pairs that were found are linked by one of them while the others seek the next.
+//!
 //! What is done for everything that moves is free of branches and reads memory in order, or many places at a time: while all move
 //! and stay inside, a frame of 10,000 boxes takes 97 us, where the same work with branches took 240 us.
 
@@ -27,17 +30,13 @@ mod status;
 mod tree;
 
 use super::pair_lists::PairLists;
-use super::room::{push, resize, room};
+use super::room::{resize, resize_on_threads, room};
 use super::{BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid};
 use crate::bounds::Aabb;
-#[cfg(feature = "rayon")]
-use crate::threads::share;
 use build::Builder;
 use fat_box::FatBox;
 use search::{Found, Search};
-use slots::{Fate, Slots};
-#[cfg(feature = "rayon")]
-use slots::{News, PART, ascend};
+use slots::{Notes, Slots, Work};
 use status::Status;
 use tree::{DEPTH_MAX, Tree};
 
@@ -50,10 +49,6 @@ const REBUILD_MIN: usize = 32;
 
 /// Where more than one in this many boxes moved, one pass over all pairs is cheaper than a walk along their lists.
 const REFRESH_ALL_AT_ONE_IN: usize = 4;
-
-/// So many boxes, of some 5 ns each, are worth another thread to tell them to.
-#[cfg(feature = "rayon")]
-const BOXES_MANY: usize = 1 << 12;
 
 /// Broad phase by a dynamic wide tree of fattened boxes; the default.
 ///
@@ -81,14 +76,8 @@ pub struct DynamicTree {
     tree: Tree,
     /// The pairs of fat boxes in the tree that overlap, exactly, except of queued proxies until the next flush.
     pairs: PairLists,
-    /// Proxies whose fat boxes are not in the tree as they are, each once; some may have been removed since.
-    queue: Vec<Proxy>,
-    /// Proxies whose tight boxes changed since the last flush, each once, unless it is all; some may have been removed since.
-    moved: Vec<Proxy>,
-    /// Whether so many moved that no more of them were noted.
-    all_moved: bool,
-    /// Whether a tight box changed, was added or removed since the last flush.
-    dirty: bool,
+    /// What became of the boxes since the last flush.
+    notes: Notes,
     alive: usize,
     /// Changes of the tree since it was last built.
     changes: usize,
@@ -103,28 +92,27 @@ impl DynamicTree {
         self.status.get(proxy as usize).is_some_and(|s| s.is(Status::ALIVE))
     }
 
-    fn slots(&mut self) -> Slots<'_> {
-        Slots { first: 0, tight: &mut self.tight, fat: &mut self.fat, status: &mut self.status }
+    /// More queued boxes than this are not placed one by one.
+    fn queue_max(&self) -> usize {
+        REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN)
     }
 
-    /// Notes what became of a box.
-    #[inline]
-    fn note(&mut self, proxy: Proxy, fate: Fate) {
-        self.dirty |= fate.changed;
-        if fate.moved && !self.all_moved {
-            push(&mut self.moved, proxy);
-            self.all_moved = self.moved.len() * REFRESH_ALL_AT_ONE_IN > self.alive;
-        }
-        if fate.queued {
-            push(&mut self.queue, proxy);
-        }
+    /// All boxes, and what is noted of them.
+    fn slots(&mut self) -> (Slots<'_>, &mut Notes) {
+        let Self { tight, fat, status, notes, .. } = self;
+        (Slots { first: 0, tight, fat, status }, notes)
+    }
+
+    /// Where more boxes than this moved, one pass over all pairs is cheaper than a walk along their lists.
+    fn moved_max(&self) -> usize {
+        self.alive / REFRESH_ALL_AT_ONE_IN
     }
 
     /// Makes room for proxies below `proxies`.
     fn grow(&mut self, proxies: usize) {
         if proxies > self.tight.len() {
-            resize(&mut self.tight, proxies, Aabb::EMPTY);
-            resize(&mut self.fat, proxies, FatBox { min: [0.0; 3], max: [0.0; 3] });
+            resize_on_threads(&mut self.tight, proxies, Aabb::EMPTY);
+            resize_on_threads(&mut self.fat, proxies, FatBox { min: [0.0; 3], max: [0.0; 3] });
             resize(&mut self.status, proxies, Status::default());
             self.tree.grow(proxies);
             self.pairs.grow(proxies);
@@ -144,21 +132,18 @@ impl DynamicTree {
         unreachable!("such a box of such a proxy is not refused")
     }
 
-    /// Notes what became of many boxes. The first that was refused.
-    #[cfg(feature = "rayon")]
-    fn note_many(&mut self, news: &[News]) -> Option<usize> {
-        self.dirty |= news.iter().any(|news| news.changed);
-        if !self.all_moved {
-            let moved = self.moved.len() + news.iter().map(|news| news.moved.len()).sum::<usize>();
-            self.all_moved = moved * REFRESH_ALL_AT_ONE_IN > self.alive;
-        }
-        for news in news {
-            if !self.all_moved {
-                self.moved.extend_from_slice(&news.moved);
-            }
-            self.queue.extend_from_slice(&news.queued);
-        }
-        news.iter().enumerate().find_map(|(i, news)| Some(i * PART + news.refused?))
+    /// Gives back memory for more boxes, and for building anew. The first tree is of all boxes, and is the only one where few leave
+    /// their fat boxes at a time; where it is not, it is not worth while, since it is needed again.
+    fn trim(&mut self) {
+        self.tight.shrink_to_fit();
+        self.fat.shrink_to_fit();
+        self.status.shrink_to_fit();
+        self.tree.nodes.shrink_to_fit();
+        self.tree.places.shrink_to_fit();
+        self.pairs.trim();
+        self.notes.queue = Vec::new();
+        self.builder = Builder::default();
+        self.search = Search::default();
     }
 
     /// Builds the tree anew from all living boxes.
@@ -175,15 +160,15 @@ impl DynamicTree {
 
     /// Decides again which tight boxes overlap, among the pairs of boxes that moved.
     fn refresh_moved(&mut self) {
-        let Self { tight, pairs, moved, .. } = self;
-        if self.all_moved {
+        let Self { tight, pairs, notes, .. } = self;
+        if notes.all_moved {
             let fetch = |proxy: Proxy| {
                 let Aabb { min, max } = tight[proxy as usize];
                 min.x.to_bits() ^ max.z.to_bits()
             };
             pairs.refresh_all(fetch, |a, b| overlap(tight, a, b));
         } else {
-            for &proxy in moved.iter() {
+            for &proxy in &notes.moved {
                 pairs.refresh_of(proxy, |partner| overlap(tight, proxy, partner));
             }
         }
@@ -192,8 +177,8 @@ impl DynamicTree {
 
     /// Takes out the pairs of the queued boxes whose fat boxes are apart now.
     fn part_queued(&mut self) {
-        let Self { fat, pairs, queue, .. } = self;
-        for &proxy in queue.iter() {
+        let Self { fat, pairs, notes, .. } = self;
+        for &proxy in &notes.queue {
             let b = fat[proxy as usize];
             pairs.retain_of(proxy, |partner| fat[partner as usize].overlaps(&b));
         }
@@ -202,7 +187,7 @@ impl DynamicTree {
     /// Places the queued boxes in the tree, one by one; false if the tree is no longer as it should be.
     fn place_queued(&mut self) -> bool {
         let mut too_deep = false;
-        for &proxy in &self.queue {
+        for &proxy in &self.notes.queue {
             let fat = self.fat[proxy as usize];
             let is_new = self.status[proxy as usize].put(Status::IN_TREE);
             if !is_new && self.tree.leaf_box(proxy).overlaps(&fat) {
@@ -215,15 +200,15 @@ impl DynamicTree {
                 too_deep |= self.tree.insert(proxy, &fat) > DEPTH_MAX;
             }
         }
-        self.changes += self.queue.len();
-        self.counters.reinsertions += self.queue.len() as u64;
+        self.changes += self.notes.queue.len();
+        self.counters.reinsertions += self.notes.queue.len() as u64;
         !too_deep && self.changes <= self.alive.max(REBUILD_MIN)
     }
 
     /// Finds the pairs of the queued boxes that are not there yet, box by box.
     fn pair_queued(&mut self) {
-        let Self { tight, fat, tree, pairs, queue, stack, .. } = self;
-        for &proxy in queue.iter() {
+        let Self { tight, fat, tree, pairs, notes, stack, .. } = self;
+        for &proxy in &notes.queue {
             self.counters.node_visits += tree.query(&fat[proxy as usize], stack, |other| {
                 // Of two queued boxes the one that comes first finds the pair.
                 if other != proxy && pairs.find(proxy, other).is_none() {
@@ -251,7 +236,7 @@ impl DynamicTree {
     /// Takes those that were removed out of the queue.
     fn drop_removed(&mut self) {
         let status = &mut self.status;
-        self.queue.retain(|&proxy| {
+        self.notes.queue.retain(|&proxy| {
             let status = &mut status[proxy as usize];
             status.set(Status::QUEUED, status.is(Status::ALIVE));
             status.is(Status::ALIVE)
@@ -260,12 +245,12 @@ impl DynamicTree {
 
     /// Brings the tree and the pairs of fat boxes up to date.
     fn admit_queued(&mut self) {
-        // Boxes that are near one another find the same nodes, and those are then at hand. Since the tree was built, its nodes are about
-        // in the order of space.
-        let places = &self.tree.places;
-        self.queue.sort_unstable_by_key(|&proxy| (places[proxy as usize].get(), proxy));
-        let few = self.queue.len() <= REBUILD_MIN.max(self.alive / REBUILD_AT_ONE_IN);
+        let few = self.notes.queue.len() <= self.queue_max();
         if few {
+            // Boxes that are near one another find the same nodes, and those are then at hand. Since the tree was built, its nodes are
+            // about in the order of space.
+            let tree = &self.tree;
+            self.notes.queue.sort_unstable_by_key(|&proxy| (tree.place(proxy), proxy));
             self.part_queued();
         }
         if few && self.place_queued() {
@@ -286,53 +271,49 @@ impl BroadPhase for DynamicTree {
     fn insert(&mut self, proxy: Proxy, bounds: Aabb) {
         assert_valid(proxy, &bounds);
         self.grow(proxy as usize + 1);
-        match self.slots().insert(proxy, &bounds) {
-            Some(fate) => {
-                self.alive += 1;
-                self.note(proxy, fate);
-            }
-            None => self.refuse_insert(proxy, &bounds),
+        let (mut slots, notes) = self.slots();
+        if !slots.insert(proxy, &bounds, notes) {
+            self.refuse_insert(proxy, &bounds);
         }
+        self.alive += 1;
     }
 
     #[inline]
     fn update(&mut self, proxy: Proxy, bounds: Aabb) {
-        match self.slots().update(proxy, &bounds) {
-            Some(fate) => self.note(proxy, fate),
-            None => self.refuse_update(proxy, &bounds),
+        let moved_max = self.moved_max();
+        let (mut slots, notes) = self.slots();
+        if !slots.update(proxy, &bounds, notes, moved_max) {
+            self.refuse_update(proxy, &bounds);
         }
     }
 
     fn insert_many(&mut self, boxes: &[(Proxy, Aabb)]) {
-        let end = boxes.iter().map(|(proxy, _)| *proxy).filter(|&proxy| proxy <= PROXY_MAX).max();
-        self.grow(end.map_or(0, |end| end as usize + 1));
-        let queued = self.queue.len() + boxes.len();
-        room(&mut self.queue, queued);
-        #[cfg(feature = "rayon")]
-        if share(boxes.len(), BOXES_MANY) && ascend(boxes) {
-            let news =
-                self.slots().for_each(boxes, false, |slots, proxy, bounds| slots.insert(proxy, bounds));
-            self.alive += news.iter().map(|news| news.taken).sum::<usize>();
-            if let Some(refused) = self.note_many(&news) {
-                self.refuse_insert(boxes[refused].0, &boxes[refused].1);
-            }
-            return;
+        // Of proxies that ascend this is the greatest; for others room is made as they come.
+        let last = boxes.iter().map(|(proxy, _)| *proxy).rfind(|&proxy| proxy <= PROXY_MAX);
+        self.grow(last.map_or(0, |last| last as usize + 1));
+        let queued = self.notes.queue.len() + boxes.len();
+        room(&mut self.notes.queue, queued);
+        let mut rest = boxes;
+        // Ends, because there are fewer boxes each time.
+        while !rest.is_empty() {
+            let moved_max = self.moved_max();
+            let (slots, notes) = self.slots();
+            let (taken, refused) = slots.many(Work::Insert, rest, notes, moved_max);
+            self.alive += taken;
+            let Some(refused) = refused else { return };
+            let (proxy, bounds) = rest[refused];
+            self.insert(proxy, bounds);
+            rest = &rest[refused + 1..];
         }
-        boxes.iter().for_each(|(proxy, bounds)| self.insert(*proxy, *bounds));
     }
 
     fn update_many(&mut self, boxes: &[(Proxy, Aabb)]) {
-        #[cfg(feature = "rayon")]
-        if share(boxes.len(), BOXES_MANY) && ascend(boxes) {
-            let note_moved = !self.all_moved;
-            let news =
-                self.slots().for_each(boxes, note_moved, |slots, proxy, bounds| slots.update(proxy, bounds));
-            if let Some(refused) = self.note_many(&news) {
-                self.refuse_update(boxes[refused].0, &boxes[refused].1);
-            }
-            return;
+        let moved_max = self.moved_max();
+        let (slots, notes) = self.slots();
+        let (_, refused) = slots.many(Work::Update, boxes, notes, moved_max);
+        if let Some(&(proxy, bounds)) = refused.and_then(|refused| boxes.get(refused)) {
+            self.refuse_update(proxy, &bounds);
         }
-        boxes.iter().for_each(|(proxy, bounds)| self.update(*proxy, *bounds));
     }
 
     fn remove(&mut self, proxy: Proxy) {
@@ -346,39 +327,43 @@ impl BroadPhase for DynamicTree {
             self.changes += 1;
         }
         self.alive -= 1;
-        self.dirty = true;
+        self.notes.changed = true;
     }
 
     fn flush(&mut self) {
         self.pairs.begin();
-        if !std::mem::take(&mut self.dirty) {
+        if !std::mem::take(&mut self.notes.changed) {
             return;
         }
+        let rebuilds = self.counters.rebuilds;
         self.refresh_moved();
         self.drop_removed();
-        if !self.queue.is_empty() {
+        if !self.notes.queue.is_empty() {
             self.admit_queued();
         }
-        for proxy in self.queue.drain(..) {
+        for proxy in self.notes.queue.drain(..) {
             self.status[proxy as usize].set(Status::QUEUED, false);
         }
-        if std::mem::take(&mut self.all_moved) {
+        if self.counters.rebuilds > rebuilds && rebuilds == 0 {
+            self.trim();
+        }
+        if std::mem::take(&mut self.notes.all_moved) {
             self.status.iter_mut().for_each(|status| status.set(Status::MOVED, false));
         } else {
-            for &proxy in &self.moved {
+            for &proxy in &self.notes.moved {
                 self.status[proxy as usize].set(Status::MOVED, false);
             }
         }
-        self.moved.clear();
+        self.notes.moved.clear();
     }
 
     fn for_each_pair(&self, visit: &mut dyn FnMut(Proxy, Proxy)) {
-        assert!(!self.dirty, "boxes changed since the last flush");
+        assert!(!self.notes.changed, "boxes changed since the last flush");
         self.pairs.for_each(|_, [a, b]| visit(a, b));
     }
 
     fn for_each_partner(&self, proxy: Proxy, visit: &mut dyn FnMut(Proxy)) {
-        assert!(!self.dirty, "boxes changed since the last flush");
+        assert!(!self.notes.changed, "boxes changed since the last flush");
         self.pairs.for_each_overlap_of(proxy, |_, partner| visit(partner));
     }
 
@@ -416,8 +401,8 @@ impl BroadPhase for DynamicTree {
         let count = |what| self.status.iter().filter(|s| s.is(what)).count();
         assert_eq!(self.tree.validate(), count(Status::IN_TREE));
         assert_eq!(count(Status::ALIVE), self.alive);
-        assert_eq!(count(Status::QUEUED), self.queue.len());
-        assert!(self.all_moved || count(Status::MOVED) == self.moved.len());
+        assert_eq!(count(Status::QUEUED), self.notes.queue.len());
+        assert!(self.notes.all_moved || count(Status::MOVED) == self.notes.moved.len());
         for (proxy, status) in (0..).zip(&self.status) {
             assert!(status.is(Status::ALIVE) || !status.is(Status::IN_TREE));
             if status.is(Status::ALIVE) {
@@ -429,7 +414,10 @@ impl BroadPhase for DynamicTree {
             }
         }
         self.pairs.for_each_known(|[a, b], overlaps| {
-            assert!(self.dirty || overlaps == overlap(&self.tight, a, b), "pair ({a}, {b}): {overlaps}");
+            assert!(
+                self.notes.changed || overlaps == overlap(&self.tight, a, b),
+                "pair ({a}, {b}): {overlaps}"
+            );
             let (s, t) = (self.status[a as usize], self.status[b as usize]);
             assert!(
                 s.is(Status::IN_TREE) && t.is(Status::IN_TREE),

@@ -18,7 +18,7 @@ impl DynamicTree {
         visit: &mut dyn FnMut(Proxy) -> f64,
     ) {
         // What waits for the next flush is not in the tree, or not where it is.
-        for &proxy in &self.queue {
+        for &proxy in &self.notes.queue {
             if self.is_alive(proxy) && bound(&self.tight[proxy as usize]) <= until {
                 until = visit(proxy);
             }

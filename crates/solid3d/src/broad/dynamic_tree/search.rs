@@ -4,12 +4,19 @@ use super::self_pairs::Lanes;
 use super::tree::Tree;
 use super::{Proxy, overlap};
 use crate::bounds::Aabb;
+use crate::threads::{both, for_each_part};
 
-/// Nodes that are searched in one piece: with some thousand pairs, whose boxes a core's own cache holds.
-const NODES: usize = 512;
+/// Nodes that are searched in one piece, at least and at most: with some thousand pairs, whose boxes a core's own cache holds.
+const NODES: [usize; 2] = [32, 512];
 
 /// Pieces that are searched before their pairs are handed on: what these take is bounded by it, and threads have enough of them.
 const PIECES: usize = 16;
+
+/// So many nodes, of some 0.3 us each, are worth another thread.
+const NODES_MANY: usize = 512;
+
+/// About so many times pairs are handed on in all: meanwhile the next are sought.
+const ROUNDS: usize = 8;
 
 /// Two boxes whose fat boxes overlap, and whether they do.
 #[derive(Clone, Copy, Debug)]
@@ -26,31 +33,42 @@ struct Piece {
     visits: u64,
 }
 
-/// The working memory of the search.
+/// The working memory of the search: pieces that are searched, and those before them, whose pairs are handed on meanwhile.
 #[derive(Debug, Default)]
 pub(super) struct Search {
-    pieces: Vec<Piece>,
+    next: Vec<Piece>,
+    done: Vec<Piece>,
 }
 
 impl Search {
     /// Hands on every pair of leaves whose boxes overlap, each once, in an order that depends on the tree alone; gives the number
     /// of nodes visited.
-    pub fn run(&mut self, tree: &Tree, tight: &[Aabb], mut visit: impl FnMut(&Found)) -> u64 {
-        self.pieces.resize_with(PIECES, Piece::default);
-        let nodes = tree.nodes.len();
+    pub fn run(&mut self, tree: &Tree, tight: &[Aabb], mut visit: impl FnMut(&Found) + Send) -> u64 {
+        let Self { next, done } = self;
+        next.resize_with(PIECES, Piece::default);
+        done.resize_with(PIECES, Piece::default);
+        done.iter_mut().for_each(|piece| piece.found.clear());
+        let count = tree.nodes.len();
+        let nodes = (count / (PIECES * ROUNDS)).clamp(NODES[0], NODES[1]);
+        let worth = count >= NODES_MANY;
+        let enough = if worth { 1 } else { usize::MAX };
         let mut visits = 0;
-        for first in (0..nodes).step_by(NODES * PIECES) {
-            let pieces = self.pieces.len().min((nodes - first).div_ceil(NODES));
-            let search = |(i, piece): (usize, &mut Piece)| {
-                let first = first + i * NODES;
-                piece.search(tree, tight, first..nodes.min(first + NODES));
+        for first in (0..count).step_by(nodes * PIECES) {
+            let search = |i: usize, pieces: &mut [Piece]| {
+                for piece in pieces {
+                    let first = count.min(first + i * nodes);
+                    piece.search(tree, tight, first..count.min(first + nodes));
+                }
             };
-            for_each(&mut self.pieces[..pieces], search);
-            for piece in &self.pieces[..pieces] {
-                visits += piece.visits;
-                piece.found.iter().for_each(&mut visit);
-            }
+            both(
+                worth,
+                || for_each_part(next, 1, enough, search),
+                || done.iter().flat_map(|piece| &piece.found).for_each(&mut visit),
+            );
+            visits += next.iter().map(|piece| piece.visits).sum::<u64>();
+            std::mem::swap(next, done);
         }
+        done.iter().flat_map(|piece| &piece.found).for_each(visit);
         visits
     }
 }
@@ -70,16 +88,4 @@ impl Piece {
             *overlaps = overlap(tight, *a, *b);
         }
     }
-}
-
-/// Calls `search` with each piece and its number; with the feature `rayon` on the threads of the current pool.
-fn for_each(pieces: &mut [Piece], search: impl Fn((usize, &mut Piece)) + Sync + Send) {
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        if pieces.len() > 1 && rayon::current_num_threads() > 1 {
-            return pieces.par_iter_mut().enumerate().for_each(search);
-        }
-    }
-    pieces.iter_mut().enumerate().for_each(search);
 }

@@ -3,13 +3,19 @@
 //! Boxes that are told in ascending order of their proxies are cut into parts, each of which owns the slots of its proxies; so several
 //! threads may work on them. What concerns all of them is noted by each part and joined in their order. So everything is as if
 //! the boxes had been told one by one.
+//!
+//! A move that stays inside waits for memory: four numbers at a time in vectors, or 64 boxes looked at before any is changed, took 1.87
+//! and 2.2 G cycles for 5,000 frames of 10,000 boxes, where this takes 1.75.
 
 use super::fat_box::FatBox;
 use super::status::Status;
 use crate::bounds::Aabb;
+#[cfg(feature = "rayon")]
+use crate::broad::room::extend;
+use crate::broad::room::push;
 use crate::broad::{Proxy, is_ordered, is_valid};
 #[cfg(feature = "rayon")]
-use crate::threads::{first_part_where, for_each_part};
+use crate::threads::{first_part_where, for_each_part, share};
 
 /// What is kept of the boxes of some proxies that follow one another.
 pub(super) struct Slots<'a> {
@@ -20,17 +26,6 @@ pub(super) struct Slots<'a> {
     pub status: &'a mut [Status],
 }
 
-/// What became of a box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Fate {
-    /// It is not what it was.
-    pub changed: bool,
-    /// It moved for the first time since the last flush.
-    pub moved: bool,
-    /// It is to be placed in the tree, and was not to be before.
-    pub queued: bool,
-}
-
 impl Slots<'_> {
     /// The slot of a proxy, if it is one of these.
     #[inline(always)]
@@ -39,66 +34,138 @@ impl Slots<'_> {
         Some((self.tight.get_mut(slot)?, self.fat.get_mut(slot)?, self.status.get_mut(slot)?))
     }
 
-    /// Moves a box. `None` if the proxy is not in use, or the box not valid.
+    /// Moves a box. False if the proxy is not in use, or the box not valid.
     #[inline(always)]
-    pub fn update(&mut self, proxy: Proxy, bounds: &Aabb) -> Option<Fate> {
+    pub fn update(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes, moved_max: usize) -> bool {
         if let Some((tight, fat, status)) = self.slot(proxy)
             // Nearly all stay inside. A fat box is finite: so is what lies in it.
             && fat.contains(bounds) & is_ordered(bounds) & status.is(Status::ALIVE)
         {
-            let changed = *tight != *bounds;
-            if changed {
+            if *tight != *bounds {
                 *tight = *bounds;
+                notes.changed = true;
+                if status.put(Status::MOVED) {
+                    notes.note_moved(proxy, moved_max);
+                }
             }
-            let moved = changed && status.put(Status::MOVED);
-            return Some(Fate { changed, moved, queued: false });
+            return true;
         }
-        self.leave(proxy, bounds)
+        self.leave(proxy, bounds, notes, moved_max)
     }
 
     /// Gives a box another fat box, since it left the one that it had.
     #[inline(never)]
-    fn leave(&mut self, proxy: Proxy, bounds: &Aabb) -> Option<Fate> {
-        let (tight, fat, status) = self.slot(proxy)?;
+    fn leave(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes, moved_max: usize) -> bool {
+        let Some((tight, fat, status)) = self.slot(proxy) else { return false };
         if !status.is(Status::ALIVE) || !is_valid(bounds) {
-            return None;
+            return false;
         }
         let was = std::mem::replace(tight, *bounds);
         *fat = FatBox::with_room(proxy, &was, bounds);
-        Some(Fate { changed: true, moved: status.put(Status::MOVED), queued: status.put(Status::QUEUED) })
+        notes.changed = true;
+        if status.put(Status::MOVED) {
+            notes.note_moved(proxy, moved_max);
+        }
+        if status.put(Status::QUEUED) {
+            push(&mut notes.queue, proxy);
+        }
+        true
     }
 
-    /// Adds a box. `None` if the proxy is in use, or the box not valid.
-    pub fn insert(&mut self, proxy: Proxy, bounds: &Aabb) -> Option<Fate> {
-        let (tight, fat, status) = self.slot(proxy)?;
+    /// Adds a box. False if the proxy is in use, or the box not valid.
+    pub fn insert(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes) -> bool {
+        let Some((tight, fat, status)) = self.slot(proxy) else { return false };
         if !is_valid(bounds) || !status.put(Status::ALIVE) {
-            return None;
+            return false;
         }
         *tight = *bounds;
         *fat = FatBox::with_room(proxy, bounds, bounds);
-        Some(Fate { changed: true, moved: false, queued: status.put(Status::QUEUED) })
+        notes.changed = true;
+        if status.put(Status::QUEUED) {
+            push(&mut notes.queue, proxy);
+        }
+        true
     }
 }
 
-/// What became of many boxes.
-#[cfg(feature = "rayon")]
+/// What became of the boxes since the last flush.
 #[derive(Debug, Default)]
-pub(super) struct News {
+pub(super) struct Notes {
     /// Whether any is not what it was.
     pub changed: bool,
-    /// How many were taken.
-    pub taken: usize,
-    /// Those that moved for the first time since the last flush.
+    /// Those that moved, each once, unless it is all; some may have been removed since.
     pub moved: Vec<Proxy>,
-    /// Those to be placed in the tree that were not before.
-    pub queued: Vec<Proxy>,
-    /// The first that was refused; those after it were not looked at.
-    pub refused: Option<usize>,
+    /// Whether so many moved that no more of them are noted.
+    pub all_moved: bool,
+    /// Those whose fat boxes are not in the tree as they are, each once; some may have been removed since.
+    pub queue: Vec<Proxy>,
 }
+
+impl Notes {
+    /// Notes that a box moved for the first time since the last flush; of more than `moved_max` only that they are so many.
+    #[inline(always)]
+    fn note_moved(&mut self, proxy: Proxy, moved_max: usize) {
+        if !self.all_moved {
+            push(&mut self.moved, proxy);
+            self.all_moved = self.moved.len() > moved_max;
+        }
+    }
+
+    /// Adds what was noted after this.
+    #[cfg(feature = "rayon")]
+    fn append(&mut self, later: &Notes, moved_max: usize) {
+        self.changed |= later.changed;
+        self.all_moved |= later.all_moved || self.moved.len() + later.moved.len() > moved_max;
+        if !self.all_moved {
+            extend(&mut self.moved, &later.moved);
+        }
+        extend(&mut self.queue, &later.queue);
+    }
+}
+
+/// What is done with many boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Work {
+    Insert,
+    Update,
+}
+
+impl Slots<'_> {
+    /// Does a work with boxes one after the other, until one is refused: how many were not.
+    fn each(&mut self, work: Work, boxes: &[(Proxy, Aabb)], notes: &mut Notes, moved_max: usize) -> usize {
+        let refused = match work {
+            Work::Insert => boxes.iter().position(|(proxy, bounds)| !self.insert(*proxy, bounds, notes)),
+            Work::Update => {
+                boxes.iter().position(|(proxy, bounds)| !self.update(*proxy, bounds, notes, moved_max))
+            }
+        };
+        refused.unwrap_or(boxes.len())
+    }
+
+    /// Does a work with many boxes, as if one after the other. How many were taken, and the first that was refused, if one was.
+    pub fn many(
+        mut self,
+        work: Work,
+        boxes: &[(Proxy, Aabb)],
+        notes: &mut Notes,
+        moved_max: usize,
+    ) -> (usize, Option<usize>) {
+        #[cfg(feature = "rayon")]
+        if share(boxes.len(), MANY) && ascend(boxes) {
+            return self.on_threads(work, boxes, notes, moved_max);
+        }
+        let taken = self.each(work, boxes, notes, moved_max);
+        (taken, (taken < boxes.len()).then_some(taken))
+    }
+}
+
+/// So many boxes, of some 5 ns each, are worth another thread.
+#[cfg(feature = "rayon")]
+const MANY: usize = 1 << 12;
 
 /// Boxes in one part.
 #[cfg(feature = "rayon")]
-pub(super) const PART: usize = 1 << 10;
+const PART: usize = 1 << 10;
 
 #[cfg(feature = "rayon")]
 impl<'a> Slots<'a> {
@@ -117,49 +184,54 @@ impl<'a> Slots<'a> {
         }
     }
 
-    /// Does something with each of many boxes, whose proxies must ascend. What became of them, part by part.
-    pub fn for_each(
+    /// See [`many`](Self::many); the proxies ascend.
+    fn on_threads(
         mut self,
+        work: Work,
         boxes: &[(Proxy, Aabb)],
-        note_moved: bool,
-        work: impl Fn(&mut Slots, Proxy, &Aabb) -> Option<Fate> + Sync + Send,
-    ) -> Vec<News> {
+        notes: &mut Notes,
+        moved_max: usize,
+    ) -> (usize, Option<usize>) {
         struct Part<'a, 'b> {
-            boxes: &'b [(Proxy, Aabb)],
             slots: Slots<'a>,
-            news: News,
+            boxes: &'b [(Proxy, Aabb)],
+            notes: Notes,
+            taken: usize,
         }
         let mut parts: Vec<Part> = (boxes.chunks(PART))
             .map(|boxes| {
                 let end = boxes.last().map_or(0, |(proxy, _)| *proxy as usize + 1);
-                Part { boxes, slots: self.split_off(end), news: News::default() }
+                let moved_max = if notes.all_moved || work == Work::Insert { 0 } else { boxes.len() };
+                let queue_max = if work == Work::Insert { boxes.len() } else { 0 };
+                let notes = Notes {
+                    changed: false,
+                    moved: Vec::with_capacity(moved_max),
+                    all_moved: notes.all_moved,
+                    queue: Vec::with_capacity(queue_max),
+                };
+                Part { slots: self.split_off(end), boxes, notes, taken: 0 }
             })
             .collect();
         for_each_part(&mut parts, 1, 1, |_, parts| {
-            for Part { boxes, slots, news } in parts {
-                for (i, (proxy, bounds)) in boxes.iter().enumerate() {
-                    let Some(fate) = work(slots, *proxy, bounds) else {
-                        news.refused = Some(i);
-                        break;
-                    };
-                    news.changed |= fate.changed;
-                    news.taken += 1;
-                    if fate.moved && note_moved {
-                        news.moved.push(*proxy);
-                    }
-                    if fate.queued {
-                        news.queued.push(*proxy);
-                    }
-                }
+            for Part { slots, boxes, notes, taken } in parts {
+                *taken = slots.each(work, boxes, notes, moved_max);
             }
         });
-        parts.into_iter().map(|part| part.news).collect()
+        let (mut taken, mut refused) = (0, None);
+        for (i, part) in parts.iter().enumerate() {
+            notes.append(&part.notes, moved_max);
+            taken += part.taken;
+            if refused.is_none() && part.taken < part.boxes.len() {
+                refused = Some(i * PART + part.taken);
+            }
+        }
+        (taken, refused)
     }
 }
 
 /// Whether proxies ascend.
 #[cfg(feature = "rayon")]
-pub(super) fn ascend(boxes: &[(Proxy, Aabb)]) -> bool {
+fn ascend(boxes: &[(Proxy, Aabb)]) -> bool {
     let is_before = |(a, _): &(Proxy, Aabb), (b, _): &(Proxy, Aabb)| a < b;
     first_part_where(boxes, PART, 1, |part| !part.is_sorted_by(is_before)).is_none()
         && (PART..boxes.len()).step_by(PART).all(|next| is_before(&boxes[next - 1], &boxes[next]))
