@@ -201,7 +201,7 @@ impl NearLeafPairs for Approach<'_> {
             let x = in_a.triangle(i);
             let is_triangle = in_a.triangles() >> i & 1 == 1;
             let known = if is_triangle { near & in_b.triangles() } else { 0 };
-            let known_of = if known != 0 { distances(simd, &x, in_b) } else { Near::UNKNOWN };
+            let known_of = if known != 0 { distances(simd, &x, in_b, known) } else { Near::UNKNOWN };
             let Near { distance, least, .. } = &known_of;
             for j in bits(near) {
                 let is_known = known >> j & 1 == 1;

@@ -347,7 +347,7 @@ impl Approach<'_> {
     /// Looks at some lanes of the row from the core of a round shape.
     #[inline(always)]
     fn look_from_core<S: Simd>(&mut self, simd: S, round: &Round, mut near: u32, best: &mut f64) {
-        let known = round.distances(simd, self.row);
+        let known = round.distances(simd, self.row, near);
         *self.primitive_tests += u64::from(near.count_ones());
         while let Some(lane) = known.nearest(near) {
             near &= !(1 << lane);
@@ -379,9 +379,10 @@ impl Approach<'_> {
         }
         let from_convex = &self.frame.common[1];
         let [center, nearest] = self.from.map(|point| from_convex.transform_point3(point));
-        let of_center = distances_of_core(simd, &[center], self.row);
+        let of_center = distances_of_core(simd, &[center], self.row, near);
         let mut of_nearest = None;
         while let Some(lane) = of_center.nearest(near) {
+            let left = near;
             near &= !(1 << lane);
             if self.row.triangles() >> lane & 1 == 1 {
                 if self.shadow.parted(center, &of_center, lane, sought(*best)) {
@@ -391,7 +392,7 @@ impl Approach<'_> {
                 if nearest != center {
                     let known = of_nearest.get_or_insert_with(
                         #[inline(always)]
-                        || distances_of_core(simd, &[nearest], row),
+                        || distances_of_core(simd, &[nearest], row, left),
                     );
                     if self.shadow.parted(nearest, known, lane, sought(*best)) {
                         continue;

@@ -58,21 +58,21 @@ impl Round {
         Aabb::of_points(self.ends).inflated(self.radius)
     }
 
-    /// The distances of the core and the triangles of a row.
+    /// The distances of the core and the triangles of a row in some lanes, given as bits.
     #[inline(always)]
-    pub fn distances<S: Simd>(&self, simd: S, row: &Row) -> Near {
+    pub fn distances<S: Simd>(&self, simd: S, row: &Row, lanes: u32) -> Near {
         let [end, other] = self.ends;
         if end == other {
-            distances_of_core(simd, &[end], row)
+            distances_of_core(simd, &[end], row, lanes)
         } else {
-            distances_of_core(simd, &self.ends, row)
+            distances_of_core(simd, &self.ends, row, lanes)
         }
     }
 
     /// Which of the triangles in some lanes meet it, and which do not, by a gap or an overlap of at least `gap`.
     #[inline(always)]
     pub fn verdict<S: Simd>(&self, simd: S, row: &Row, lanes: u32, gap: f64) -> Verdict {
-        let near = self.distances(simd, row);
+        let near = self.distances(simd, row, lanes);
         let apart = exceed(simd, &near.least, self.radius + gap);
         let meet = !exceed(simd, &near.distance, self.radius - gap);
         Verdict { meet: meet & lanes, apart: apart & lanes }

@@ -37,7 +37,7 @@ pub fn cast_pairs(
     traversal: &mut Traversal,
     mut visit: impl FnMut(&[u32], &[u32], &mut f64),
 ) {
-    let duel = Duel::new(a, b, relative);
+    let duel = Duel::one_by_one(a, b, relative);
     let box_a = |place: Place| a.normal.unpack(&a.box_at(place));
     let moving_b = |place: Place| {
         let bounds: Aabb = b.normal.unpack(&b.box_at(place)).transformed(&relative.b_to_a);
@@ -79,7 +79,7 @@ pub fn cast_pairs(
                     }
                 }
             }
-            Step::Nothing => {}
+            Step::OpenBoth(..) | Step::Nothing => {}
         }
     }
 }

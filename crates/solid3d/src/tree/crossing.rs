@@ -25,10 +25,10 @@ use fearless_simd::{Simd, f32x8, f64x4};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// 8u for `f32`: see the module.
-const MARGIN: f64 = 4.0 * f32::EPSILON as f64;
+pub(super) const MARGIN: f64 = 4.0 * f32::EPSILON as f64;
 
 /// Covers what underflow may lose in `f32`.
-const UNDERFLOW: f64 = f32::MIN_POSITIVE as f64;
+pub(super) const UNDERFLOW: f64 = f32::MIN_POSITIVE as f64;
 
 /// A reach up to here means terms below 1e37, and their sums do not overflow in `f32`.
 const HUGE: f64 = 1e30;
@@ -37,15 +37,15 @@ const HUGE: f64 = 1e30;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// An affine map between tree coordinates, and the error it makes.
-struct Folded {
-    map: DAffine3,
-    abs: DMat3,
+pub(super) struct Folded {
+    pub map: DAffine3,
+    pub abs: DMat3,
     /// In each coordinate: the caller's slack, the rounding of the folding, and that of mapping a point within `[-1, 1]^3`.
-    slack: DVec3,
+    pub slack: DVec3,
 }
 
 impl Folded {
-    fn new(map: &DAffine3, slack: f64, from: &Normal, to: &Normal) -> Self {
+    pub fn new(map: &DAffine3, slack: f64, from: &Normal, to: &Normal) -> Self {
         let linear = map.matrix3 * from.scale * to.inverse;
         let offset = map.matrix3 * from.origin + map.translation - to.origin;
         let terms = abs(&map.matrix3) * from.origin.abs() + map.translation.abs() + to.origin.abs();
@@ -64,7 +64,7 @@ fn frobenius(m: &DMat3) -> f64 {
     (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt()
 }
 
-fn row_sums(m: &DMat3) -> DVec3 {
+pub(super) fn row_sums(m: &DMat3) -> DVec3 {
     m.x_axis + m.y_axis + m.z_axis
 }
 
@@ -129,6 +129,11 @@ impl Crossing {
     pub fn new(relative: &Relative, b: &Normal, a: &Normal) -> Self {
         let into = Folded::new(&relative.b_to_a, relative.slack_in_a, b, a);
         let back = Folded::new(&relative.a_to_b, relative.slack_in_b, a, b);
+        Self::of(&into, &back)
+    }
+
+    /// The same from the way of boxes to the lanes, and that back.
+    pub fn of(into: &Folded, back: &Folded) -> Self {
         let rows = back.map.matrix3.transpose().to_cols_array_2d();
         let half_rows = rows.map(|row| row.map(|x| (0.5 * x) as f32));
         Crossing {

@@ -51,7 +51,7 @@ pub(super) fn extents<S: Simd>(simd: S, node: &Node) -> [f32; WIDTH] {
 }
 
 /// A bit for each lane.
-const LANES: u32 = (1 << WIDTH) - 1;
+pub(super) const LANES: u32 = (1 << WIDTH) - 1;
 
 /// What a gap counts in a distance, squared: on each axis, and for the norm of the gaps on all three.
 #[derive(Clone, Copy, Debug)]
@@ -134,13 +134,13 @@ fn three<T>(f: impl Fn(usize) -> T) -> [T; 3] {
 }
 
 #[inline(always)]
-fn splat<S: Simd>(simd: S, x: f32) -> f32x8<S> {
+pub(super) fn splat<S: Simd>(simd: S, x: f32) -> f32x8<S> {
     f32x8::splat(simd, x)
 }
 
 /// The ends of the lanes' intervals on an axis.
 #[inline(always)]
-fn lanes<S: Simd>(simd: S, node: &Node, axis: usize) -> (f32x8<S>, f32x8<S>) {
+pub(super) fn lanes<S: Simd>(simd: S, node: &Node, axis: usize) -> (f32x8<S>, f32x8<S>) {
     (f32x8::load_array_ref(simd, &node.min[axis]), f32x8::load_array_ref(simd, &node.max[axis]))
 }
 

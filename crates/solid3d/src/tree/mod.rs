@@ -20,6 +20,7 @@
 //! | `validate` | the invariants |
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
+//! | `eights` | the eight boxes of a node against the eight of another, across such a map |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
 //! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
 //! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
@@ -39,6 +40,7 @@ mod cast_pairs;
 mod clusters;
 mod cost;
 mod crossing;
+mod eights;
 mod lanes;
 mod leaf_points;
 mod metric;

@@ -81,7 +81,7 @@ pub(crate) fn nearest_pairs_on(
     traversal: &mut Traversal,
     visitor: &mut impl NearLeafPairs,
 ) {
-    let duel = Duel::new(a, b, relative);
+    let duel = Duel::one_by_one(a, b, relative);
     let metric = Folded::new(metric, &a.normal, &b.normal);
     let faces = facing.and_then(|facing| Faces::new(facing, a, b));
     dispatch!(level, simd => walk(simd, &duel, &metric, faces.as_ref(), best, traversal, visitor));
@@ -147,7 +147,7 @@ fn walk<S: Simd>(
                     push_unless_far((least, pair), *best, stack, from);
                 }
             }
-            Step::Nothing => {}
+            Step::OpenBoth(..) | Step::Nothing => {}
         }
     }
 }

@@ -4,7 +4,8 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use solid_convex::simd::{Level, dispatch, level};
 
-use super::crossing::{Crossing, Probe};
+use super::crossing::{Crossing, Folded, Probe};
+use super::eights::{Image, Overlaps, overlaps};
 use super::lanes::{bits, extents, overlapping_probe};
 use super::node::{Kind, WIDTH};
 use super::packed::PackedBox;
@@ -95,6 +96,8 @@ fn walk<B, S: Simd>(
     let wants_first = visitor.wants_first();
     // Of the boxes tested last: several in a row are often the same.
     let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
+    // Of the nodes opened together last; gaps in the order of the pairs that they gave.
+    let (mut found, mut gaps) = (Overlaps::default(), [0.0; WIDTH * WIDTH]);
     while let Some(pair) = stack.pop() {
         match duel.step(&pair) {
             Step::Leaves(leaf_a, leaf_b) => {
@@ -127,10 +130,46 @@ fn walk<B, S: Simd>(
                     deepest_last(&mut stack[from..], hits, &gaps.to_array());
                 }
             }
+            Step::OpenBoth(node_a, node_b, images) => {
+                let (lanes_a, lanes_b) = (&a.nodes[node_a], &b.nodes[node_b]);
+                overlaps(simd, lanes_a, lanes_b, images, &a.box_at(pair.a), &mut found);
+                counters.box_tests += u64::from(found.tested.count_ones());
+                let (extents_a, extents_b) = (extents(simd, lanes_a), extents(simd, lanes_b));
+                let from = stack.len();
+                for lane_b in bits(found.tested) {
+                    for lane_a in bits(found.hits[lane_b]) {
+                        if wants_first {
+                            gaps[stack.len() - from] = found.gaps[lane_b][lane_a];
+                        }
+                        stack.push(Pair {
+                            a: Place::lane(node_a, lane_a),
+                            b: Place::lane(node_b, lane_b),
+                            extent_a: extents_a[lane_a],
+                            extent_b: extents_b[lane_b],
+                        });
+                    }
+                }
+                if wants_first {
+                    sort_deepest_last(&mut stack[from..], &mut gaps);
+                }
+            }
             Step::Nothing => {}
         }
     }
     ControlFlow::Continue(())
+}
+
+/// Sorts entries by how deep they overlap, the deepest last; of equal ones the one that came last.
+#[inline(always)]
+fn sort_deepest_last(entries: &mut [Pair], gaps: &mut [f32; WIDTH * WIDTH]) {
+    for count in 1..entries.len() {
+        let mut at = count;
+        while at > 0 && gaps[at - 1] < gaps[at] {
+            entries.swap(at - 1, at);
+            gaps.swap(at - 1, at);
+            at -= 1;
+        }
+    }
 }
 
 /// Sorts the entries of some lanes by how deep they overlap, the deepest last; of equal ones the highest lane.
@@ -185,28 +224,42 @@ pub(super) struct Duel<'t> {
     /// For boxes of `a` against lanes of `b`, and the reverse.
     pub a_to_b: Crossing,
     pub b_to_a: Crossing,
+    /// For boxes of `b` taken to `a`, and the reverse, eight at once.
+    images: Option<[Image; 2]>,
     /// The size of things in `a` over their size in `b`.
     magnification: f32,
 }
 
+/// Nodes are opened together when neither is larger than the other by more than this: than by about one level.
+const EVEN: f32 = 3.0;
+
 /// What to do with a pair of subtrees.
-pub(super) enum Step<'t> {
+pub(super) enum Step<'d, 't> {
     /// Both are leaves.
     Leaves(&'t [u32], &'t [u32]),
     /// The node of `a` is to be opened.
     OpenA(usize),
     /// The node of `b` is to be opened.
     OpenB(usize),
+    /// Both nodes are to be opened, which are of about the same size: with the images of `b` in `a` and the reverse.
+    OpenBoth(usize, usize, &'d [Image; 2]),
     /// One is an empty lane.
     Nothing,
 }
 
 impl<'t> Duel<'t> {
     pub fn new(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
-        let b_to_a = Crossing::new(relative, &b.normal, &a.normal);
-        let a_to_b = Crossing::new(&relative.swapped(), &a.normal, &b.normal);
+        let of_b = Folded::new(&relative.b_to_a, relative.slack_in_a, &b.normal, &a.normal);
+        let of_a = Folded::new(&relative.a_to_b, relative.slack_in_b, &a.normal, &b.normal);
+        let (b_to_a, a_to_b) = (Crossing::of(&of_b, &of_a), Crossing::of(&of_a, &of_b));
+        let images = Image::new(&of_b).zip(Image::new(&of_a)).map(|(of_b, of_a)| [of_b, of_a]);
         let magnification = b_to_a.magnification() as f32;
-        Duel { a, b, a_to_b, b_to_a, magnification }
+        Duel { a, b, a_to_b, b_to_a, images, magnification }
+    }
+
+    /// The same, of which no two nodes are ever opened together.
+    pub fn one_by_one(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
+        Duel { images: None, ..Self::new(a, b, relative) }
     }
 
     /// The two trees.
@@ -219,9 +272,10 @@ impl<'t> Duel<'t> {
         }
     }
 
-    /// The larger of two nodes is opened (thesis, 5.2.3).
+    /// The larger of two nodes is opened (thesis, 5.2.3); or both, where they are about as large, so that their children are held against
+    /// each other all at once.
     #[inline(always)]
-    pub fn step(&self, pair: &Pair) -> Step<'t> {
+    pub fn step(&self, pair: &Pair) -> Step<'_, 't> {
         let (child_a, child_b) = (self.a.child_at(pair.a), self.b.child_at(pair.b));
         match (child_a.kind(), child_b.kind()) {
             (Kind::Empty, _) | (_, Kind::Empty) => Step::Nothing,
@@ -229,6 +283,13 @@ impl<'t> Duel<'t> {
             (Kind::Inner(node), Kind::Leaf(_)) => Step::OpenA(node),
             (Kind::Leaf(_), Kind::Inner(node)) => Step::OpenB(node),
             (Kind::Inner(node_a), Kind::Inner(node_b)) => {
+                let (size_a, size_b) = (pair.extent_a, self.magnification * pair.extent_b);
+                if let Some(images) = &self.images
+                    && size_a <= EVEN * size_b
+                    && size_b <= EVEN * size_a
+                {
+                    return Step::OpenBoth(node_a, node_b, images);
+                }
                 if pair.extent_a >= self.magnification * pair.extent_b {
                     Step::OpenA(node_a)
                 } else {

@@ -11,7 +11,7 @@ use fearless_simd::prelude::*;
 use glam::DVec3;
 
 use super::{
-    Lanes, Row, Vector, Wide, along, cross, dot, minus, one, splat, splat_triangle, steps, store, times,
+    Lanes, Row, Vector, Wide, along, cross, dot, minus, one, splat, splat_triangle, steps_with, store, times,
 };
 use crate::pair::triangle_triangle::Triangle;
 use crate::tree::bits;
@@ -68,32 +68,38 @@ pub(crate) const CONFIRMED: f64 = 1e-13;
 /// The greater of a positive number and this is not zero: what is divided by.
 const TINY: f64 = f64::MIN_POSITIVE;
 
-/// The distances of a triangle and those of a row.
+/// The distances of a triangle and those of a row in some lanes, given as bits; of others nothing need be known.
 #[inline(never)] // nor into the loops of the walk: on the scalar level, optimising these then takes minutes
-pub(crate) fn distances<S: Simd>(simd: S, x: &Triangle, row: &Row) -> Near {
+pub(crate) fn distances<S: Simd>(simd: S, x: &Triangle, row: &Row, lanes: u32) -> Near {
     simd.vectorize(
         #[inline(always)]
-        || distances_on(simd, x, row),
+        || distances_on(simd, x, row, lanes),
     )
 }
 
-/// The distances of a point, or of a segment, by its two ends, and the triangles of a row: as of a triangle that is but that.
+/// The distances of a point, or of a segment, by its two ends, and the triangles of a row in some lanes: as of a triangle that is
+/// but that.
 #[inline(never)] // see `distances`
-pub(crate) fn distances_of_core<S: Simd, const N: usize>(simd: S, core: &[DVec3; N], row: &Row) -> Near {
+pub(crate) fn distances_of_core<S: Simd, const N: usize>(
+    simd: S,
+    core: &[DVec3; N],
+    row: &Row,
+    lanes: u32,
+) -> Near {
     simd.vectorize(
         #[inline(always)]
-        || distances_of_core_on(simd, core, row),
+        || distances_of_core_on(simd, core, row, lanes),
     )
 }
 
 #[inline(always)]
-fn distances_of_core_on<S: Simd, const N: usize>(simd: S, core: &[DVec3; N], row: &Row) -> Near {
+fn distances_of_core_on<S: Simd, const N: usize>(simd: S, core: &[DVec3; N], row: &Row, lanes: u32) -> Near {
     let mut x = [splat(simd, core[0]); N];
     for i in 1..N {
         x[i] = splat(simd, core[i]);
     }
     let mut near = Near::UNKNOWN;
-    for from in steps::<S>() {
+    for from in steps_with::<S>(lanes) {
         let y = row.corners(simd, from);
         let mut best = Best { squared: one(simd, f64::INFINITY), v: x[0] };
         if N == 1 {
@@ -120,10 +126,10 @@ fn point_and_all<S: Simd>(simd: S, x: Vector<S>, y: &[Vector<S>; 3], best: &mut 
 }
 
 #[inline(always)]
-fn distances_on<S: Simd>(simd: S, x: &Triangle, row: &Row) -> Near {
+fn distances_on<S: Simd>(simd: S, x: &Triangle, row: &Row, lanes: u32) -> Near {
     let x = splat_triangle(simd, x);
     let mut near = Near::UNKNOWN;
-    for from in steps::<S>() {
+    for from in steps_with::<S>(lanes) {
         let y = row.corners(simd, from);
         let mut best = Best { squared: one(simd, f64::INFINITY), v: x[0] };
         for i in 0..3 {
@@ -230,10 +236,10 @@ mod tests {
                 if lane == 7 && round % 2 == 0 { [q, r, q.lerp(r, 0.3)] } else { [q, r, point()] }
             });
             let row = row_of(&ys);
-            let point =
-                levels().map(|level| dispatch!(level, simd => distances_of_core(simd, &[core[0]], &row)));
+            let point = levels()
+                .map(|level| dispatch!(level, simd => distances_of_core(simd, &[core[0]], &row, 0xff)));
             let segment =
-                levels().map(|level| dispatch!(level, simd => distances_of_core(simd, &core, &row)));
+                levels().map(|level| dispatch!(level, simd => distances_of_core(simd, &core, &row, 0xff)));
             let bits = |near: &Near| [near.distance, near.least].map(|lanes| lanes.map(f64::to_bits));
             assert!(bits(&point[1]) == bits(&point[0]) && bits(&segment[1]) == bits(&segment[0]));
             for (lane, y) in ys.iter().enumerate() {
@@ -279,7 +285,7 @@ mod tests {
             let x = triangle(DVec3::ZERO);
             let ys = std::array::from_fn(|lane| triangle(DVec3::Z * 0.25 * lane as f64));
             let row = row_of(&ys);
-            let all = levels().map(|level| dispatch!(level, simd => distances(simd, &x, &row)));
+            let all = levels().map(|level| dispatch!(level, simd => distances(simd, &x, &row, 0xff)));
             let bits = |near: &Near| [near.distance, near.least].map(|lanes| lanes.map(f64::to_bits));
             assert!(bits(&all[1]) == bits(&all[0]));
             for (lane, y) in ys.iter().enumerate() {

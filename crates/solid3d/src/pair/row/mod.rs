@@ -311,6 +311,15 @@ fn steps<S: Simd>() -> impl Iterator<Item = usize> {
     (0..LEAF_SIZE).step_by(width::<S>())
 }
 
+/// Those of them in which some lanes are, given as bits.
+#[inline(always)]
+fn steps_with<S: Simd>(lanes: u32) -> impl Iterator<Item = usize> {
+    steps::<S>().filter(
+        #[inline(always)]
+        move |from| lanes >> from & ((1 << width::<S>()) - 1) != 0,
+    )
+}
+
 #[inline(always)]
 const fn width<S: Simd>() -> usize {
     <Wide<S> as SimdBase<S>>::LEN
