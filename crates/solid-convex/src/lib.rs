@@ -27,6 +27,8 @@ pub mod gjk;
 mod kinds;
 mod rounded;
 pub mod simd;
+#[doc(hidden)]
+pub mod similarity;
 mod simplex;
 mod size;
 mod support;

@@ -66,12 +66,18 @@ pub fn vectorize<R>(wide: Wide, kernel: impl FnOnce() -> R) -> R {
 
 /// The level that everything runs on: wide, if this machine can, unless the environment variable `SOLID_SIMD` is `scalar` when
 /// the process first asks.
+#[inline]
 pub fn level() -> Level {
     static LEVEL: OnceLock<Level> = OnceLock::new();
-    *LEVEL.get_or_init(|| match std::env::var_os("SOLID_SIMD") {
+    *LEVEL.get_or_init(chosen)
+}
+
+#[cold]
+fn chosen() -> Level {
+    match std::env::var_os("SOLID_SIMD") {
         Some(name) if name == "scalar" => scalar(),
         _ => widest(),
-    })
+    }
 }
 
 /// All levels that this machine can run: for tests that hold them against each other.

@@ -8,8 +8,9 @@ use std::ops::RangeInclusive;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::Support;
 use crate::difference::SUPPORT_ERROR;
+use crate::similarity::{STRETCH_ERROR, rough_square};
+use crate::{Polytope, Support};
 
 /// Balls about a point, by which a pair may be decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,9 +47,65 @@ where
     B: Support + ?Sized,
 {
     match (a.as_polytope(), b.as_polytope()) {
-        // Without a call that would return them through memory.
-        (Some(a), Some(b)) => compare(a.own_balls(), placement_a, b.own_balls(), placement_b),
+        (Some(a), Some(b)) => match glance(a, placement_a, b, placement_b) {
+            Glance::Sure(answer) => Some(answer),
+            Glance::Open => None,
+            // Without a call that would return them through memory.
+            Glance::Unusual => compare(a.own_balls(), placement_a, b.own_balls(), placement_b),
+        },
         _ => compare(&a.balls()?, placement_a, &b.balls()?, placement_b),
+    }
+}
+
+/// What a glance at two placed polytopes tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Glance {
+    /// Whether they intersect: what [`intersects`](super::intersects) says. The placements are good: finite, and rotations or reflections
+    /// with a uniform scale.
+    Sure(bool),
+    /// Nothing, but that the placements are good.
+    Open,
+    /// Nothing, of the placements neither.
+    Unusual,
+}
+
+/// Whether two placed polytopes intersect, where the balls around them and in them tell, and the placements turn and scale nearly alike in all
+/// directions, of a plain size. Nothing is asked of the placements: they may hold anything.
+///
+/// Cost: some 120 sums and products, no support point.
+///
+/// ```
+/// use solid_convex::{Polytope, gjk::{self, Glance}};
+/// use glam::{DAffine3, DVec3};
+/// let corners = (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)));
+/// let block = Polytope::new(corners.collect()).unwrap();
+/// let here = DAffine3::IDENTITY;
+/// let glance = |at: DAffine3| gjk::glance(&block, &here, &block, &at);
+/// assert_eq!(glance(DAffine3::from_translation(DVec3::X * 2.0)), Glance::Sure(false));
+/// assert_eq!(glance(DAffine3::from_translation(DVec3::X * 1.1)), Glance::Open);
+/// assert_eq!(glance(DAffine3::from_scale(DVec3::new(1.0, 2.0, f64::NAN))), Glance::Unusual);
+/// ```
+#[inline]
+pub fn glance(a: &Polytope, placement_a: &DAffine3, b: &Polytope, placement_b: &DAffine3) -> Glance {
+    let (Some(square_a), Some(square_b)) = (rough_square(placement_a), rough_square(placement_b)) else {
+        return Glance::Unusual;
+    };
+    let offset = placement_b.translation - placement_a.translation;
+    let (on_a, on_b) = (a.own_balls().center, b.own_balls().center);
+    let square = (placement_a.matrix3 * on_a - (placement_b.matrix3 * on_b + offset)).length_squared();
+    let (scale_a, scale_b) = (square_a.sqrt(), square_b.sqrt());
+    let ([inside_a, outside_a], [inside_b, outside_b]) = (a.sure_radii(), b.sure_radii());
+    let near = inside_a * scale_a + inside_b * scale_b;
+    let far = outside_a * scale_a + outside_b * scale_b;
+    if !PLAIN_SQUARES.contains(&(far * far)) {
+        return Glance::Open;
+    }
+    if square > far * far {
+        Glance::Sure(false)
+    } else if near > 0.0 && square < near * near {
+        Glance::Sure(true)
+    } else {
+        Glance::Open
     }
 }
 
@@ -78,6 +135,16 @@ fn compare(a: &Balls, placement_a: &DAffine3, b: &Balls, placement_b: &DAffine3)
 }
 
 impl Balls {
+    /// Radii by which two objects certainly overlap or are apart, under placements that nearly are similarities: the distance of the
+    /// centres is less than the sum of the first, or more than that of the second.
+    ///
+    /// The size of the data is at most 2.75 times the sum of the [extents](Balls::extent) and the distance of the centres, and a sum of the coordinates of a unit vector at
+    /// most the root of three: eight times the least gap for each extent is more than both make of it.
+    pub(crate) fn sure_radii(&self) -> [f64; 2] {
+        let margin = 8.0 * GAP_MIN * self.extent();
+        [self.inner * (1.0 - 2.0 * STRETCH_ERROR) - margin, self.outer * (1.0 + 2.0 * STRETCH_ERROR) + margin]
+    }
+
     /// No coordinate of the object is larger.
     fn extent(&self) -> f64 {
         self.outer + self.center.abs().max_element()
@@ -115,7 +182,7 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
-    use crate::gjk::intersection;
+    use crate::gjk::{intersection, intersects_closely};
     use crate::testing::{placement, shapes};
     use crate::{Polytope, Sphere};
 
@@ -187,6 +254,47 @@ mod tests {
             }
         }
         assert!(apart * 5 > total && meeting * 5 > total, "{apart} and {meeting} of {total}");
+    }
+
+    /// Of polytopes under similarities, by the balls that stay balls; also close to where the balls touch, from inside and outside.
+    #[test]
+    fn what_a_glance_tells_a_search_says_too() {
+        let (octahedron, far) = (octahedron(), DVec3::new(1e6, -3e5, 2e4));
+        let cloud = Polytope::new((0..40).map(|i| placement(i).translation).collect()).unwrap();
+        let (mut apart, mut meeting, mut open) = (0, 0, 0);
+        for k in 0..20_000 {
+            let pair = [[&octahedron; 2], [&octahedron; 2], [&octahedron, &cloud], [&cloud, &octahedron]];
+            let [a, b] = pair[k as usize % 4];
+            let unit = [1.0, 1e-20, 1e20, 1e-9][k as usize / 7 % 4];
+            let [mut at_a, mut at_b] =
+                [(k, 0.3), (7 * k + 1, [0.3, 12.0][k as usize / 4 % 2])].map(|(k, spread)| {
+                    let DAffine3 { matrix3, translation } = placement(k);
+                    let sign = if k % 5 == 0 { -1.0 } else { 1.0 };
+                    DAffine3 { matrix3: matrix3 * (sign * unit), translation: translation * (spread * unit) }
+                });
+            if k % 13 == 0 {
+                // Centres at the distance at which the balls touch, up to a few roundings.
+                let radii =
+                    [a.own_balls().outer + b.own_balls().outer, a.own_balls().inner + b.own_balls().inner]
+                        [k as usize / 13 % 2];
+                let error = [-1e-6, -1e-12, 0.0, 1e-12, 1e-6][k as usize / 26 % 5];
+                let way = placement(k + 3).translation.normalize() * (radii * (1.0 + error) * unit);
+                at_b.translation =
+                    at_a.transform_point3(a.own_balls().center) + way - at_b.matrix3 * b.own_balls().center;
+            } else if k % 11 == 0 {
+                (at_a.translation, at_b.translation) =
+                    (at_a.translation + far * unit, at_b.translation + far * unit);
+            }
+            match glance(a, &at_a, b, &at_b) {
+                Glance::Sure(answer) => {
+                    assert_eq!(answer, intersects_closely(a, &at_a, b, &at_b), "{k}");
+                    if answer { meeting += 1 } else { apart += 1 }
+                }
+                Glance::Open => open += 1,
+                Glance::Unusual => panic!("a similarity of plain size"),
+            }
+        }
+        assert!(apart > 4_000 && meeting > 4_000 && open > 1_000, "{apart}, {meeting}, {open}");
     }
 
     /// Between two balls nothing is left out: what is decided changes at a gap of the margin, and never on its wrong side.

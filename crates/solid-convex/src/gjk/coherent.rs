@@ -129,6 +129,13 @@ impl Memory {
         still.unwrap_or_else(|| self.intersects_anew(a, placement_a, b, placement_b))
     }
 
+    /// That a question was answered by other means, as a [`glance`](super::glance): what [`still`](Memory::still) knew is forgotten. It ran
+    /// out, and asking it again is seldom worth it before the next search.
+    #[inline]
+    pub fn rest(&mut self) {
+        self.clock.stop();
+    }
+
     /// The same, when [`still`](Memory::still) was asked already, and said nothing.
     pub fn intersects_anew<A, B>(
         &mut self,

@@ -116,9 +116,25 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    if let Some(answer) = balls::decide(a, placement_a, b, placement_b) {
-        return answer;
-    }
+    let decided = balls::decide(a, placement_a, b, placement_b);
+    decided.unwrap_or_else(|| intersects_closely(a, placement_a, b, placement_b))
+}
+
+/// What [`intersects`] says, by a search at once: for objects of which a [`glance`](super::glance) told nothing.
+///
+/// ```
+/// use solid_convex::{Sphere, gjk};
+/// use glam::{DAffine3, DVec3};
+/// let ball = Sphere::new(1.0)?;
+/// let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+/// assert!(gjk::intersects_closely(&ball, &at(0.0), &ball, &at(2.0)));
+/// # Ok::<(), solid_convex::SizeError>(())
+/// ```
+pub fn intersects_closely<A, B>(a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3) -> bool
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
     match lean::run(a, placement_a, b, placement_b, SEARCH).sure {
         Sure::Separated => false,
         Sure::Inside => true,

@@ -22,13 +22,15 @@ mod lean;
 #[cfg(test)]
 mod tests;
 
-pub use balls::Balls;
+pub use balls::{Balls, Glance, glance};
 pub use cast::{CAST_ERROR, Impact, cast};
 pub use coherent::{Coherent, Memory};
 pub(crate) use descent::{End, Goal, descend};
 pub(crate) use distance::DISTANCE_TOLERANCE;
 pub use distance::{Closest, closest_points, closest_points_within};
-pub use intersection::{Outcome, Witness, intersection, intersects, separates, separating_axis};
+pub use intersection::{
+    Outcome, Witness, intersection, intersects, intersects_closely, separates, separating_axis,
+};
 
 /// Objects nearer to each other than this, or overlapping less, relative to the size of the data, may be reported
 /// as touching. The size of the data is the sum of the objects' extents and of the distance of their local origins.

@@ -42,6 +42,8 @@ pub struct Polytope {
     map: Option<DirectionMap>,
     reach: DVec3,
     balls: Balls,
+    /// Those of the balls.
+    sure_radii: [f64; 2],
 }
 
 impl Polytope {
@@ -51,7 +53,8 @@ impl Polytope {
         let (reach, center) = (reach(points.iter().copied()), mean(points.iter().copied()));
         let outer = points.iter().map(|&p| distance(p, center)).fold(0.0, f64::max);
         let map = (points.len() > SCAN_MAX).then(|| DirectionMap::new(&points, reach)).flatten();
-        Some(Polytope { points, rows, map, reach, balls: Balls { center, inner: 0.0, outer } })
+        let balls = Balls { center, inner: 0.0, outer };
+        Some(Polytope { points, rows, map, reach, balls, sure_radii: balls.sure_radii() })
     }
 
     /// The same, where the faces of the hull are known: the triangles `faces` of its points, which close it. Many pairs that are deep in
@@ -72,6 +75,7 @@ impl Polytope {
         let points = |face: &[u32; 3]| face.map(|i| self.points[i as usize]);
         let heights = faces.iter().map(|face| height_over(points(face), self.balls.center));
         self.balls.inner = if faces.is_empty() { 0.0 } else { heights.fold(f64::INFINITY, f64::min) };
+        self.sure_radii = self.balls.sure_radii();
         self
     }
 
@@ -79,6 +83,12 @@ impl Polytope {
     #[inline]
     pub(crate) fn own_balls(&self) -> &Balls {
         &self.balls
+    }
+
+    /// What [`Balls::sure_radii`] gives of them.
+    #[inline]
+    pub(crate) fn sure_radii(&self) -> [f64; 2] {
+        self.sure_radii
     }
 
     /// The support point, for searches that are compiled into one piece with it.

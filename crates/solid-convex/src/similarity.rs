@@ -1,0 +1,169 @@
+//! Placements that turn and scale alike in all directions: known nearly, by two numbers, or closely, of two at once, by wide instructions.
+
+use std::ops::RangeInclusive;
+
+use fearless_simd::{Simd, f64x4, mask64x4, prelude::*};
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::MAGNITUDE_MAX;
+
+/// How far the scalar products of a placement's rows, or columns, relative to their squared length, may be from those of
+/// perpendicular ones of equal length. Products of a dozen rotations in f64 are within it. By Gershgorin's circles what it lets through
+/// changes no length by more than one and a half of it, when it is asked of rows, and no less of columns.
+pub const SKEW_MAX: f64 = 256.0 / (1u64 << 53) as f64;
+
+/// Squares of scales that are plain: no product of a few of them overflows or loses digits.
+const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
+
+/// How much less the squared volume of a placement may be than the cube of its mean squared stretch, relative to that, to be taken for nearly a similarity:
+/// some hundred times the rounding error of the two.
+const VOLUME_LOSS_MAX: f64 = 1e-13;
+
+/// Of what is nearly a similarity, no stretch differs by more than this part from the scale. Let the squares of the stretches be `f (1 + e)`, where `f` is their
+/// mean: if one `e` is given, their product, which is the squared volume, is at most `f^3 (1 - 3/4 e^2 + 1/4 |e|^3)`, where the two others are
+/// equal. So `e^2` is at most twice the loss, and half of `e` 2.3e-7.
+pub const STRETCH_ERROR: f64 = 3e-7;
+
+/// The square of the scale of a placement of a plain size that nearly is a similarity: a good placement. `None` for others.
+#[inline(always)]
+pub fn rough_square(DAffine3 { matrix3, translation }: &DAffine3) -> Option<f64> {
+    /// The square of what has coordinates below the greatest allowed.
+    const SQUARE_MAX: f64 = MAGNITUDE_MAX * MAGNITUDE_MAX;
+    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *matrix3;
+    let square = (x.length_squared() + y.length_squared() + z.length_squared()) * (1.0 / 3.0);
+    let volume = x.cross(y).dot(z);
+    // All is false of what is no number.
+    let good = square >= *PLAIN_SQUARES.start()
+        && square <= *PLAIN_SQUARES.end()
+        && volume * volume >= square * square * square * (1.0 - VOLUME_LOSS_MAX)
+        && translation.length_squared() <= SQUARE_MAX;
+    good.then_some(square)
+}
+
+/// The squares of the scales of two placements that are similarities of plain sizes, and so good placements; `None` unless both are.
+#[inline(always)]
+pub fn plain_squares<S: Simd>(simd: S, [a, b]: [&DAffine3; 2]) -> Option<[f64; 2]> {
+    let ((of_a, a_is_good), (of_b, b_is_good)) = (plain_square(simd, a), plain_square(simd, b));
+    // The fourth lane is of no row.
+    ((a_is_good & b_is_good).to_bitmask() & 0b111 == 0b111).then_some([of_a, of_b])
+}
+
+/// The square of the scale of a placement, if it is a good one that has a scale, and whether it is: then all is true, but what the fourth lane
+/// holds.
+///
+/// A similarity times its transpose is its squared scale: that takes the sums of products of columns, without any across a vector. The placement
+/// is read as it lies, column by column, with the next after each. One mask for all, since single comparisons are slow to join.
+#[inline(always)]
+fn plain_square<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) -> (f64, mask64x4<S>) {
+    let columns: &[f64; 9] = matrix3.as_ref();
+    let at = |start: usize| f64x4::from_slice(simd, &columns[start..start + 4]);
+    let splat = |value: f64| f64x4::splat(simd, value);
+    let beyond = |bits: u64| mask64x4::from_bitmask(simd, bits);
+    let (x, y, before_z) = (at(0), at(3), at(5));
+    let z = before_z.slide::<1>(before_z);
+    // Of each row with itself; of the first and the second with the next; of the first with the third.
+    let lengths = x * x + y * y + z * z;
+    let next = x * at(1) + y * at(4) + z * before_z.slide::<2>(before_z);
+    let outer = x * at(2) + y * before_z + z * before_z.slide::<3>(before_z);
+    let square = lengths.as_slice()[0];
+    let (of_all, skew_max) = (splat(square), splat(square * SKEW_MAX));
+    let DVec3 { x, y, z } = *translation;
+    // False of what is no number.
+    let good = (lengths - of_all).abs().simd_le(skew_max)
+        & (next.abs().simd_le(skew_max) | beyond(0b1100))
+        & (outer.abs().simd_le(skew_max) | beyond(0b1110))
+        & f64x4::simd_from(simd, [x, y, z, z]).abs().simd_le(splat(MAGNITUDE_MAX))
+        & of_all.simd_ge(splat(*PLAIN_SQUARES.start()))
+        & of_all.simd_le(splat(*PLAIN_SQUARES.end()));
+    (square, good)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{dispatch, levels};
+    use crate::testing::placement;
+
+    fn scales(at: [&DAffine3; 2]) -> Option<[f64; 2]> {
+        let found = levels().map(|level| {
+            dispatch!(level, simd => plain_squares(simd, at).map(|squares| squares.map(f64::to_bits)))
+        });
+        assert_eq!(found[0], found[1], "every level says the same");
+        found[0].map(|squares| squares.map(|square| f64::from_bits(square).sqrt()))
+    }
+
+    #[test]
+    fn turns_and_scales_are_similarities_and_skews_are_none() {
+        let here = DAffine3::IDENTITY;
+        let mut turn = DMat3::IDENTITY;
+        for k in 1..=12 {
+            turn *= DMat3::from_rotation_y(f64::from(k)) * DMat3::from_rotation_x(0.7);
+            let at = |linear: DMat3| DAffine3 { matrix3: linear, ..placement(k) };
+            for scale in [1e-29, 0.1, -1.0, 1e29] {
+                for pair in [[&at(turn * scale), &here], [&here, &at(turn * scale)]] {
+                    let found = scales(pair).unwrap();
+                    assert!((found[0] * found[1] / scale.abs() - 1.0).abs() < 1e-13);
+                }
+            }
+            let skews = [
+                DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.0 + 1e-13)),
+                DMat3::from_diagonal(DVec3::new(1.0, 2.0, 1.0)),
+                DMat3::from_diagonal(DVec3::new(1.0, 0.0, 1.0)),
+                DMat3::from_diagonal(DVec3::splat(1e-31)),
+                DMat3::from_diagonal(DVec3::splat(1e31)),
+                DMat3::from_diagonal(DVec3::new(1.0, f64::NAN, 1.0)),
+                DMat3::from_cols(DVec3::X, DVec3::new(1e-13, 1.0, 0.0), DVec3::Z),
+                DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(0.0, 1e-13, 1.0)),
+                DMat3::from_cols(DVec3::new(1.0, 0.0, 1e-13), DVec3::Y, DVec3::Z),
+            ];
+            for skew in skews {
+                assert_eq!(scales([&at(turn * skew), &here]), None, "{skew}");
+                assert_eq!(scales([&here, &at(skew * turn)]), None, "{skew}");
+            }
+            for wild in [f64::NAN, f64::INFINITY, 1e101] {
+                let lost = DAffine3 { translation: DVec3::new(0.0, wild, 0.0), ..at(turn) };
+                assert_eq!(scales([&lost, &here]), None, "{wild}");
+                assert_eq!(scales([&here, &lost]), None, "{wild}");
+            }
+        }
+    }
+
+    /// Law: whatever is let through stretches no vector by more or less than it says; and what is a similarity is let through.
+    #[test]
+    fn what_nearly_is_a_similarity_stretches_nearly_alike() {
+        let (mut passed, mut refused) = (0, 0);
+        for k in 0..20_000 {
+            let part = |step: f64| (f64::from(k) * step).fract() * 2.0 - 1.0;
+            let size = 10f64.powi(-(k as i32 % 12));
+            let skew = DMat3::from_cols(
+                DVec3::new(part(0.37), part(0.91), part(0.13)),
+                DVec3::new(part(0.61), part(0.47), part(0.83)),
+                DVec3::new(part(0.29), part(0.71), part(0.53)),
+            );
+            let scale = [1.0, 1e-29, 1e29, -0.3][k as usize % 4];
+            let DAffine3 { matrix3, translation } = placement(k);
+            let at = DAffine3 { matrix3: matrix3 * (DMat3::IDENTITY + skew * size) * scale, translation };
+            assert!(rough_square(&DAffine3 { matrix3: matrix3 * scale, translation }).is_some());
+            let Some(square) = rough_square(&at) else {
+                refused += 1;
+                continue;
+            };
+            passed += 1;
+            for n in 0..10 {
+                let v = placement(k + n).translation.normalize();
+                let stretch = (at.matrix3 * v).length() / square.sqrt();
+                assert!((stretch - 1.0).abs() <= STRETCH_ERROR, "{k}: {stretch}");
+            }
+        }
+        assert!(passed > 6_000 && refused > 6_000, "{passed} and {refused}");
+        let lost =
+            |linear: DMat3, translation: DVec3| rough_square(&DAffine3 { matrix3: linear, translation });
+        for wild in [f64::NAN, f64::INFINITY, 1e101] {
+            assert_eq!(lost(DMat3::IDENTITY, DVec3::new(0.0, wild, 0.0)), None);
+            assert_eq!(lost(DMat3::from_diagonal(DVec3::splat(wild)), DVec3::ZERO), None);
+        }
+        for flat in [0.0, 1e-100, 1e-31] {
+            assert_eq!(lost(DMat3::from_diagonal(DVec3::splat(flat)), DVec3::ZERO), None);
+        }
+    }
+}
