@@ -6,11 +6,11 @@ use solid_convex::{Closest, Penetration};
 use super::table::convex;
 use super::{Placed, Scratch, closed_form, closest, intersects, penetration};
 
-/// What [`intersects`] says, found faster. The memory must be of the same two shapes, and say nothing by itself.
+/// What [`intersects`] says, found faster. The memory must be of the same two shapes, and say nothing by itself, nor a
+/// [`glance`](super::glance).
 pub(crate) fn intersects_again(a: Placed, b: Placed, memory: &mut Memory, scratch: &mut Scratch) -> bool {
     let Some(((on_a, _), (on_b, _))) = convex(a, b) else { return intersects(a, b, scratch) };
-    closed_form::intersects(a, b)
-        .unwrap_or_else(|| memory.intersects_anew(on_a, a.placement, on_b, b.placement))
+    memory.intersects_anew(on_a, a.placement, on_b, b.placement)
 }
 
 /// What [`closest`] says within the same error, found faster. The memory must be of the same two shapes.

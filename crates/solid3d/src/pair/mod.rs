@@ -37,7 +37,7 @@ use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
-pub(crate) use closed_form::intersects as plainly_intersects;
+pub(crate) use closed_form::quickly_closest;
 pub(crate) use coherent::{closest_again, intersects_again, penetration_again};
 pub(crate) use contact::contacts;
 pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};
@@ -48,6 +48,7 @@ pub use ray::{Faces, FromInside, Ray, RayHit, RayOptions, SurfaceHit};
 pub(crate) use ray::{Hits, Wanted, entry, ray_hits};
 pub(crate) use reach::world_bounds;
 pub(crate) use scratch::Scratch;
+use solid_convex::gjk::Glance;
 use solid_convex::{Closest, Witness, gjk};
 pub(crate) use surface::{SurfacePoint, surface_point};
 pub use swept::Path;
@@ -80,6 +81,25 @@ pub(crate) enum Relation {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Separation {
     pub axis: Option<DVec3>,
+}
+
+/// Whether two shapes intersect, where that takes no search: as [`gjk::glance`], of other simple shapes too. Placements need not have been
+/// checked.
+pub(crate) fn glance(a: Placed, b: Placed) -> Glance {
+    match (a.shape.polytope(), b.shape.polytope()) {
+        (Some(on_a), Some(on_b)) => gjk::glance(on_a, a.placement, on_b, b.placement),
+        _ => closed_form::intersects(a, b).map_or(Glance::Unusual, Glance::Sure),
+    }
+}
+
+/// What [`intersects`] says of shapes of which a [`glance`] told nothing but that their placements are good.
+pub(crate) fn intersects_closely(a: Placed, b: Placed) -> bool {
+    match (a.shape.class(), b.shape.class()) {
+        (Class::Convex(on_a), Class::Convex(on_b)) => {
+            gjk::intersects_closely(on_a, a.placement, on_b, b.placement)
+        }
+        _ => intersects(a, b, &mut Scratch::default()),
+    }
 }
 
 /// Calls `found` with every pair of primitives that meet, in no particular order, until it breaks off. A convex shape is

@@ -24,6 +24,7 @@ use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
 use solid_convex::Closest;
+use solid_convex::gjk::Glance;
 
 use crate::bounds::Aabb;
 use crate::error::Result;
@@ -67,12 +68,20 @@ pub struct Distance {
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn intersects(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<bool> {
-    // Simple shapes before anything is prepared, convex ones before working memory.
+    // A glance before anything is prepared, convex shapes before working memory.
     let unchecked = |shape, placement| Placed { shape, placement };
-    if let Some(answer) = pair::plainly_intersects(unchecked(a, placement_a), unchecked(b, placement_b)) {
-        return Ok(answer);
+    let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
+    match pair::glance(on_a, on_b) {
+        Glance::Sure(answer) => Ok(answer),
+        Glance::Open => Ok(pair::intersects_closely(on_a, on_b)),
+        Glance::Unusual => intersects_at_length(on_a, on_b),
     }
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+}
+
+/// What [`intersects`] says where a glance tells nothing.
+#[inline(never)]
+fn intersects_at_length(a: Placed, b: Placed) -> Result<bool> {
+    let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
     let answer = pair::convex_intersects(a, b);
     Ok(answer.unwrap_or_else(|| pair::intersects(a, b, &mut Scratch::default())))
 }
@@ -175,6 +184,11 @@ pub fn separating_axis(
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<Distance> {
+    let unchecked = |shape, placement| Placed { shape, placement };
+    let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
+    if let Some(closest) = pair::quickly_closest(on_a, on_b) {
+        return Ok(Distance::new(on_a, on_b, &closest));
+    }
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
     let closest = pair::convex_closest_within(a, b, f64::INFINITY).flatten();
     let closest = closest.unwrap_or_else(|| pair::closest(a, b, &mut Scratch::default()));

@@ -1,11 +1,12 @@
 //! The questions about two shapes, asked frame after frame.
 
 use glam::DAffine3;
-use solid_convex::gjk::Memory;
+use solid_convex::gjk::{Glance, Memory};
 
 use super::{Distance, Penetration, placed};
 use crate::error::Result;
-use crate::pair::{self, Scratch};
+use crate::pair::{self, Placed, Scratch};
+use crate::placement;
 use crate::shape::Shape;
 
 /// Two shapes about which the same is asked frame after frame, as they move a little: what was found last is tried first
@@ -50,12 +51,30 @@ impl PairCache {
         if let Some(answer) = memory.still(placement_a, placement_b) {
             return Ok(answer);
         }
-        Ok(pair::intersects_again(placed(a, placement_a)?, placed(b, placement_b)?, memory, scratch))
+        let (a, b) =
+            (Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b });
+        match pair::glance(a, b) {
+            Glance::Sure(answer) => {
+                memory.rest();
+                return Ok(answer);
+            }
+            Glance::Open => {}
+            Glance::Unusual => {
+                placement::checked(placement_a)?;
+                placement::checked(placement_b)?;
+            }
+        }
+        Ok(pair::intersects_again(a, b, memory, scratch))
     }
 
     /// What [`distance`](super::distance) says, with the same error, but not always the same bits.
     pub fn distance(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<Distance> {
         let Self { a, b, memory, scratch } = self;
+        let (on_a, on_b) =
+            (Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b });
+        if let Some(closest) = pair::quickly_closest(on_a, on_b) {
+            return Ok(Distance::new(on_a, on_b, &closest));
+        }
         let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
         Ok(Distance::new(a, b, &pair::closest_again(a, b, memory, scratch)))
     }

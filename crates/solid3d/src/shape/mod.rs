@@ -18,7 +18,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::DVec3;
-use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
+use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 
 pub use builder::ComplexShapeBuilder;
 pub(crate) use complex::Complex;
@@ -362,6 +362,14 @@ impl Shape {
         match &self.geometry {
             Geometry::Complex(complex) => complex.owner(primitive),
             _ => primitive,
+        }
+    }
+
+    /// The polytope, of a convex hull.
+    pub(crate) fn polytope(&self) -> Option<&Polytope> {
+        match &self.geometry {
+            Geometry::Polytope(shape) => Some(shape.polytope()),
+            _ => None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Pairs that need no search: balls, capsules and boxes that their placements leave what they are.
 //!
 //! A closed form speaks only where it is sure: the placements must be rotations with a uniform scale, up to
-//! [`SKEW_MAX`], and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
+//! [`SKEW_MAX`](solid_convex::similarity::SKEW_MAX), and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
 //! ([`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR)). So both say the same, and GJK decides the rest.
 
 mod boxes;
@@ -13,19 +13,20 @@ mod similarity;
 mod tests;
 
 use glam::DVec3;
+use solid_convex::simd::{dispatch, level};
 use solid_convex::{Closest, Witness, unit_scale};
 
 use super::{Mirror, Placed, Relation};
 use crate::shape::Simple;
 use boxes::PlacedBox;
 pub(super) use point::surface_point;
+use quick::Quick;
 use round::{Cores, PlacedRound};
 pub(super) use similarity::Similarity;
-use similarity::plain_stretch;
 
 /// The least gap or overlap that a closed form decides, relative to the size of the data, which here is that of the balls around
 /// the shapes and of the distance of their origins: no less than GJK's. Beyond GJK's error, by more than the errors of a
-/// closed form: some twenty roundings, and half of [`SKEW_MAX`](similarity::SKEW_MAX).
+/// closed form: some twenty roundings, and a few times [`SKEW_MAX`](solid_convex::similarity::SKEW_MAX).
 const GAP_MIN: f64 = 4.0 * solid_convex::gjk::TOUCHING_ERROR;
 
 /// Two simple shapes in one space: along the world's axes, the origin at that of `A`, in a unit of length that is a power of two
@@ -39,15 +40,19 @@ enum Pair {
 
 /// Whether they intersect; `None` where GJK has to say, and where placements have yet to be checked: those of an answer are good.
 pub(crate) fn intersects(a: Placed, b: Placed) -> Option<bool> {
-    let kinds = [a.shape.simple()?, b.shape.simple()?];
-    let stretch = [plain_stretch(a.placement)?, plain_stretch(b.placement)?];
-    quick::intersects(kinds, [a.placement, b.placement], stretch).or_else(|| closely_intersects(kinds, a, b))
+    // Most pairs are of other shapes: nothing is looked at for them.
+    let (Some(_), Some(_)) = (a.shape.simple(), b.shape.simple()) else { return None };
+    match quick::intersects(a, b) {
+        Quick::Sure(answer) => Some(answer),
+        Quick::Open => closely_intersects(a, b),
+        Quick::Unusual => None,
+    }
 }
 
 /// Whether they intersect, of pairs that take a common space.
-fn closely_intersects(kinds: [Simple; 2], a: Placed, b: Placed) -> Option<bool> {
-    let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];
-    match Pair::of(kinds, at, b.placement.translation - a.placement.translation).0 {
+#[inline(never)]
+fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
+    match Pair::new(a, b)?.0 {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).gap().intersects(),
         Pair::RoundBox(round, cuboid) | Pair::BoxRound(cuboid, round) => {
             Cores::of_round_and_box(&round, &cuboid)?.gap().intersects()
@@ -72,6 +77,18 @@ pub(super) fn intersection(a: Placed, b: Placed) -> Option<Relation> {
 
 /// The closest points; `None` where GJK has to find them.
 pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
+    quickly_closest(a, b).or_else(|| closely_closest(a, b))
+}
+
+/// What [`closest`] says where a first look tells. Placements need not have been checked: those of an answer are good.
+pub(crate) fn quickly_closest(a: Placed, b: Placed) -> Option<Closest> {
+    let (Some(_), Some(_)) = (a.shape.simple(), b.shape.simple()) else { return None };
+    dispatch!(level(), simd => quick::closest(simd, a, b))
+}
+
+/// The closest points, of pairs that take a common space.
+#[inline(never)]
+fn closely_closest(a: Placed, b: Placed) -> Option<Closest> {
     let (pair, scale) = Pair::new(a, b)?;
     let (cores, swapped) = match &pair {
         Pair::Rounds(a, b) => (Cores::of_rounds(a, b), false),
@@ -89,50 +106,32 @@ impl Pair {
     fn new(a: Placed, b: Placed) -> Option<(Pair, f64)> {
         let kinds = [a.shape.simple()?, b.shape.simple()?];
         let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];
-        Some(Pair::of(kinds, at, b.placement.translation - a.placement.translation))
+        Pair::of(kinds, at, b.placement.translation - a.placement.translation)
     }
 
     /// Of two shapes under similarities; `offset` leads from the origin of the first to that of the second.
-    fn of([of_a, of_b]: [Simple; 2], [at_a, at_b]: [Similarity; 2], offset: DVec3) -> (Pair, f64) {
+    fn of([of_a, of_b]: [Simple; 2], [at_a, at_b]: [Similarity; 2], offset: DVec3) -> Option<(Pair, f64)> {
         let size = of_a.radius() * at_a.stretch + of_b.radius() * at_b.stretch + offset.abs().element_sum();
         let scale = unit_scale(size);
         let (at_a, at_b) = (at_a.scaled(scale), at_b.scaled(scale));
         let offset = offset * scale;
-        let pair = match (of_a, of_b) {
-            (Simple::Round { radius, half_height }, other) => {
-                let round = PlacedRound::new(radius, half_height, at_a, DVec3::ZERO);
-                match other {
-                    Simple::Round { radius, half_height } => {
-                        Pair::Rounds(round, PlacedRound::new(radius, half_height, at_b, offset))
-                    }
-                    Simple::Cuboid { half } => {
-                        Pair::RoundBox(round, PlacedBox { half, at: at_b, center: offset })
-                    }
-                }
-            }
-            (Simple::Cuboid { half }, other) => {
-                let cuboid = PlacedBox { half, at: at_a, center: DVec3::ZERO };
-                match other {
-                    Simple::Round { radius, half_height } => {
-                        Pair::BoxRound(cuboid, PlacedRound::new(radius, half_height, at_b, offset))
-                    }
-                    Simple::Cuboid { half } => {
-                        Pair::Boxes(cuboid, PlacedBox { half, at: at_b, center: offset })
-                    }
-                }
-            }
+        let round = |of: Simple, at: Similarity, center: DVec3| {
+            of.core().map(|(radius, half_height)| PlacedRound::new(radius, half_height, at, center))
         };
-        (pair, scale)
-    }
-}
-
-impl Simple {
-    /// The radius of a ball around the local origin that contains the shape.
-    fn radius(&self) -> f64 {
-        match self {
-            Simple::Round { radius, half_height } => radius + half_height,
-            Simple::Cuboid { half } => half.element_sum(),
-        }
+        let pair = match (of_a, of_b) {
+            (Simple::Cuboid { half: half_a }, Simple::Cuboid { half: half_b }) => Pair::Boxes(
+                PlacedBox { half: half_a, at: at_a, center: DVec3::ZERO },
+                PlacedBox { half: half_b, at: at_b, center: offset },
+            ),
+            (a, Simple::Cuboid { half }) => {
+                Pair::RoundBox(round(a, at_a, DVec3::ZERO)?, PlacedBox { half, at: at_b, center: offset })
+            }
+            (Simple::Cuboid { half }, b) => {
+                Pair::BoxRound(PlacedBox { half, at: at_a, center: DVec3::ZERO }, round(b, at_b, offset)?)
+            }
+            (a, b) => Pair::Rounds(round(a, at_a, DVec3::ZERO)?, round(b, at_b, offset)?),
+        };
+        Some((pair, scale))
     }
 }
 

@@ -115,18 +115,21 @@ impl<'a> Cores<'a> {
 }
 
 /// The error of a distance that is given out, relative to the size of the data: no more than GJK's.
-const DISTANCE_ERROR: f64 = 0.25 * solid_convex::gjk::TOUCHING_ERROR;
+pub(super) const DISTANCE_ERROR: f64 = 0.25 * solid_convex::gjk::TOUCHING_ERROR;
 
 /// Where two segments are the closest, in half axes from their middles, from -1 to 1 (Ericson, *Real-Time Collision
 /// Detection*, section 5.1.9). Only points of the segments, however nearly parallel they are; how good these are is told
 /// by the gap along the line that joins them.
-#[inline]
+#[inline(always)]
 pub(super) fn closest_on_segments(between: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
     let (aa, bb, ab) = (a.length_squared(), b.length_squared(), a.dot(b));
     let (to_a, to_b) = (a.dot(between), b.dot(between));
     let square = aa * bb - ab * ab;
     // The divisions do not wait for each other.
-    let reciprocal = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
+    #[inline(always)]
+    fn reciprocal(x: f64) -> f64 {
+        if x > 0.0 { 1.0 / x } else { 0.0 }
+    }
     let (by_aa, by_bb, by_square) = (reciprocal(aa), reciprocal(bb), reciprocal(square));
     // The place on the other segment's line that is closest, kept on the segment; the middle of a point.
     let on_a = |t: f64| ((ab * t - to_a) * by_aa).clamp(-1.0, 1.0);

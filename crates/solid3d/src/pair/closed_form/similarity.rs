@@ -1,17 +1,7 @@
 //! Placements that turn and scale alike in all directions.
 
-use std::ops::RangeInclusive;
-
-use glam::{DAffine3, DMat3, DVec3};
-use solid_convex::MAGNITUDE_MAX;
-
-/// How far the scalar products of a placement's axes, relative to their squared length, may be from those of
-/// perpendicular axes of equal length. Products of a dozen rotations in f64 are within it; what it lets through changes
-/// no length by more than half of it.
-pub(super) const SKEW_MAX: f64 = 256.0 / (1u64 << 53) as f64;
-
-/// Squares of scales that are plain: no product of a few of them overflows or loses digits.
-const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
+use glam::{DMat3, DVec3};
+use solid_convex::similarity::SKEW_MAX;
 
 /// The linear part of a placement that is a rotation, or a reflection, with a uniform scale.
 #[derive(Clone, Copy)]
@@ -30,12 +20,6 @@ impl Similarity {
         let skew = (y.length_squared() - square).abs().max((z.length_squared() - square).abs());
         let skew = skew.max(x.dot(y).abs()).max(y.dot(z).abs()).max(z.dot(x).abs());
         (skew <= SKEW_MAX * square).then(|| Similarity { linear: *linear, stretch: square.sqrt() })
-    }
-
-    /// The map of a placement whose scale is known from [`plain_stretch`].
-    #[inline]
-    pub fn of_stretch(placement: &DAffine3, stretch: f64) -> Similarity {
-        Similarity { linear: placement.matrix3, stretch }
     }
 
     /// The map, then a scale.
@@ -66,25 +50,6 @@ impl Similarity {
     pub fn local(&self, displacement: DVec3) -> DVec3 {
         self.linear.mul_transpose_vec3(displacement) / (self.stretch * self.stretch)
     }
-}
-
-/// The scale of a placement that is a similarity of a plain size, and so a good placement; `None` for others.
-///
-/// A number, not a map: copying maps that were just made took half of the time of two balls.
-#[inline]
-pub(super) fn plain_stretch(placement: &DAffine3) -> Option<f64> {
-    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
-    let square = x.length_squared();
-    let skew_max = SKEW_MAX * square;
-    // No branches, and false of what is no number.
-    let alike = ((y.length_squared() - square).abs() <= skew_max)
-        & ((z.length_squared() - square).abs() <= skew_max)
-        & (x.dot(y).abs() <= skew_max)
-        & (y.dot(z).abs() <= skew_max)
-        & (z.dot(x).abs() <= skew_max);
-    let DVec3 { x, y, z } = placement.translation.abs();
-    let near = (x <= MAGNITUDE_MAX) & (y <= MAGNITUDE_MAX) & (z <= MAGNITUDE_MAX);
-    (alike & near & PLAIN_SQUARES.contains(&square)).then(|| square.sqrt())
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! The slow twin is GJK.
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::{Rng, SeedableRng, rngs::StdRng};
+use solid_convex::simd::levels;
 use solid_convex::{Outcome, Support, gjk};
 
 use super::*;
@@ -100,4 +101,62 @@ fn what_touches_is_left_to_gjk() {
         let beside = DAffine3::from_translation(DVec3::X * (1.0 + gap));
         assert_eq!(intersects(placed(&block, &here), placed(&block, &beside)), None);
     }
+}
+
+/// The quick look against the close one: the same answers, and the same distances up to rounding; and the same bits on every level of
+/// instructions.
+#[test]
+fn a_quick_look_says_what_a_close_one_says() {
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let (mut decided, mut measured, mut apart) = (0, 0, 0);
+    for a in &kinds() {
+        for b in &kinds() {
+            for _ in 0..1_000 {
+                let [at_a, at_b] = placements(&mut rng);
+                let (a, b) = (Placed { shape: a, placement: &at_a }, Placed { shape: b, placement: &at_b });
+                if let Quick::Sure(answer) = quick::intersects(a, b) {
+                    decided += 1;
+                    // Of a capsule and a box, that the balls around them are apart is all that is known.
+                    assert!(closely_intersects(a, b).is_none_or(|closely| closely == answer));
+                }
+                let found = levels().map(|level| dispatch!(level, simd => quick::closest(simd, a, b)));
+                assert_eq!(found[0], found[1]);
+                if let (Some(quick), Some(close)) = (found[0], closely_closest(a, b)) {
+                    measured += 1;
+                    apart += usize::from(quick.distance > 0.0);
+                    assert!((quick.distance - close.distance).abs() < 1e-12, "{quick:?}, {close:?}");
+                    assert!(quick.points.on_a.distance(close.points.on_a) < 1e-11, "{quick:?}, {close:?}");
+                    assert!(quick.points.on_b.distance(close.points.on_b) < 1e-11, "{quick:?}, {close:?}");
+                }
+            }
+        }
+    }
+    // Six of the nine pairs have closest points in closed form; of two boxes few are apart by the balls around them.
+    assert!(decided > 5_500 && measured > 5_000, "{decided} and {measured} of 9000");
+    assert!((30..=70).contains(&(100 * apart / measured)), "{apart} of {measured} are apart");
+}
+
+/// Placements that are similarities only nearly are looked at roughly, and the answers are GJK's.
+#[test]
+fn a_rough_look_says_what_gjk_says() {
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let (mut hits, mut decided) = (0, 0);
+    for a in &kinds() {
+        for b in &kinds() {
+            for _ in 0..1_000 {
+                let [at_a, at_b] = placements(&mut rng).map(|at| {
+                    let skew = DMat3::from_cols_array(&[0; 9].map(|_| rng.random_range(-1e-7..1e-7)));
+                    DAffine3 { matrix3: at.matrix3 * (DMat3::IDENTITY + skew), ..at }
+                });
+                let placed = [Placed { shape: a, placement: &at_a }, Placed { shape: b, placement: &at_b }];
+                if let Quick::Sure(answer) = quick::intersects(placed[0], placed[1]) {
+                    let outcome = gjk::intersection(support(a), &at_a, support(b), &at_b);
+                    assert_eq!(answer, outcome.witness().is_some(), "{at_a}, {at_b}");
+                    (hits, decided) = (hits + usize::from(answer), decided + 1);
+                }
+            }
+        }
+    }
+    assert!(decided > 5_500, "{decided} of 9000 decided");
+    assert!((30..=70).contains(&(100 * hits / decided)), "{hits} of {decided} hit");
 }
