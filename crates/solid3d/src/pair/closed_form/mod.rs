@@ -12,7 +12,7 @@ mod similarity;
 #[cfg(test)]
 mod tests;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use solid_convex::simd::{dispatch, level};
 use solid_convex::{Closest, Witness, unit_scale};
 
@@ -52,7 +52,7 @@ pub(crate) fn intersects(a: Placed, b: Placed) -> Option<bool> {
 /// Whether they intersect, of pairs that take a common space.
 #[inline(never)]
 fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
-    match Pair::new(a, b)?.0 {
+    match Pair::new(a, b)? {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).gap().intersects(),
         Pair::RoundBox(round, cuboid) | Pair::BoxRound(cuboid, round) => {
             Cores::of_round_and_box(&round, &cuboid)?.gap().intersects()
@@ -63,7 +63,7 @@ fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
 
 /// Whether they intersect, with the evidence; `None` where GJK has to say.
 pub(super) fn intersection(a: Placed, b: Placed) -> Option<Relation> {
-    match Pair::new(a, b)?.0 {
+    match Pair::new(a, b)? {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).relation(),
         Pair::RoundBox(a, b) => Cores::of_round_and_box(&a, &b)?.relation(),
         Pair::BoxRound(a, b) => Cores::of_round_and_box(&b, &a)?.relation().mirrored(),
@@ -77,48 +77,49 @@ pub(super) fn intersection(a: Placed, b: Placed) -> Option<Relation> {
 
 /// The closest points; `None` where GJK has to find them.
 pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
-    quickly_closest(a, b).or_else(|| closely_closest(a, b))
+    quickly_closest(a, b).or_else(|| closest_in_unit(a, b))
 }
 
-/// What [`closest`] says where a first look tells. Placements need not have been checked: those of an answer are good.
+/// What [`closest`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.
 pub(crate) fn quickly_closest(a: Placed, b: Placed) -> Option<Closest> {
     let (Some(_), Some(_)) = (a.shape.simple(), b.shape.simple()) else { return None };
     dispatch!(level(), simd => quick::closest(simd, a, b))
 }
 
-/// The closest points, of pairs that take a common space.
+/// The same in a unit of length near the size of the data, so that answers do not depend on the unit.
 #[inline(never)]
-fn closely_closest(a: Placed, b: Placed) -> Option<Closest> {
-    let (pair, scale) = Pair::new(a, b)?;
-    let (cores, swapped) = match &pair {
-        Pair::Rounds(a, b) => (Cores::of_rounds(a, b), false),
-        Pair::RoundBox(a, b) => (Cores::of_round_and_box(a, b)?, false),
-        Pair::BoxRound(a, b) => (Cores::of_round_and_box(b, a)?, true),
-        Pair::Boxes(..) => return None,
-    };
-    let (distance, points) = cores.closest()?;
-    let closest = Closest { distance: distance / scale, points };
-    Some(if swapped { closest.mirrored() } else { closest })
+fn closest_in_unit(a: Placed, b: Placed) -> Option<Closest> {
+    let [of_a, of_b] = [a.shape.simple()?, b.shape.simple()?];
+    let [at_a, at_b] = [a, b].map(|placed| &placed.placement.matrix3);
+    let offset = b.placement.translation - a.placement.translation;
+    let scale = unit_scale(size([of_a, of_b], [&Similarity::new(at_a)?, &Similarity::new(at_b)?], offset));
+    let at_a = DAffine3 { matrix3: *at_a * scale, translation: DVec3::ZERO };
+    let at_b = DAffine3 { matrix3: *at_b * scale, translation: offset * scale };
+    let closest = quickly_closest(Placed { placement: &at_a, ..a }, Placed { placement: &at_b, ..b })?;
+    Some(Closest { distance: closest.distance / scale, ..closest })
+}
+
+/// The size of the data: of the balls around the shapes and of the distance of their origins.
+fn size([of_a, of_b]: [Simple; 2], [at_a, at_b]: [&Similarity; 2], offset: DVec3) -> f64 {
+    of_a.radius() * at_a.stretch + of_b.radius() * at_b.stretch + offset.abs().element_sum()
 }
 
 impl Pair {
-    /// With the scale: world lengths times it are lengths of the pair.
-    fn new(a: Placed, b: Placed) -> Option<(Pair, f64)> {
+    fn new(a: Placed, b: Placed) -> Option<Pair> {
         let kinds = [a.shape.simple()?, b.shape.simple()?];
         let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];
         Pair::of(kinds, at, b.placement.translation - a.placement.translation)
     }
 
     /// Of two shapes under similarities; `offset` leads from the origin of the first to that of the second.
-    fn of([of_a, of_b]: [Simple; 2], [at_a, at_b]: [Similarity; 2], offset: DVec3) -> Option<(Pair, f64)> {
-        let size = of_a.radius() * at_a.stretch + of_b.radius() * at_b.stretch + offset.abs().element_sum();
-        let scale = unit_scale(size);
+    fn of([of_a, of_b]: [Simple; 2], [at_a, at_b]: [Similarity; 2], offset: DVec3) -> Option<Pair> {
+        let scale = unit_scale(size([of_a, of_b], [&at_a, &at_b], offset));
         let (at_a, at_b) = (at_a.scaled(scale), at_b.scaled(scale));
         let offset = offset * scale;
         let round = |of: Simple, at: Similarity, center: DVec3| {
             of.core().map(|(radius, half_height)| PlacedRound::new(radius, half_height, at, center))
         };
-        let pair = match (of_a, of_b) {
+        Some(match (of_a, of_b) {
             (Simple::Cuboid { half: half_a }, Simple::Cuboid { half: half_b }) => Pair::Boxes(
                 PlacedBox { half: half_a, at: at_a, center: DVec3::ZERO },
                 PlacedBox { half: half_b, at: at_b, center: offset },
@@ -130,8 +131,7 @@ impl Pair {
                 Pair::BoxRound(PlacedBox { half, at: at_a, center: DVec3::ZERO }, round(b, at_b, offset)?)
             }
             (a, b) => Pair::Rounds(round(a, at_a, DVec3::ZERO)?, round(b, at_b, offset)?),
-        };
-        Some((pair, scale))
+        })
     }
 }
 

@@ -15,6 +15,10 @@ use crate::shape::{Shape, Simple};
 /// Sizes of the data whose squares and the products of these neither overflow nor vanish.
 const PLAIN_SIZES: RangeInclusive<f64> = 1e-30..=1e30;
 
+/// The squares of scales relative to that of the size of the data, where closest points are found: then they are plain also in a unit near that size,
+/// which gives the same bits.
+const PLAIN_PARTS: RangeInclusive<f64> = 1e-58..=1e58;
+
 /// The least gap or overlap that is decided where lengths are off by as much as a rough look lets them be: of both shapes, twice, for the box that is
 /// mapped there and back; more is as good, since few pairs are nearer.
 const ROUGH_GAP_MIN: f64 = 8.0 * STRETCH_ERROR;
@@ -125,6 +129,16 @@ impl<'a> View<'a> {
                 let unit = self.scales[0];
                 decide([square, square], radius * self.scales[1] * unit, ROUGH_GAP_MIN * size * unit)
             }
+            // By the balls around them and in them.
+            (a @ Simple::Cuboid { half: half_a }, b @ Simple::Cuboid { half: half_b }) => {
+                let [reach, size] = self.reach_and_size(&a, &b)?;
+                let margin = ROUGH_GAP_MIN * size;
+                let far = reach + margin;
+                let near =
+                    half_a.min_element() * self.scales[0] + half_b.min_element() * self.scales[1] - margin;
+                let meet = (near > 0.0) & (square < near * near);
+                ((square > far * far) | meet).then_some(meet)
+            }
             (a, b) => {
                 let [reach, size] = self.reach_and_size(&a, &b)?;
                 let margin = ROUGH_GAP_MIN * size;
@@ -143,7 +157,12 @@ impl<'a> View<'a> {
     #[inline(always)]
     fn closest(&self, a: Simple, b: Simple) -> Option<Closest> {
         let [_, size] = self.reach_and_size(&a, &b)?;
-        let margin = GAP_MIN * size;
+        let (margin, unit) = (GAP_MIN * size, size * size);
+        let is_plain =
+            |square: f64| (unit * PLAIN_PARTS.start() <= square) & (square <= unit * PLAIN_PARTS.end());
+        if !(is_plain(self.squares[0]) & is_plain(self.squares[1])) {
+            return None;
+        }
         match (a, b) {
             (Simple::Ball { radius: a }, Simple::Ball { radius: b }) => {
                 self.of_cores(&self.centers(), [DVec3::ZERO; 2], [a, b], margin)

@@ -100,18 +100,6 @@ impl<'a> Cores<'a> {
         let point = if self.radii[1] == 0.0 { self.on_b } else { self.on_a.lerp(self.on_b, part) };
         witness([self.at_a, self.at_b], [point, point])
     }
-
-    /// The distance and the closest points, where the distance is known to [`DISTANCE_ERROR`].
-    pub fn closest(&self) -> Option<(f64, Witness)> {
-        let gap = self.gap();
-        if gap.intersects()? {
-            return Some((0.0, self.common_point()));
-        }
-        let axis = (self.on_a - self.on_b).normalize();
-        let points = [self.on_a - axis * self.radii[0], self.on_b + axis * self.radii[1]];
-        (gap.greatest - gap.least <= DISTANCE_ERROR)
-            .then(|| (gap.greatest, witness([self.at_a, self.at_b], points)))
-    }
 }
 
 /// The error of a distance that is given out, relative to the size of the data: no more than GJK's.

@@ -103,8 +103,8 @@ fn what_touches_is_left_to_gjk() {
     }
 }
 
-/// The quick look against the close one: the same answers, and the same distances up to rounding; and the same bits on every level of
-/// instructions.
+/// The quick look against the close one: the same answers; and closest points of the same bits in another unit of length, and on every level
+/// of instructions.
 #[test]
 fn a_quick_look_says_what_a_close_one_says() {
     let mut rng = StdRng::seed_from_u64(SEED);
@@ -121,13 +121,9 @@ fn a_quick_look_says_what_a_close_one_says() {
                 }
                 let found = levels().map(|level| dispatch!(level, simd => quick::closest(simd, a, b)));
                 assert_eq!(found[0], found[1]);
-                if let (Some(quick), Some(close)) = (found[0], closely_closest(a, b)) {
-                    measured += 1;
-                    apart += usize::from(quick.distance > 0.0);
-                    assert!((quick.distance - close.distance).abs() < 1e-12, "{quick:?}, {close:?}");
-                    assert!(quick.points.on_a.distance(close.points.on_a) < 1e-11, "{quick:?}, {close:?}");
-                    assert!(quick.points.on_b.distance(close.points.on_b) < 1e-11, "{quick:?}, {close:?}");
-                }
+                assert_eq!(found[0], closest_in_unit(a, b));
+                measured += usize::from(found[0].is_some());
+                apart += usize::from(found[0].is_some_and(|found| found.distance > 0.0));
             }
         }
     }
