@@ -79,7 +79,8 @@ pub fn cast_pairs(
                     }
                 }
             }
-            Step::OpenBoth(..) | Step::Nothing => {}
+            Step::OpenBoth(..) => unreachable!("nodes are opened one by one"),
+            Step::Nothing => {}
         }
     }
 }

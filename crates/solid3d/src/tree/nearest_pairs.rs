@@ -147,7 +147,8 @@ fn walk<S: Simd>(
                     push_unless_far((least, pair), *best, stack, from);
                 }
             }
-            Step::OpenBoth(..) | Step::Nothing => {}
+            Step::OpenBoth(..) => unreachable!("nodes are opened one by one"),
+            Step::Nothing => {}
         }
     }
 }

@@ -230,6 +230,14 @@ pub(super) struct Duel<'t> {
     magnification: f32,
 }
 
+/// The ways of boxes of `b` to `a`, and the reverse.
+fn folded(a: &Tree, b: &Tree, relative: &Relative) -> [Folded; 2] {
+    [
+        Folded::new(&relative.b_to_a, relative.slack_in_a, &b.normal, &a.normal),
+        Folded::new(&relative.a_to_b, relative.slack_in_b, &a.normal, &b.normal),
+    ]
+}
+
 /// Nodes are opened together when neither is larger than the other by more than this: than by about one level.
 const EVEN: f32 = 3.0;
 
@@ -249,17 +257,21 @@ pub(super) enum Step<'d, 't> {
 
 impl<'t> Duel<'t> {
     pub fn new(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
-        let of_b = Folded::new(&relative.b_to_a, relative.slack_in_a, &b.normal, &a.normal);
-        let of_a = Folded::new(&relative.a_to_b, relative.slack_in_b, &a.normal, &b.normal);
-        let (b_to_a, a_to_b) = (Crossing::of(&of_b, &of_a), Crossing::of(&of_a, &of_b));
+        let [of_b, of_a] = folded(a, b, relative);
         let images = Image::new(&of_b).zip(Image::new(&of_a)).map(|(of_b, of_a)| [of_b, of_a]);
-        let magnification = b_to_a.magnification() as f32;
-        Duel { a, b, a_to_b, b_to_a, images, magnification }
+        Duel { images, ..Self::of(a, b, &of_b, &of_a) }
     }
 
     /// The same, of which no two nodes are ever opened together.
     pub fn one_by_one(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
-        Duel { images: None, ..Self::new(a, b, relative) }
+        let [of_b, of_a] = folded(a, b, relative);
+        Self::of(a, b, &of_b, &of_a)
+    }
+
+    fn of(a: &'t Tree, b: &'t Tree, of_b: &Folded, of_a: &Folded) -> Self {
+        let (b_to_a, a_to_b) = (Crossing::of(of_b, of_a), Crossing::of(of_a, of_b));
+        let magnification = b_to_a.magnification() as f32;
+        Duel { a, b, a_to_b, b_to_a, images: None, magnification }
     }
 
     /// The two trees.
