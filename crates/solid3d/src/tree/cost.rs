@@ -1,5 +1,10 @@
 //! The surface-area heuristic as a measure of boxes and of trees.
 
+use std::ops::{Add, Mul};
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
+
 use super::Tree;
 use super::node::{Node, WIDTH, halves};
 use super::packed::PackedBox;
@@ -23,23 +28,26 @@ pub(super) fn measure(bounds: &PackedBox) -> f32 {
 }
 
 #[inline(always)]
-pub(super) fn measure_of([x, y, z]: [f32; 3]) -> f32 {
-    x * y + y * z + z * x + QUERY_SIDE * (x + y + z)
+pub(super) fn measure_of<T>([x, y, z]: [T; 3]) -> T
+where
+    T: Copy + Add<Output = T> + Mul<Output = T> + Mul<f32, Output = T>,
+{
+    x * y + y * z + z * x + (x + y + z) * QUERY_SIDE
 }
 
-/// The sum of the measures of a node's lanes.
+/// The sum of the measures of all lanes of some nodes, from the last.
 #[inline(always)]
-pub(super) fn measure_lanes(node: &Node) -> f32 {
-    let mut lanes = [0.0; WIDTH];
-    for (lane, sum) in lanes.iter_mut().enumerate() {
+pub(super) fn measure_lanes<S: Simd>(simd: S, nodes: &[Node]) -> f64 {
+    let lanes = |of: &[f32; WIDTH]| f32x8::from_slice(simd, of);
+    let mut sum = 0.0;
+    for node in nodes.iter().rev() {
         // Empty lanes are inverted: their sides count as zero.
-        let side = |axis: usize| {
-            let side = node.max[axis][lane] - node.min[axis][lane];
-            if side > 0.0 { side } else { 0.0 }
-        };
-        *sum = measure_of([side(0), side(1), side(2)]);
+        let side =
+            |axis: usize| (lanes(&node.max[axis]) - lanes(&node.min[axis])).max(f32x8::splat(simd, 0.0));
+        let measures = measure_of([side(0), side(1), side(2)]);
+        sum += f64::from(halves(&measures.to_array(), |a, b| a + b));
     }
-    halves(&lanes, |a, b| a + b)
+    sum
 }
 
 /// Measures are summed in blocks of so many nodes, and then those sums: so several threads can do it, and it has the same bits.
@@ -61,15 +69,7 @@ impl Measured {
 
 /// The sum of the measures of all lanes.
 pub(super) fn sum(nodes: &[Node]) -> f64 {
-    let of_block = |block: &[Node]| -> f64 {
-        dispatch!(level(), _simd => {
-            let mut sum = 0.0;
-            for node in block.iter().rev() {
-                sum += f64::from(measure_lanes(node));
-            }
-            sum
-        })
-    };
+    let of_block = |block: &[Node]| dispatch!(level(), simd => measure_lanes(simd, block));
     #[cfg(feature = "rayon")]
     if crate::threads::share(nodes.len(), NODES_MANY) {
         use rayon::prelude::*;

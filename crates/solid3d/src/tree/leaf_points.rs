@@ -37,17 +37,18 @@ impl LeafPoints {
         LeafPoints { points, ends }
     }
 
-    /// The points of each lane of a node.
+    /// The points of each lane of a node, in order.
     #[inline(always)]
-    pub(super) fn of_node(&self, node: usize) -> [&[u32]; WIDTH] {
-        let ends = &self.ends[node];
+    pub(super) fn of_node(&self, node: usize) -> impl Iterator<Item = &[u32]> {
         let mut start = if node == 0 { 0 } else { self.ends[node - 1][WIDTH - 1] };
-        let mut lanes = [&[][..]; WIDTH];
-        for (lane, &end) in lanes.iter_mut().zip(ends) {
-            *lane = &self.points[start as usize..end as usize];
-            start = end;
-        }
-        lanes
+        self.ends[node].iter().map(
+            #[inline(always)]
+            move |&end| {
+                let lane = &self.points[start as usize..end as usize];
+                start = end;
+                lane
+            },
+        )
     }
 
     /// The memory that they own, in bytes.

@@ -37,7 +37,7 @@ impl Tree {
     pub fn refit(&mut self, box_of: impl Fn(u32) -> Aabb) {
         self.refit_by(|tree, normal| {
             let Tree { nodes, order, .. } = tree;
-            pass(nodes, |_, node| {
+            let set_leaves = |_, node: &mut Node| {
                 let mut total = Aabb::EMPTY;
                 for lane in 0..node.child.len() {
                     if let Kind::Leaf(range) = node.child[lane].kind() {
@@ -49,7 +49,8 @@ impl Tree {
                     }
                 }
                 total
-            })
+            };
+            dispatch!(level(), simd => pass(simd, nodes, set_leaves))
         });
     }
 
@@ -66,6 +67,7 @@ impl Tree {
                 return threads::pass(level, &mut tree.nodes, points, positions, normal);
             }
             dispatch!(level, simd => pass(
+                simd,
                 &mut tree.nodes,
                 #[inline(always)]
                 |index, node| set_leaves(simd, node, points.of_node(index), positions, normal),
@@ -90,17 +92,21 @@ impl Tree {
 
 /// Gives all nodes their boxes; `set_leaves` those of leaves, and gives their tight union.
 #[inline(always)]
-fn pass(nodes: &mut [Node], mut set_leaves: impl FnMut(usize, &mut Node) -> Aabb) -> Measured {
+fn pass<S: Simd>(
+    simd: S,
+    nodes: &mut [Node],
+    mut set_leaves: impl FnMut(usize, &mut Node) -> Aabb,
+) -> Measured {
     let mut measured = Measured::NONE;
     for block in (0..nodes.len().div_ceil(BLOCK)).rev() {
-        let mut sum = 0.0;
-        for index in (block * BLOCK..nodes.len().min((block + 1) * BLOCK)).rev() {
+        let block = block * BLOCK..nodes.len().min((block + 1) * BLOCK);
+        for index in block.clone().rev() {
             let bounds = set_leaves(index, &mut nodes[index]);
             set_children(nodes, index);
             measured.bounds = measured.bounds.union(&bounds);
-            sum += f64::from(measure_lanes(&nodes[index]));
         }
-        measured.sum += sum;
+        // Not node by node: lanes that were just written one by one cannot be read as a vector without waiting.
+        measured.sum += measure_lanes(simd, &nodes[block]);
     }
     measured
 }
@@ -119,17 +125,17 @@ fn set_children(nodes: &mut [Node], index: usize) {
 
 /// Gives the leaves of a node the boxes around their points, and gives the tight union.
 #[inline(always)]
-fn set_leaves<S: Simd>(
+fn set_leaves<'p, S: Simd>(
     simd: S,
     node: &mut Node,
-    leaves: [&[u32]; 8],
+    leaves: impl Iterator<Item = &'p [u32]>,
     positions: &[DVec3],
     normal: &Normal,
 ) -> Aabb {
     let splat = |x: f64| f64x4::splat(simd, x);
     let (mut least_of_all, mut greatest_of_all) = (splat(f64::INFINITY), splat(f64::NEG_INFINITY));
     let origin = four(simd, normal.origin);
-    for (lane, leaf) in leaves.into_iter().enumerate() {
+    for (lane, leaf) in leaves.enumerate() {
         if leaf.is_empty() {
             continue;
         }
