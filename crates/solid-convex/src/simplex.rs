@@ -112,6 +112,32 @@ impl Simplex {
         members.len += 1;
     }
 
+    /// Adds a support point where rounding hides on which face with it the closest point is (Theorem 4.8), and keeps the face of which the
+    /// origin is least outside. False where there is no such face; then nothing is to be done with the simplex but to go back.
+    pub fn push_to_face(&mut self, p: SupportPoint) -> bool {
+        let faces: &[[usize; 3]] = match self.members.len {
+            2 => &[[0, 1, 2]],
+            3 => &[FACES[0].0, FACES[1].0, FACES[2].0],
+            _ => return false,
+        };
+        self.push(p);
+        let least = |weights: [f64; 3]| weights[0].min(weights[1]).min(weights[2]);
+        let weighted = faces.iter().map(|&face| (face, weights(face.map(|i| self.w(i)), 1.0, DVec3::ZERO)));
+        let proper = weighted.filter(|(_, weights)| weights.iter().all(|weight| weight.is_finite()));
+        let best = proper.max_by(|(_, x), (_, y)| least(*x).total_cmp(&least(*y)));
+        if let Some((indices, weights)) = best {
+            let inside = weights.map(|weight| weight.max(0.0));
+            let sum: f64 = inside.iter().sum();
+            self.keep(&Feature {
+                v: DVec3::ZERO,
+                indices,
+                weights: inside.map(|weight| weight / sum),
+                len: 3,
+            });
+        }
+        best.is_some()
+    }
+
     /// What the simplex consists of, to be gone back to before the next but one point is added.
     pub fn members(&self) -> Members {
         self.members
@@ -382,11 +408,13 @@ fn weights(points: [DVec3; 3], sum: f64, target: DVec3) -> [f64; 3] {
         if length_squared(y[0], y[1]) > length_squared(x[0], x[1]) { y } else { x }
     };
     let [i, j, k] = edges.into_iter().fold(edges[0], longest);
-    // From the end of the longest edge that is nearer to the third point.
-    let [i, j] = if length_squared(i, k) <= length_squared(j, k) { [i, j] } else { [j, i] };
-    let (long, short) = (points[j] - points[i], points[k] - points[i]);
-    let rest = target - sum * points[i];
-    let across = perpendicular(short, long);
+    // What is across the edge from the end that is nearer to the third point, the rest from the end that is nearer to the target: next
+    // to it a weight may be 10^-12 of those of the others.
+    let near = if length_squared(i, k) <= length_squared(j, k) { i } else { j };
+    let across = perpendicular(points[k] - points[near], points[j] - points[i]);
+    let rest = |i: usize| target - sum * points[i];
+    let [i, j] = if rest(i).length_squared() <= rest(j).length_squared() { [i, j] } else { [j, i] };
+    let (long, short, rest) = (points[j] - points[i], points[k] - points[i], rest(i));
     let of_k = perpendicular(rest, long).dot(across) / across.length_squared();
     let of_j = (rest - short * of_k).dot(long) / long.length_squared();
     let mut weights = [0.0; 3];

@@ -57,15 +57,16 @@ pub(super) const ITERATIONS_MAX: usize = 512;
 const PROGRESS_MIN: f64 = 4.0 * f64::EPSILON;
 
 /// No step lengthens `v`, but one on slivers may by the rounding error. Beyond this much, squared, rounding hid which part of
-/// the simplex is the closest, and the step is taken back.
+/// the simplex is the closest: then it is a face with the new point, or the step is taken back.
 const GROWTH_MAX: f64 = 4.0;
 
 /// A lower bound of the distance must exceed the bound on it by this much to end a descent: what a descent to its end would call the
 /// distance may be below the lower bound by the rounding error. In the difference's unit of length.
 const BOUND_MARGIN: f64 = 2.0 * SUPPORT_ERROR;
 
-/// How often a descent may restart from a recomputed normal: each time it must find a new support point.
-const REFINEMENTS_MAX: usize = 8;
+/// How often a descent may go on from a recomputed normal: each time it must find a new support point. On the side of a flat cone each
+/// has a quarter of the error of the one before.
+const REFINEMENTS_MAX: usize = 32;
 
 /// Runs a descent: the lean one, and where that is not sure the robust one.
 pub(crate) fn descend<A, B>(difference: &Difference<A, B>, goal: Goal) -> Descent
@@ -144,6 +145,12 @@ where
                 if length_squared > GROWTH_MAX * before {
                     simplex.restore(members_before);
                     v = v_before;
+                    if refinements < REFINEMENTS_MAX
+                        && let Some(normal) = face_with(difference, &mut simplex, p, before)
+                    {
+                        (v, stalled) = (normal, false);
+                        refinements += 1;
+                    }
                 }
             }
         }
@@ -206,6 +213,28 @@ impl Goal {
 /// Whether `w`, a support point against `v`, shows that `v` separates the objects: beyond the rounding error.
 pub(super) fn certifies(v: DVec3, w: DVec3) -> bool {
     v.dot(w) > SUPPORT_ERROR * v.abs().element_sum()
+}
+
+/// Where rounding hid on which face with a new support point the closest point is: the normal of that face, which the simplex then is;
+/// `None`, and the simplex as it was, where there is none that is about as near as `before`, squared.
+#[cold]
+fn face_with<A, B>(
+    difference: &Difference<A, B>,
+    simplex: &mut Simplex,
+    p: SupportPoint,
+    before: f64,
+) -> Option<DVec3>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let members = simplex.members();
+    let normal = if simplex.push_to_face(p) { refined(difference, simplex.points()) } else { None };
+    let normal = normal.filter(|normal| normal.length_squared() <= GROWTH_MAX * before);
+    if normal.is_none() {
+        simplex.restore(members);
+    }
+    normal
 }
 
 /// The point closest to the origin on the line or plane of a simplex, computed from the objects' edges; `None` where

@@ -108,6 +108,29 @@ fn points_just_under_a_round_base_are_separate() {
     }
 }
 
+/// A point just off the side of a cone: next to the tip, where the weight of a point of the rim is 10^-12, and on cones so flat that
+/// rounding hides on which side of an edge across them the point is.
+#[test]
+fn points_just_off_the_side_of_a_cone_are_separate() {
+    let off = crate::Points::new(&[DVec3::ZERO]).unwrap();
+    for k in 0..12_000 {
+        // The slope of the side and the way from the tip, as parts of the radius.
+        let [slope, way] = [k % 13, k / 13 % 11].map(|power| 10f64.powf(-f64::from(power)));
+        let cone = Cone::new(1.0, slope).unwrap();
+        let at = placement(k);
+        let out = DQuat::from_rotation_y(f64::from(k));
+        let side = DVec3::new(0.9 * way, slope * (0.5 - 0.9 * way), 0.0);
+        let normal = DVec3::new(slope, 1.0, 0.0).normalize();
+        for gap in [2.0, 10.0, 1000.0].map(|times| times * TOUCHING_ERROR * (2.0 + slope)) {
+            let here = DAffine3::from_translation(at.transform_point3(out * (side + gap * normal)));
+            let outcome = intersection(&cone, &at, &off, &here);
+            assert!(matches!(outcome, Outcome::Separated { .. }), "{k}, {gap:e}: {outcome:?}");
+            let distance = closest_points(&cone, &at, &off, &here).distance;
+            assert!((distance - gap).abs() < 1e-14, "{k}: {distance:e}, not {gap:e}");
+        }
+    }
+}
+
 /// Balls and capsules, whose distance is that of their cores: the slow twin is a descent on the round surfaces.
 #[test]
 fn distances_of_round_objects_are_those_of_their_surfaces() {
