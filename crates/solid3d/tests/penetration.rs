@@ -80,7 +80,7 @@ impl Tally {
     }
 
     fn finish(self, what: &str, hits: std::ops::RangeInclusive<usize>) {
-        println!("{what}, seed {SEED}: {self:?}");
+        println!("{what}: {self:?}");
         let Tally { tested, hits: hit, judged, wide, worst, .. } = self;
         let certain = tested - hit + judged;
         assert!(
@@ -140,11 +140,15 @@ fn assert_parts(pair: &Pair, [a, b]: [&Shape; 2], found: &Penetration, size: f64
 }
 
 fn run(regime: Regime, hits: std::ops::RangeInclusive<usize>) {
+    run_from(SEED, regime, hits);
+}
+
+fn run_from(seed: u64, regime: Regime, hits: std::ops::RangeInclusive<usize>) {
     let mut tally = Tally::default();
-    each_pair(regime, SEED, PAIRS, |_, pair, shapes, context| {
+    each_pair(regime, seed, PAIRS, |_, pair, shapes, context| {
         tally.judge(pair, shapes, &format!("{context}: {pair:?}"));
     });
-    tally.finish(&format!("{regime:?}"), hits);
+    tally.finish(&format!("{regime:?}, seed {seed}"), hits);
 }
 
 #[test]
@@ -175,7 +179,10 @@ fn needles() {
 
 #[test]
 fn concentric_pairs() {
-    run(Regime::Concentric, 70..=100);
+    // Of one in some thousand the polytope has slivers whose planes are lost.
+    for seed in [SEED, SEED + 100_000, SEED + 200_000] {
+        run_from(seed, Regime::Concentric, 70..=100);
+    }
 }
 
 #[test]

@@ -219,18 +219,24 @@ where
             polytope.insert_beyond(difference, p, index);
         }
     }
-    let points = witness(polytope, normal, height, tolerance(height));
-    Nearest { height, lower: polytope.radius(height - tolerance(height)), normal, points }
+    let margin = tolerance(height);
+    let lower = polytope.radius(height - margin);
+    let points = witness(polytope, normal, height, height - lower, margin);
+    Nearest { height, lower, normal, points }
 }
 
-/// The point where the ray along a normal leaves the polytope, which is at a height up to a margin.
-fn witness(polytope: &Polytope, normal: DVec3, height: f64, margin: f64) -> Witness {
+/// The point where the ray along a normal leaves the polytope, which is at a height less at most `beyond`, up to a margin.
+fn witness(polytope: &Polytope, normal: DVec3, height: f64, beyond: f64, margin: f64) -> Witness {
     let target = normal * height;
-    let near = polytope
-        .faces_across(normal, margin)
-        .map(|corners| over(&corners, target).unwrap_or_else(|| closest(&corners, target)));
-    let (_, points) = near.min_by(|x, y| x.0.total_cmp(&y.0)).expect("a polytope has faces");
-    points
+    let foot =
+        |corners: [SupportPoint; 3]| over(&corners, target).unwrap_or_else(|| closest(&corners, target));
+    let nearer = |x: &(f64, Witness), y: &(f64, Witness)| x.0.total_cmp(&y.0);
+    let across = polytope.faces_across(normal, margin).map(foot).min_by(nearer);
+    let reach = beyond + margin;
+    let found = across.filter(|(distance_squared, _)| *distance_squared <= reach * reach);
+    // The planes of slivers can be anywhere: then their corners tell.
+    let found = found.or_else(|| polytope.all_faces().map(foot).min_by(nearer));
+    found.expect("a polytope has faces").1
 }
 
 /// The point of a triangle at the foot of a point, by the areas, with the square of the distance; `None` when that is not well inside, or the triangle too thin for these.

@@ -186,6 +186,11 @@ impl Polytope {
         near.map(|i| self.corners(i))
     }
 
+    /// The corners of all faces.
+    pub fn all_faces(&self) -> impl Iterator<Item = [SupportPoint; 3]> + '_ {
+        (0..self.faces.len()).filter(|&i| self.is_live(i)).map(|i| self.corners(i))
+    }
+
     /// Takes a point in, which should be beyond a face; false, and nothing changes, when it is in the polytope.
     pub fn insert_beyond<A, B>(&mut self, difference: &Difference<A, B>, p: SupportPoint, face: usize) -> bool
     where
