@@ -244,8 +244,14 @@ impl Pair<'_> {
         let Meeting { normal, depth, on_a, on_b } = *meeting;
         let (face_a, face_b) = facing(a, b, normal);
         let mut touches = self.clipped(a, &face_a, b, &face_b, normal);
+        let error = SAME_DEPTH + DEPTH_ERROR * depth.abs();
+        // Nothing is deeper along the normal; but a face is flat only up to what is a length to a much smaller body.
+        for touch in touches.iter_mut().filter(|touch| touch.depth > depth + error) {
+            touch.on_b -= normal * (touch.depth - depth);
+            touch.depth = depth;
+        }
         let deepest = touches.iter().map(|touch| touch.depth).fold(f64::NEG_INFINITY, f64::max);
-        if deepest < depth - SAME_DEPTH - DEPTH_ERROR * depth.abs() {
+        if deepest < depth - error {
             let features = [feature_of(&face_a), feature_of(&face_b)];
             touches.push(Touch { on_a, on_b, depth, features });
         }
