@@ -245,15 +245,13 @@ impl World {
         let Self { broad, objects, stirred, clearances, new_bounds, .. } = self;
         stirred.sort();
         for slots in stirred.slots().chunks(BOXES_AT_A_TIME) {
-            let elsewhere =
-                slots.iter().filter(|&&slot| stirred.is_elsewhere(slot) && objects.at(slot).is_some());
+            let elsewhere = slots.iter().filter(|&&slot| stirred.is_elsewhere(slot));
             new_bounds.clear();
             new_bounds.extend(elsewhere.map(|&slot| (slot, Aabb::EMPTY)));
             for_each_part(new_bounds, BOXES_OF_A_PART, BOXES_MANY, |_, part| {
                 for (slot, bounds) in part {
-                    if let Some(object) = objects.at(*slot) {
-                        *bounds = clearances.grown(object.bounds());
-                    }
+                    let object = objects.at(*slot).expect("what is elsewhere is in the world");
+                    *bounds = clearances.grown(object.bounds());
                 }
             });
             broad.update_many(new_bounds);

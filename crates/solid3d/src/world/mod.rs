@@ -183,9 +183,10 @@ impl World {
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         let object = self.objects.remove(id).ok_or(Error::UnknownObject { argument: "object", id })?;
         self.forget_responses(id, object.pair_responses);
-        let Self { broad, candidates, findings, .. } = self;
+        let Self { broad, candidates, findings, stirred, .. } = self;
         broad.for_each_pair_of(proxy(id), &mut |pair, _| candidates.end(pair, findings));
         broad.remove(proxy(id));
+        stirred.vacate(proxy(id));
         self.stale = true;
         Ok(())
     }

@@ -129,7 +129,7 @@ impl World {
     ) {
         let mut until = until;
         for &slot in self.stirred.slots().iter().filter(|&&slot| self.stirred.is_elsewhere(slot)) {
-            let Some(object) = self.objects.at(slot) else { continue };
+            let object = self.objects.at(slot).expect("what is elsewhere is in the world");
             if bound(&world_bounds(object.placed())) <= until {
                 until = visit(self.objects.id_of(slot), until);
             }

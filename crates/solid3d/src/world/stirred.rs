@@ -46,7 +46,14 @@ impl Stirred {
         self.staleness.get(slot as usize).copied().unwrap_or_default()
     }
 
-    /// Whether the broad phase has an earlier box of an object.
+    /// Notes that the object in a slot is gone: it has no box that the broad phase is to be told.
+    pub fn vacate(&mut self, slot: Proxy) {
+        if self.is_elsewhere(slot) {
+            self.staleness[slot as usize] = Staleness::Pairs;
+        }
+    }
+
+    /// Whether the broad phase has an earlier box of an object, which is in the world.
     pub fn is_elsewhere(&self, slot: Proxy) -> bool {
         self.of(slot) == Staleness::Bounds
     }
