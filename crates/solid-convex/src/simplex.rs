@@ -384,15 +384,16 @@ pub(crate) fn perpendicular(p: DVec3, edge: DVec3) -> DVec3 {
 
 /// The normal of a triangle, from the edges that lead around it.
 ///
-/// From the two shortest: in a sliver the two long edges are nearly parallel, and their product is tilted along them.
+/// From the two shortest: in a sliver the two long edges are nearly parallel, and their product is tilted along them. Where all three
+/// are, so is that of any two: what of it is along the longest is taken off.
 pub(crate) fn normal([pq, qr, rp]: [DVec3; 3]) -> DVec3 {
     let [a, b, c] = [pq, qr, rp].map(|edge| edge.length_squared());
     if a >= b && a >= c {
-        qr.cross(rp)
+        perpendicular(qr.cross(rp), pq)
     } else if b >= c {
-        rp.cross(pq)
+        perpendicular(rp.cross(pq), qr)
     } else {
-        pq.cross(qr)
+        perpendicular(pq.cross(qr), rp)
     }
 }
 

@@ -36,7 +36,6 @@ pub use intersection::{
 /// as touching. The size of the data is the sum of the objects' extents and of the distance of their local origins.
 ///
 /// The rounding of positions alone accounts for 1e-14 of it. The rest is for thin slivers of facets, as a cone's surface
-/// makes them near its tip: of 10^5 random pairs, 70 % of them near-touching, sliver-shaped or of very different size, the
-/// largest gap that was not recognised was 6e-13. Harder is a gap opened along the normal of the least depth: of 45,798 of 2, 10 and
-/// 100 times this, one was not recognised, of twice this, between a cone's base and a hull of a millionth of its size.
+/// makes them near its tip. Of 1.2 * 10^6 pairs of all kinds, half of them flat or thin down to 10^-9, with a gap of 2, 10 or 1,000 times this
+/// opened along their normal, and of 2 * 10^5 with 1.05 times this, none was said to touch.
 pub const TOUCHING_ERROR: f64 = 1e-12;

@@ -1,6 +1,8 @@
 //! Laws of GJK. Random pairs of all kinds are judged by the oracle in `solid3d`'s tests.
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use rand::rngs::StdRng;
+use rand::{Rng, SeedableRng};
 
 use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_robustly, descend_within};
 use super::lean::{self, Search, Sure};
@@ -129,6 +131,97 @@ fn points_just_off_the_side_of_a_cone_are_separate() {
             assert!((distance - gap).abs() < 1e-14, "{k}: {distance:e}, not {gap:e}");
         }
     }
+}
+
+/// A vector in the cube from -1 to 1.
+fn in_cube(rng: &mut StdRng) -> DVec3 {
+    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)))
+}
+
+/// A shape of any kind, half of them flat or thin, down to a billionth.
+fn any_shape(rng: &mut StdRng) -> Box<dyn Support> {
+    let mut thin = || if rng.random() { 1.0 } else { 10f64.powf(-rng.random_range(0.0..9.0)) };
+    let (f, g) = (thin(), thin());
+    match rng.random_range(0..7) {
+        0 => Box::new(Sphere::new(1.0).unwrap()),
+        1 => Box::new(Cuboid::new(DVec3::new(1.0, f, g)).unwrap()),
+        2 => Box::new(Cone::new(g, f).unwrap()),
+        3 => Box::new(Cylinder::new(g, f).unwrap()),
+        4 => Box::new(Capsule::new(g, f).unwrap()),
+        5 => Box::new(crate::Polytope::new(vec![DVec3::ZERO]).unwrap()),
+        _ => {
+            let points = (0..rng.random_range(4..30)).map(|_| in_cube(rng) * DVec3::new(1.0, f, g));
+            Box::new(crate::Polytope::new(points.collect()).unwrap())
+        }
+    }
+}
+
+/// A map at the origin: turned, half of them stretched and sheared, some small.
+fn any_map(rng: &mut StdRng) -> DMat3 {
+    let mut turn = || {
+        DMat3::from_quat(DQuat::from_euler(
+            glam::EulerRot::XYZ,
+            3.0 * rng.random::<f64>(),
+            3.0,
+            6.0 * rng.random::<f64>(),
+        ))
+    };
+    let (outer, inner) = (turn(), turn());
+    let mut thin = || 10f64.powf(-rng.random_range(0.0..4.0));
+    let stretched = outer * DMat3::from_diagonal(DVec3::new(thin(), thin(), 1.0)) * inner;
+    let size = if rng.random_bool(0.2) { 10f64.powf(-rng.random_range(0.0..8.0)) } else { 1.0 };
+    if rng.random() { stretched * size } else { outer * size }
+}
+
+/// Law: a gap is seen that is opened along the normal of any two objects, near or deep in each other; and the distance is no less. Of needles
+/// whose every triangle is a sliver, too.
+#[test]
+fn gaps_beyond_the_stated_error_are_seen() {
+    const SEED: u64 = 51;
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let (mut hits, cases) = (0, 20_000);
+    for case in 0..cases {
+        let (a, b) = (any_shape(&mut rng), any_shape(&mut rng));
+        let at_a = DAffine3::from_mat3(any_map(&mut rng));
+        let map = any_map(&mut rng);
+        let extent = |map: &DMat3, reach: DVec3| {
+            (map.x_axis.abs() * reach.x + map.y_axis.abs() * reach.y + map.z_axis.abs() * reach.z)
+                .max_element()
+        };
+        let extents = extent(&at_a.matrix3, a.reach()) + extent(&map, b.reach());
+        if extents == 0.0 {
+            continue; // two points
+        }
+        let at = |translation: DVec3| DAffine3 { matrix3: map, translation };
+        let at_b = at(in_cube(&mut rng) * extents * rng.random::<f64>().powi(8));
+        let normal = if let Some(found) = crate::epa::penetration(&*a, &at_a, &*b, &at_b) {
+            hits += 1;
+            found.direction
+        } else {
+            let Closest { points, .. } = closest_points(&*a, &at_a, &*b, &at_b);
+            let between = at_a.transform_point3(points.on_a) - at_b.transform_point3(points.on_b);
+            let Some(normal) = between.try_normalize() else { continue };
+            normal
+        };
+        // Where the two just touch.
+        let end = |shape: &dyn Support, map: &DMat3, normal: DVec3| {
+            normal.dot(*map * shape.support(map.transpose() * normal))
+        };
+        let way = -end(&*a, &at_a.matrix3, -normal) - end(&*b, &map, normal) - normal.dot(at_b.translation);
+        let touching = at_b.translation + normal * way;
+        let size = extents + touching.abs().max_element();
+        for gap in [1.05, 2.0, 10.0].map(|times| times * TOUCHING_ERROR * size) {
+            let at_b = at(touching - normal * gap);
+            let outcome = intersection(&*a, &at_a, &*b, &at_b);
+            assert!(
+                matches!(outcome, Outcome::Separated { .. }),
+                "seed {SEED}, {case}, {gap:e}: {outcome:?}"
+            );
+            let distance = closest_points(&*a, &at_a, &*b, &at_b).distance;
+            assert!(distance >= gap - 1e-14 * size, "seed {SEED}, {case}: {distance:e}, not {gap:e}");
+        }
+    }
+    assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
 }
 
 /// Balls and capsules, whose distance is that of their cores: the slow twin is a descent on the round surfaces.
