@@ -13,8 +13,18 @@ use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
 /// The generator that every function of this module takes, from a seed to be printed by the test.
+///
+/// The environment variable `SOLID_SEED`, a number, is added to all seeds: so the same tests look at other cases. Some then say that
+/// their cases are not representative; what else they say is a bug.
+///
+/// # Panics
+/// If `SOLID_SEED` is not a number from 0 to 2^64 - 1.
 pub fn seeded(seed: u64) -> StdRng {
-    StdRng::seed_from_u64(seed)
+    let more = std::env::var("SOLID_SEED").map_or(0, |more| {
+        more.parse()
+            .unwrap_or_else(|_| panic!("SOLID_SEED is {more:?}; it must be a number from 0 to 2^64 - 1"))
+    });
+    StdRng::seed_from_u64(seed.wrapping_add(more))
 }
 
 /// A direction, uniform on the sphere.
