@@ -49,3 +49,14 @@ pub struct Traversal {
     /// The same for pairs of subtrees.
     pub(super) near_pairs: Vec<(f64, Pair)>,
 }
+
+impl Traversal {
+    /// The memory that it owns, in bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        let Traversal { counters: _, nodes, pairs, near, near_pairs } = self;
+        nodes.capacity() * size_of::<u32>()
+            + pairs.capacity() * size_of::<Pair>()
+            + near.capacity() * size_of::<(f64, Place)>()
+            + near_pairs.capacity() * size_of::<(f64, Pair)>()
+    }
+}
