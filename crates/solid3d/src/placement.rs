@@ -65,6 +65,10 @@ fn direction(axis: DVec3) -> Option<DVec3> {
 
 /// The inverse of a checked placement's linear part. Axes of very different length do it no harm.
 pub(crate) fn inverse_linear(linear: &DMat3) -> DMat3 {
+    // Most of what stays in its place is not turned either.
+    if *linear == DMat3::IDENTITY {
+        return DMat3::IDENTITY;
+    }
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *linear;
     // With L = U D, D the lengths of the axes: L^-1 = D^-1 U^-1.
     let lengths = [x, y, z].map(|axis| axis.abs().max_element());

@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::ops::ControlFlow;
+
 use common::{
     Soup, assert_rate, direction, in_cube, log_uniform, placement, random_complex, random_mesh, rescaled,
     shape_of, stretch, torus,
@@ -542,4 +544,57 @@ fn a_touch_is_not_hidden_by_what_is_a_hair_apart() {
             assert_eq!(query::distance(&mesh, &here, shape, &here).unwrap().distance, 0.0, "{hair:e}");
         }
     }
+}
+
+/// A mesh is looked at by images of its triangles, unless it was deformed: to the same positions, for the same answers, beside every
+/// kind of convex shape, and where the two nearly touch.
+#[test]
+fn a_deformation_to_the_same_positions_answers_alike() {
+    let mut rng = seeded(98);
+    let (mut hits, cases) = (0, 3000);
+    for case in 0..cases {
+        let count = log_uniform(&mut rng, 20.0, 500.0) as u32;
+        let soup = random_mesh(&mut rng, count).scaled(log_uniform(&mut rng, 1e-6, 1e6));
+        let shape = soup.shape();
+        let mut deformed = shape.clone();
+        deformed.deform(&soup.vertices).unwrap();
+        let at = placement(&mut rng, 1.0);
+        let extent = query::bounds(&shape, &at).unwrap().half_extents().max_element();
+        let size = extent * log_uniform(&mut rng, 0.02, 0.5);
+        let vertex = at.transform_point3(soup.vertices[rng.random_range(0..soup.vertices.len())]);
+        let mut at_small = DAffine3::from_quat(DQuat::from_rotation_x(rng.random_range(0.0..3.0)));
+        at_small.translation = vertex + direction(&mut rng) * size * rng.random_range(0.5..3.0);
+        let mut small = match case % 4 {
+            0 => Shape::sphere(size),
+            1 => Shape::cuboid(DVec3::new(1.0, 2.0, 1.5) * size),
+            2 => Shape::capsule(0.5 * size, size),
+            _ => Shape::cone(size, size),
+        }
+        .unwrap();
+        if case % 8 == 0 {
+            let near = 1.0 + [1e-3, -1e-3, 1e-5, -1e-5, 1e-7, -1e-7, 1e-12][case / 8 % 7];
+            let point = Shape::convex_hull(&[DVec3::ZERO]).unwrap();
+            let gap = query::distance(&shape, &at, &point, &at_small).unwrap().distance;
+            small = Shape::sphere((gap * near).max(1e-3 * size)).unwrap();
+        }
+        let ask = |mesh: &Shape| {
+            let mut found = Vec::new();
+            query::intersecting_primitives(mesh, &at, &small, &at_small, |i, _| {
+                found.push(i);
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+            (
+                query::intersects(mesh, &at, &small, &at_small).unwrap(),
+                query::common_point(mesh, &at, &small, &at_small).unwrap(),
+                query::distance(mesh, &at, &small, &at_small).unwrap(),
+                found,
+            )
+        };
+        let answers = ask(&shape);
+        assert_eq!(answers, ask(&deformed), "case {case}");
+        assert_eq!(answers.0, !answers.3.is_empty(), "case {case}");
+        hits += usize::from(answers.0);
+    }
+    assert_rate("meshes and convex shapes", hits, cases);
 }

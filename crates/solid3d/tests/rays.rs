@@ -7,7 +7,9 @@
 
 mod common;
 
-use common::{bumpy_sphere, direction, in_cube, placement, random_complex, random_mesh, shape_of, torus};
+use common::{
+    assert_rate, bumpy_sphere, direction, in_cube, placement, random_complex, random_mesh, shape_of, torus,
+};
 use glam::{DAffine3, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -190,6 +192,34 @@ fn meshes_agree_with_brute_force() {
     }
     println!("{hits} of {cases} hit");
     assert!(cases > 4000 && (0.3..=0.8).contains(&(hits as f64 / cases as f64)));
+}
+
+/// A mesh is looked at by images of its triangles, unless it was deformed: to the same positions, for the same answers, to the bit.
+#[test]
+fn a_deformation_to_the_same_positions_is_hit_alike() {
+    let seed = 97;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut hits, cases) = (0, 4000);
+    for case in 0..cases {
+        let mut soup = if case % 2 == 0 { random_mesh(&mut rng, 60) } else { torus(12, 8, 0.3) };
+        let far = if case % 3 == 0 { 10f64.powi(rng.random_range(0..9)) } else { 0.0 };
+        soup.vertices.iter_mut().for_each(|vertex| *vertex += far);
+        let soup = soup.scaled(10f64.powi(rng.random_range(-9..9)));
+        let shape = soup.shape();
+        let mut deformed = shape.clone();
+        deformed.deform(&soup.vertices).unwrap();
+        let at = placement(&mut rng, 1.0);
+        let ray = some_ray(&mut rng, &shape, &at);
+        let first = query::cast_ray(&shape, &at, &ray, &BY_DEFAULT).unwrap();
+        assert_eq!(first, query::cast_ray(&deformed, &at, &ray, &BY_DEFAULT).unwrap());
+        let all = query::cast_ray_all(&shape, &at, &ray, &BY_DEFAULT).unwrap();
+        assert_eq!(all, query::cast_ray_all(&deformed, &at, &ray, &BY_DEFAULT).unwrap());
+        let meets = query::ray_meets(&deformed, &at, &ray, &BY_DEFAULT).unwrap();
+        assert_eq!(meets, query::ray_meets(&shape, &at, &ray, &BY_DEFAULT).unwrap());
+        hits += usize::from(meets);
+    }
+    assert_rate("rays", hits, cases);
 }
 
 /// From inside of a closed mesh, every ray comes out: also at corners, along edges, and from far away after an affine map.

@@ -1,8 +1,9 @@
 //! A complex shape against a convex one: the tree is walked from the convex shape, nearest first (thesis, section 6.3.4).
 //!
 //! Balls, capsules and boxes are held against eight triangles at a time in closed form ([`direct`](super::direct)), and what is clear
-//! is not asked of GJK. Of other shapes, what parts one primitive mostly parts its neighbours too: so an axis is kept, and
-//! leaves are tested along it before GJK looks at what remains.
+//! is not asked of GJK; where any triangle that meets will do, images of triangles come first ([`glance`](super::glance)). Of other
+//! shapes, what parts one primitive mostly parts its neighbours too: so an axis is kept, and leaves are tested along it before GJK looks
+//! at what remains.
 
 use std::ops::{ControlFlow, RangeInclusive};
 
@@ -14,12 +15,13 @@ use solid_convex::{Closest, Outcome, Support, Witness, gjk};
 use super::containment::PlacedSolid;
 use super::direct::{Direct, Round};
 use super::frame::{Frame, ROUNDINGS, Stretch};
+use super::glance::Glance;
 use super::reach::convex_bounds;
 use super::row::{CONFIRMED, Near, Row, Verdict, distances_of_core, exceed};
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
-use crate::tree::{Around, NearLeaves, bits};
+use crate::tree::{Around, Leaf, LeafImages, NearLeaves, bits};
 
 /// A gap in the common frame, where the size of the data is from 1 to 2, at which GJK calls shapes separate without fail: four
 /// times the one at which it does so by a cached axis.
@@ -34,7 +36,7 @@ const SLACKS: f64 = 4.0;
 /// Whether they intersect: as [`intersection`] says.
 pub(super) fn intersects(complex: PlacedComplex, convex: PlacedConvex, scratch: &mut Scratch) -> bool {
     let mut found = |_, _| ControlFlow::Break(());
-    meeting_primitives(complex, convex, scratch, &mut found).is_break()
+    meeting_primitives_in(complex, convex, true, scratch, &mut found).is_break()
         || contained(complex, convex, scratch).is_some()
 }
 
@@ -62,10 +64,20 @@ pub(super) fn meeting_primitives(
     scratch: &mut Scratch,
     found: &mut dyn FnMut(u32, Option<Witness>) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
+    meeting_primitives_in(complex, convex, false, scratch, found)
+}
+
+/// The same; `wants_any`: whichever of them is found first, and without a point.
+fn meeting_primitives_in(
+    complex: PlacedComplex,
+    convex: PlacedConvex,
+    wants_any: bool,
+    scratch: &mut Scratch,
+    found: &mut dyn FnMut(u32, Option<Witness>) -> ControlFlow<()>,
+) -> ControlFlow<()> {
     let (query, frame) = convex_in_complex(complex, convex);
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
-    let row = row.get_or_insert_default();
-    row.clear();
+    row.iter_mut().for_each(Row::clear);
     let direct = Direct::new(convex.0, &frame, CLEARLY_APART);
     let shadow = Shadow::new(convex.0, &frame, &direct, CLEARLY_APART);
     let map = match &direct {
@@ -75,8 +87,15 @@ pub(super) fn meeting_primitives(
     let around = shadow.around(&query, &frame, &direct);
     let metric = frame.stretch[0].metric(&Stretch::NONE);
     let end = ControlFlow::Continue(());
+    // Where all that meet are wanted, most leaves that are visited hold some.
+    let glance = if wants_any {
+        let glance = Glance::new(&direct, &map, CLEARLY_APART, complex.0.tree().normal());
+        glance.zip(complex.0.images())
+    } else {
+        None
+    };
     let mut meeting =
-        Meeting { complex, convex, query, direct, map, shadow, row, primitive_tests, found, end };
+        Meeting { complex, convex, query, direct, map, shadow, glance, row, primitive_tests, found, end };
     // What is clearly apart does not meet; nothing else is sought.
     let mut limit = CLEARLY_APART;
     complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut limit, traversal, &mut meeting);
@@ -173,7 +192,9 @@ struct Meeting<'s> {
     /// Where primitives are placed: in the common frame, or the space of a box.
     map: DAffine3,
     shadow: Shadow<'s>,
-    row: &'s mut Row,
+    /// What looks at images of triangles, where any that meets will do.
+    glance: Option<(Glance, &'s LeafImages)>,
+    row: &'s mut Option<Row>,
     primitive_tests: &'s mut u64,
     found: &'s mut dyn FnMut(u32, Option<Witness>) -> ControlFlow<()>,
     /// Whether `found` broke off.
@@ -182,8 +203,11 @@ struct Meeting<'s> {
 
 impl NearLeaves for Meeting<'_> {
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32], limit: &mut f64) {
-        self.end = self.look(simd, leaf);
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, limit: &mut f64) {
+        self.end = self.glance(simd, leaf).unwrap_or_else(
+            #[inline(always)]
+            || self.look(simd, leaf.primitives),
+        );
         if self.end.is_break() {
             *limit = 0.0;
         }
@@ -191,33 +215,48 @@ impl NearLeaves for Meeting<'_> {
 }
 
 impl Meeting<'_> {
+    /// Looks at the image of a leaf; `None` when that leaves something open.
+    #[inline(always)]
+    fn glance<S: Simd>(&mut self, simd: S, leaf: &Leaf) -> Option<ControlFlow<()>> {
+        let (glance, images) = self.glance.as_ref()?;
+        let Verdict { meet, apart } = glance.verdict(simd, &images.of(leaf));
+        let lanes = leaf.lanes();
+        let first = bits(meet & lanes).next();
+        if first.is_none() && apart & lanes != lanes {
+            return None;
+        }
+        *self.primitive_tests += u64::from(lanes.count_ones());
+        Some(first.map_or(ControlFlow::Continue(()), |lane| (self.found)(leaf.primitives[lane], None)))
+    }
+
     #[inline(always)]
     fn look<S: Simd>(&mut self, simd: S, leaf: &[u32]) -> ControlFlow<()> {
         let (complex, at_complex) = self.complex;
-        self.row.place(simd, complex, leaf, &self.map);
+        let row = self.row.get_or_insert_default();
+        row.place(simd, complex, leaf, &self.map);
         let bounds = match &self.direct {
             Direct::Cube(cube) => &cube.bounds(),
             _ => &self.shadow.bounds,
         };
-        let mut near = self.row.overlapping(simd, bounds);
+        let mut near = row.overlapping(simd, bounds);
         if near == 0 {
             return ControlFlow::Continue(());
         }
-        let triangles = near & self.row.triangles();
+        let triangles = near & row.triangles();
         let sure = match &self.direct {
-            Direct::Round(round) => round.verdict(simd, self.row, triangles, CLEARLY_APART),
-            Direct::Cube(cube) => cube.verdict(simd, self.row, triangles),
-            Direct::None => Verdict { meet: 0, apart: self.shadow.beyond(simd, self.row, CLEARLY_APART) },
+            Direct::Round(round) => round.verdict(simd, row, triangles, CLEARLY_APART),
+            Direct::Cube(cube) => cube.verdict(simd, row, triangles),
+            Direct::None => Verdict { meet: 0, apart: self.shadow.beyond(simd, row, CLEARLY_APART) },
         };
         near &= !sure.apart;
         *self.primitive_tests += u64::from(near.count_ones());
         for lane in bits(near & sure.meet) {
-            (self.found)(self.row.primitive(lane), None)?;
+            (self.found)(row.primitive(lane), None)?;
         }
         near &= !sure.meet;
         while let Some(lane) = bits(near).next() {
             near &= near - 1;
-            let primitive = self.row.primitive(lane);
+            let primitive = row.primitive(lane);
             if !complex.primitive_bounds(primitive).overlaps(&self.query) {
                 continue;
             }
@@ -226,7 +265,7 @@ impl Meeting<'_> {
                 Outcome::Separated { axis } => {
                     if matches!(self.direct, Direct::None) {
                         self.shadow.turn(axis);
-                        near &= !self.shadow.beyond(simd, self.row, CLEARLY_APART);
+                        near &= !self.shadow.beyond(simd, row, CLEARLY_APART);
                     }
                 }
                 Outcome::Touching(witness) | Outcome::Intersecting(witness) => {
@@ -321,8 +360,8 @@ impl NearLeaves for Approach<'_> {
     }
 
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32], best: &mut f64) {
-        self.row.place(simd, self.complex.0, leaf, &self.frame.common[0]);
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, best: &mut f64) {
+        self.row.place(simd, self.complex.0, leaf.primitives, &self.frame.common[0]);
         let near = self.row.nearer(simd, &self.shadow.bounds, *best * *best);
         if near == 0 {
             return;

@@ -53,6 +53,11 @@ impl Round {
         Some(Round { radius: radius * stretch, local_ends, ends })
     }
 
+    /// The centre of a ball, in the common frame; `None` for a capsule.
+    pub fn center(&self) -> Option<DVec3> {
+        (self.ends[0] == self.ends[1]).then_some(self.ends[0])
+    }
+
     /// The box around it.
     pub fn bounds(&self) -> Aabb {
         Aabb::of_points(self.ends).inflated(self.radius)

@@ -53,7 +53,7 @@ pub fn cast_shape(
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
     bounded("motion_a", motion_a)?;
     bounded("motion_b", motion_b)?;
-    let impact = pair::cast(a, motion_a - motion_b, b, &mut Scratch::default());
+    let impact = Scratch::with(|scratch| pair::cast(a, motion_a - motion_b, b, scratch));
     Ok(impact.map(|impact| {
         let moved = motion_a * (0.5 * impact.time) + motion_b * (0.5 * impact.time);
         ShapeCast {

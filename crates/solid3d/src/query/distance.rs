@@ -42,6 +42,6 @@ pub fn distance_within(
     }
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
     let closest = pair::convex_closest_within(a, b, bound)
-        .unwrap_or_else(|| pair::closest_within(a, b, bound, &mut Scratch::default()));
+        .unwrap_or_else(|| Scratch::with(|scratch| pair::closest_within(a, b, bound, scratch)));
     Ok(closest.map(|closest| Distance::new(a, b, &closest)))
 }

@@ -83,7 +83,7 @@ pub fn intersects(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DA
 fn intersects_at_length(a: Placed, b: Placed) -> Result<bool> {
     let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
     let answer = pair::convex_intersects(a, b);
-    Ok(answer.unwrap_or_else(|| pair::intersects(a, b, &mut Scratch::default())))
+    Ok(answer.unwrap_or_else(|| Scratch::with(|scratch| pair::intersects(a, b, scratch))))
 }
 
 /// A point that two placed shapes have in common, in the world; `None` when they do not intersect.
@@ -105,7 +105,7 @@ pub fn common_point(
     placement_b: &DAffine3,
 ) -> Result<Option<DVec3>> {
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
-    Ok(match pair::intersection(a, b, &mut Scratch::default()) {
+    Ok(match Scratch::with(|scratch| pair::intersection(a, b, scratch)) {
         Relation::Common(witness) => Some(pair::midpoint(a, b, &witness)),
         Relation::Separated { .. } => None,
     })
@@ -142,7 +142,7 @@ pub fn intersecting_primitives(
 ) -> Result<()> {
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
     let mut found = |i, j| found(a.shape.owner(i), b.shape.owner(j));
-    let _ = pair::meeting_primitives(a, b, &mut Scratch::default(), &mut found);
+    let _ = Scratch::with(|scratch| pair::meeting_primitives(a, b, scratch, &mut found));
     Ok(())
 }
 
@@ -165,7 +165,7 @@ pub fn separating_axis(
     placement_b: &DAffine3,
 ) -> Result<Option<DVec3>> {
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
-    Ok(pair::axis(a, b, &mut Scratch::default()))
+    Ok(Scratch::with(|scratch| pair::axis(a, b, scratch)))
 }
 
 /// The distance of two placed shapes, with their closest points. Meshes and complex shapes by branch and bound over their
@@ -191,7 +191,7 @@ pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAff
     }
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
     let closest = pair::convex_closest_within(a, b, f64::INFINITY).flatten();
-    let closest = closest.unwrap_or_else(|| pair::closest(a, b, &mut Scratch::default()));
+    let closest = closest.unwrap_or_else(|| Scratch::with(|scratch| pair::closest(a, b, scratch)));
     Ok(Distance::new(a, b, &closest))
 }
 
@@ -244,7 +244,8 @@ pub fn intersection_curve(
     b: &Shape,
     placement_b: &DAffine3,
 ) -> Result<IntersectionCurve> {
-    pair::intersection_curve(placed(a, placement_a)?, placed(b, placement_b)?, &mut Scratch::default())
+    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    Scratch::with(|scratch| pair::intersection_curve(a, b, scratch))
 }
 
 /// A box of the world around a placed shape: for a convex shape the smallest, up to a margin for rounding; for a mesh or a

@@ -64,7 +64,7 @@ pub fn penetration(
     placement_b: &DAffine3,
 ) -> Result<Option<Penetration>> {
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
-    let found = pair::penetration(a, b, &mut Scratch::default());
+    let found = Scratch::with(|scratch| pair::penetration(a, b, scratch));
     Ok(found.map(|found| Penetration::new(a, b, &found)))
 }
 

@@ -92,6 +92,7 @@ fn cast<'r>(
     wanted: Wanted,
 ) -> Result<Hits<'r>> {
     let mut hits = Hits::new(ray.checked()?, options, wanted);
-    pair::ray_hits(placed(shape, placement)?, &mut hits, &mut Scratch::default());
+    let placed = placed(shape, placement)?;
+    Scratch::with(|scratch| pair::ray_hits(placed, &mut hits, scratch));
     Ok(hits)
 }

@@ -61,6 +61,6 @@ pub fn signed_distance(shape: &Shape, placement: &DAffine3, point: DVec3) -> Res
     let (point, at) = as_shape(point)?;
     let point = Placed { shape: &point, placement: &at };
     let pair::SurfacePoint { distance, point, normal } =
-        pair::surface_point(shape, point, &mut Scratch::default());
+        Scratch::with(|scratch| pair::surface_point(shape, point, scratch));
     Ok(SignedDistance { distance, point, normal })
 }

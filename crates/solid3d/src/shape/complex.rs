@@ -12,7 +12,7 @@ use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
 use crate::threads::for_each_part;
-use crate::tree::{LeafPoints, Slabs, Tree};
+use crate::tree::{LeafImages, LeafPoints, Slabs, Tree};
 
 /// A soup of convex primitives. Clones share what a deformation leaves alone.
 #[derive(Clone, Debug)]
@@ -29,6 +29,9 @@ pub(crate) struct Complex {
     topology: OnceLock<Arc<Topology>>,
     /// How flat it is, at these positions, found when first asked for.
     slabs: OnceLock<Arc<Slabs>>,
+    /// Images of the triangles of a mesh, found when first asked for. None while the positions are others than those for which the tree
+    /// was built: what deforms again and again would make them again and again.
+    images: OnceLock<Option<Arc<LeafImages>>>,
     /// What a refit reads, of this tree at any positions, found at the first deformation.
     leaf_points: OnceLock<Arc<LeafPoints>>,
 }
@@ -124,6 +127,7 @@ impl Complex {
             parts: Arc::default(),
             topology: OnceLock::new(),
             slabs: OnceLock::new(),
+            images: OnceLock::new(),
             leaf_points: OnceLock::new(),
         })
     }
@@ -181,6 +185,16 @@ impl Complex {
         })
     }
 
+    /// Images of the triangles in the leaves of the tree; none of other primitives, nor after a deformation. Cost: O(n) at the first call.
+    pub fn images(&self) -> Option<&LeafImages> {
+        let found = self.images.get_or_init(|| {
+            let triangles = self.triangles()?;
+            let corners = |primitive: u32| triangles[primitive as usize].map(|i| self.vertices[i as usize]);
+            Some(Arc::new(LeafImages::new(&self.tree, corners)))
+        });
+        found.as_deref()
+    }
+
     /// Whether both are soups of the same primitives, both solid or both not: one is a deformation of the other.
     pub fn same_primitives(&self, other: &Complex) -> bool {
         Arc::ptr_eq(&self.parts, &other.parts)
@@ -226,7 +240,8 @@ impl Complex {
         let slabs = self.slabs.get().map_or(0, |slabs| slabs.bytes());
         let leaf_points = self.leaf_points.get().map_or(0, |points| points.bytes());
         let vertices = self.vertices.capacity() * size_of::<DVec3>();
-        let found = parts + slabs + leaf_points;
+        let images = self.images.get().and_then(Option::as_ref).map_or(0, |images| images.bytes());
+        let found = parts + slabs + images + leaf_points;
         size_of::<Complex>() + self.primitives.memory() + vertices + self.tree.bytes() + solid + found
     }
 
@@ -266,8 +281,10 @@ impl Complex {
         tree.refit_points(points, vertices);
         self.topology = OnceLock::new();
         self.slabs = OnceLock::new();
+        self.images = OnceLock::from(None);
         if self.tree.degraded() {
             self.tree = build(&self.primitives, &self.vertices);
+            self.images = OnceLock::new();
             self.leaf_points = OnceLock::new();
         }
     }

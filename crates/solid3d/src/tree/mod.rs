@@ -17,6 +17,7 @@
 //! | `node` | the eight-wide node and its child words |
 //! | `split`, `clusters`, `build` | binned surface-area heuristic, first on cells of a grid, and the eight-wide build |
 //! | `refit`, `leaf_points`, `cost` | boxes anew in the same topology, what they are around, and when that no longer pays |
+//! | `leaf_images` | the triangles of each leaf, coarsely, side by side: what is looked at before they are |
 //! | `validate` | the invariants |
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
@@ -42,6 +43,7 @@ mod cost;
 mod crossing;
 mod eights;
 mod lanes;
+mod leaf_images;
 mod leaf_points;
 mod metric;
 mod nearest;
@@ -66,6 +68,7 @@ pub use build::DEPTH_MAX;
 pub use cast_pairs::cast_pairs;
 pub use cost::DEGRADED_RATIO;
 pub(crate) use lanes::bits;
+pub(crate) use leaf_images::{HALF_STEP, Image, Leaf, LeafImages, STEPS};
 pub(crate) use leaf_points::LeafPoints;
 pub use metric::PairMetric;
 pub(crate) use nearest::{Around, NearLeaves};
@@ -75,6 +78,7 @@ pub use node::{LEAF_SIZE, PRIMITIVES_MAX};
 pub use normal::COORDINATE_MAX;
 pub use pairs::pairs;
 pub(crate) use pairs::{LeafPairs, pairs_on};
+pub(crate) use ray::RayLeaves;
 pub use ray::TreeRay;
 pub use relative::{PlacedBox, Relative};
 pub(crate) use slabs::{Facing, Slabs};
@@ -82,7 +86,7 @@ pub use traversal::{Counters, Traversal};
 
 use crate::Aabb;
 use node::{Child, Node};
-use normal::Normal;
+pub(crate) use normal::Normal;
 use packed::PackedBox;
 
 /// A hierarchy of bounding boxes over primitives `0..n`.
@@ -164,9 +168,21 @@ impl Tree {
         self.nodes.capacity() * size_of::<Node>() + self.order.capacity() * size_of::<u32>()
     }
 
+    /// The map to the coordinates in which its boxes are.
+    pub(crate) fn normal(&self) -> &Normal {
+        &self.normal
+    }
+
     /// The primitives of a leaf word.
     fn leaf(&self, range: std::ops::Range<usize>) -> &[u32] {
         &self.order[range]
+    }
+
+    /// The leaf of a word, at a place.
+    #[inline(always)]
+    fn leaf_at(&self, place: Place, range: std::ops::Range<usize>) -> Leaf<'_> {
+        let (node, lane) = place.split().expect("the root is a node");
+        Leaf::new(self, range, node, lane)
     }
 
     /// The child word at a place: the root, or a lane of a node.

@@ -4,12 +4,12 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x4, mask64x4};
 use solid_convex::simd::{Level, dispatch, level};
 
-use super::lanes::distances_squared_to_box;
+use super::lanes::{LANES, bits, distances_squared_to_box};
 use super::metric::{Folded, PairMetric};
 use super::node::{Child, Kind, Node, WIDTH};
 use super::packed::PackedBox;
 use super::traversal::STACK_USUAL;
-use super::{Place, Traversal, Tree};
+use super::{Leaf, Place, Traversal, Tree};
 use crate::Aabb;
 
 /// Where a query is: within a distance, in the world, of some point of a box of local coordinates.
@@ -28,7 +28,7 @@ pub(crate) trait NearLeaves {
     }
 
     /// Called with the leaves that may hold something nearer than `best`; lowers it.
-    fn visit<S: Simd>(&mut self, simd: S, leaf: &[u32], best: &mut f64);
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, best: &mut f64);
 }
 
 impl Tree {
@@ -115,8 +115,9 @@ impl Tree {
         let Traversal { counters, near: stack, .. } = traversal;
         stack.clear();
         stack.reserve(STACK_USUAL);
-        stack.push((f64::NEG_INFINITY, Place::ROOT));
-        while let Some((least, place)) = stack.pop() {
+        // Of a node with one near child that is next: what is pushed would be popped at once.
+        let mut only = Some((f64::NEG_INFINITY, Place::ROOT));
+        while let Some((least, place)) = only.take().or_else(|| stack.pop()) {
             // Bounds below zero are as good as zero.
             if *best == 0.0 {
                 return;
@@ -138,7 +139,7 @@ impl Tree {
                 Kind::Empty => {}
                 Kind::Leaf(range) => {
                     counters.leaf_visits += 1;
-                    visitor.visit(simd, self.leaf(range), best);
+                    visitor.visit(simd, &self.leaf_at(place, range), best);
                 }
                 Kind::Inner(index) => {
                     counters.box_tests += 1;
@@ -146,9 +147,15 @@ impl Tree {
                     // Empty lanes are infinitely far, or do no harm.
                     let mut of_lanes = [f64::INFINITY; WIDTH];
                     bounds(node, &mut of_lanes);
+                    let near = !reaching(simd, &of_lanes, *best);
+                    let entry = |lane: usize| (of_lanes[lane], Place::lane(index, lane));
+                    if near.is_power_of_two() {
+                        only = Some(entry(near.trailing_zeros() as usize));
+                        continue;
+                    }
                     let from = stack.len();
-                    for (lane, least) in of_lanes.into_iter().enumerate() {
-                        push_unless_far((least, Place::lane(index, lane)), *best, stack, from);
+                    for lane in bits(near) {
+                        push_unless_far(entry(lane), *best, stack, from);
                     }
                 }
             }
@@ -156,13 +163,22 @@ impl Tree {
     }
 }
 
+/// The lanes whose bound is at least a limit, as bits.
+#[inline(always)]
+fn reaching<S: Simd>(simd: S, bounds: &[f64; WIDTH], limit: f64) -> u32 {
+    let limit = f64x4::splat(simd, limit);
+    let low = f64x4::from_slice(simd, &bounds[..4]).simd_ge(limit).to_bitmask() as u32;
+    let high = f64x4::from_slice(simd, &bounds[4..]).simd_ge(limit).to_bitmask() as u32;
+    low | high << 4 | !LANES
+}
+
 /// What needs no vectors. Not generic over the function: the walk is compiled for every level of instructions.
 struct Plain<'f>(&'f mut dyn FnMut(&[u32], &mut f64));
 
 impl NearLeaves for Plain<'_> {
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, _: S, leaf: &[u32], best: &mut f64) {
-        (self.0)(leaf, best);
+    fn visit<S: Simd>(&mut self, _: S, leaf: &Leaf, best: &mut f64) {
+        (self.0)(leaf.primitives, best);
     }
 }
 
@@ -223,7 +239,12 @@ fn defer<T: Copy>(entry: (f64, T), stack: &mut Vec<(f64, T)>) {
 /// An insertion, for at most eight. Of equal bounds, what was added first comes last. (Telling each its place by how many of eight
 /// are farther, without a branch, took a fifth longer for a ray: most nodes give it one or two.)
 #[inline]
-pub(super) fn push_unless_far<T: Copy>(entry: (f64, T), best: f64, stack: &mut Vec<(f64, T)>, from: usize) {
+pub(super) fn push_unless_far<K: Copy + PartialOrd, T: Copy>(
+    entry: (K, T),
+    best: K,
+    stack: &mut Vec<(K, T)>,
+    from: usize,
+) {
     if entry.0 >= best {
         return;
     }

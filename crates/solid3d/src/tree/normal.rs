@@ -32,7 +32,7 @@ const POINT_EXPONENT: i32 = -40;
 
 /// The map from local to tree coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Normal {
+pub(crate) struct Normal {
     pub origin: DVec3,
     /// A power of two.
     pub scale: f64,
@@ -63,7 +63,7 @@ impl Normal {
 
     /// A box in tree coordinates, which contains the exact image of `bounds`.
     #[inline(always)]
-    pub fn pack(&self, bounds: &Aabb) -> PackedBox {
+    pub(super) fn pack(&self, bounds: &Aabb) -> PackedBox {
         let (min, max) =
             ((bounds.min - self.origin) * self.inverse, (self.origin - bounds.max) * self.inverse);
         let [x, y, z] = [round_down(min.x), round_down(min.y), round_down(min.z)];
@@ -72,14 +72,14 @@ impl Normal {
     }
 
     /// The same for a box that may be anywhere: beyond [`FAR`], where nothing is, it is cut off.
-    pub fn pack_any(&self, bounds: &Aabb) -> PackedBox {
+    pub(super) fn pack_any(&self, bounds: &Aabb) -> PackedBox {
         let far = DVec3::splat(f64::from(FAR)) * self.scale;
         let (least, greatest) = (self.origin - far, self.origin + far);
         self.pack(&Aabb::new(bounds.min.clamp(least, greatest), bounds.max.clamp(least, greatest)))
     }
 
     /// A box in local coordinates, which contains the exact image of `packed`.
-    pub fn unpack(&self, packed: &PackedBox) -> Aabb {
+    pub(super) fn unpack(&self, packed: &PackedBox) -> Aabb {
         let [a, b, c, _, d, e, f, _] = packed.0.map(f64::from);
         let min = self.origin + DVec3::new(a, b, c) * self.scale;
         let max = self.origin - DVec3::new(d, e, f) * self.scale;

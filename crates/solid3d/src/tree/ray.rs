@@ -15,15 +15,31 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 use glam::DVec3;
-use solid_convex::simd::{self, dispatch};
+use solid_convex::simd::{self, Level, dispatch};
 use solid_convex::unit_scale;
 
 use super::lanes::bits;
 use super::nearest::push_unless_far;
 use super::node::{Kind, Node, WIDTH};
 use super::normal::round_down;
-use super::{Place, Traversal, Tree};
+use super::{Leaf, Place, Traversal, Tree};
 use crate::Aabb;
+
+/// What is done with the leaves along a ray, in vectors of the level of instructions that the walk runs on.
+pub(crate) trait RayLeaves {
+    /// Called with the leaves that the ray may meet up to `until`; lowers it.
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, until: &mut f64);
+}
+
+/// Leaves are given to a function.
+struct Plain<F>(F);
+
+impl<F: FnMut(&[u32], &mut f64)> RayLeaves for Plain<F> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, _: S, leaf: &Leaf, until: &mut f64) {
+        (self.0)(leaf.primitives, until);
+    }
+}
 
 /// A ray, or a box that moves along one, in the space of the tree: what is within `half_extents` of
 /// `origin + t * direction` for some `t >= 0`.
@@ -169,8 +185,20 @@ impl Tree {
         traversal: &mut Traversal,
         visit: impl FnMut(&[u32], &mut f64),
     ) {
+        self.along_on(simd::level(), ray, until, traversal, &mut Plain(visit));
+    }
+
+    /// As [`along`](Tree::along), on a level of instructions.
+    pub(crate) fn along_on(
+        &self,
+        level: Level,
+        ray: &TreeRay,
+        until: &mut f64,
+        traversal: &mut Traversal,
+        visitor: &mut impl RayLeaves,
+    ) {
         if let Some(probe) = Probe::new(self, ray) {
-            dispatch!(simd::level(), simd => self.walk_along(simd, &probe, until, traversal, visit));
+            dispatch!(level, simd => self.walk_along(simd, &probe, until, traversal, visitor));
         }
     }
 
@@ -181,32 +209,37 @@ impl Tree {
         probe: &Probe,
         until: &mut f64,
         traversal: &mut Traversal,
-        mut visit: impl FnMut(&[u32], &mut f64),
+        visitor: &mut impl RayLeaves,
     ) {
-        let Traversal { counters, near: stack, .. } = traversal;
+        let Traversal { counters, ahead: stack, .. } = traversal;
         stack.clear();
         stack.reserve(STACK);
-        stack.push((0.0, Place::ROOT));
         let mut left = probe.until(*until);
-        while let Some((enter, place)) = stack.pop() {
-            if enter > f64::from(left) {
+        // Of a node with one lane on the way that is next: what is pushed would be popped at once.
+        let mut only = Some((0.0, (self.child_at(Place::ROOT), Place::ROOT)));
+        while let Some((enter, (child, place))) = only.take().or_else(|| stack.pop()) {
+            if enter > left {
                 continue;
             }
-            match self.child_at(place).kind() {
+            match child.kind() {
                 Kind::Empty => {}
                 Kind::Leaf(range) => {
                     counters.leaf_visits += 1;
-                    visit(self.leaf(range), until);
+                    visitor.visit(simd, &self.leaf_at(place, range), until);
                     left = probe.until(*until);
                 }
                 Kind::Inner(index) => {
                     counters.box_tests += 1;
                     let node = &self.nodes[index];
                     let (hits, enters) = entries(simd, node, probe, left);
+                    let entry = |lane: usize| (enters[lane], (node.child[lane], Place::lane(index, lane)));
+                    if hits.is_power_of_two() {
+                        only = Some(entry(hits.trailing_zeros() as usize));
+                        continue;
+                    }
                     let from = stack.len();
                     for lane in bits(hits) {
-                        let entry = (f64::from(enters[lane]), Place::lane(index, lane));
-                        push_unless_far(entry, f64::INFINITY, stack, from);
+                        push_unless_far(entry(lane), f32::INFINITY, stack, from);
                     }
                 }
             }
@@ -280,7 +313,7 @@ mod tests {
                 let probe = Probe::new(&tree, &ray);
                 let (mut traversal, mut found) = (Traversal::default(), Vec::new());
                 if let Some(probe) = &probe {
-                    let visit = |leaf: &[u32], _: &mut f64| found.extend_from_slice(leaf);
+                    let visit = &mut Plain(|leaf: &[u32], _: &mut f64| found.extend_from_slice(leaf));
                     let until = &mut until.clone();
                     dispatch!(level, simd => tree.walk_along(simd, probe, until, &mut traversal, visit));
                 }

@@ -1,6 +1,7 @@
 //! What every query needs from its caller: a stack to work on, and counters to add to.
 
 use super::Place;
+use super::node::Child;
 use super::pairs::Pair;
 use std::ops::AddAssign;
 
@@ -46,6 +47,20 @@ pub struct Traversal {
     pub(super) pairs: Vec<Pair>,
     /// Subtrees to visit, with the lower bound of their distance; of each node, the nearest last.
     pub(super) near: Vec<(f64, Place)>,
+    /// Subtrees to visit along a ray, with the parameter at which it enters them, likewise.
+    pub(super) ahead: Vec<(f32, (Child, Place))>,
     /// The same for pairs of subtrees.
     pub(super) near_pairs: Vec<(f64, Pair)>,
+}
+
+impl Traversal {
+    /// The memory that it owns, in bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        let Traversal { counters: _, nodes, pairs, near, ahead, near_pairs } = self;
+        nodes.capacity() * size_of::<u32>()
+            + pairs.capacity() * size_of::<Pair>()
+            + near.capacity() * size_of::<(f64, Place)>()
+            + ahead.capacity() * size_of::<(f32, (Child, Place))>()
+            + near_pairs.capacity() * size_of::<(f64, Pair)>()
+    }
 }

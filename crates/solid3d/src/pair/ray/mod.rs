@@ -1,8 +1,10 @@
 //! Rays against shapes: a row of the table with one column. Convex shapes by closed forms where there are any, else by the
-//! GJK cast of a point ([`convex`]); complex shapes by their trees ([`complex`]), their triangles watertight ([`triangle`]).
+//! GJK cast of a point ([`convex`]); complex shapes by their trees ([`complex`]), their triangles watertight ([`triangle`]) after a glance at
+//! images of them ([`glance`]).
 
 mod complex;
 mod convex;
+mod glance;
 mod triangle;
 
 pub(crate) use complex::entry;

@@ -14,10 +14,11 @@ use crate::triangle_triangle::Triangle;
 
 /// Space as a ray sees it.
 pub(super) struct Shear {
-    origin: DVec3,
+    pub origin: DVec3,
     /// The axes: the last is the one along which the ray runs most. A cyclic order, reversed when it runs backward.
-    axes: [usize; 3],
-    shear: DVec2,
+    pub axes: [usize; 3],
+    /// How far the ray runs along the first two axes, for each unit along the last: at most one.
+    pub shear: DVec2,
     /// Local lengths times this are those of the sheared space: a power of two, so that no product overflows or vanishes.
     scale: f64,
     /// Depths in the sheared space times this are parameters of the ray.
@@ -55,7 +56,9 @@ impl Shear {
     /// `scale` is a power of two that takes the size of the data to about 1.
     pub fn new(origin: DVec3, direction: DVec3, scale: f64) -> Shear {
         let magnitude = direction.abs();
-        let main = [0, 1, 2].into_iter().fold(0, |i, j| if magnitude[j] > magnitude[i] { j } else { i });
+        // Without branches, which would be foretold wrongly.
+        let second = usize::from(magnitude.y > magnitude.x);
+        let main = if magnitude.z > magnitude.x.max(magnitude.y) { 2 } else { second };
         let (next, last) = ((main + 1) % 3, (main + 2) % 3);
         let axes = if direction[main] < 0.0 { [last, next, main] } else { [next, last, main] };
         let shear = DVec2::new(direction[axes[0]], direction[axes[1]]) / direction[main];
@@ -96,6 +99,7 @@ impl Shear {
         !(missed.to_bitmask() as u32) & ((1 << LANES) - 1)
     }
 
+    #[inline]
     fn point(&self, p: DVec3) -> DVec3 {
         let p = (p - self.origin) * self.scale;
         let [x, y, z] = self.axes;

@@ -28,6 +28,11 @@ impl Default for Rows {
 }
 
 impl Rows {
+    /// The memory that they own, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.rows.capacity() * size_of::<Row>()
+    }
+
     /// Forgets all: before another shape is placed, or the same elsewhere.
     pub fn clear(&mut self) {
         self.rows.iter_mut().for_each(Row::clear);

@@ -54,6 +54,11 @@ impl Cube {
         Aabb::new(-reach, reach)
     }
 
+    /// Half sizes of the cubes within which it is clear that what is there meets it, and beyond which that it does not.
+    pub fn clear(&self) -> (f64, f64) {
+        (1.0 - DEPTH * self.margin, 1.0 + self.margin)
+    }
+
     /// Which of the triangles in some lanes meet it, and which do not, as bits.
     #[inline(never)] // see `distances`
     pub fn verdict<S: Simd>(&self, simd: S, row: &Row, lanes: u32) -> Verdict {
@@ -80,7 +85,8 @@ impl Cube {
 
     #[inline(always)]
     fn of_step<S: Simd>(&self, simd: S, row: &Row, from: usize, asked: u32) -> Verdict {
-        let mut axes = Axes::new(simd, 1.0 + self.margin, 1.0 - DEPTH * self.margin);
+        let (inner, outer) = self.clear();
+        let mut axes = Axes::new(simd, outer, inner);
         for axis in 0..3 {
             axes.look(load(simd, &row.min[axis], from), load(simd, &row.max[axis], from), one(simd, 1.0));
         }

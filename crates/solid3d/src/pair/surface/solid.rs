@@ -11,7 +11,7 @@ use crate::pair::Scratch;
 use crate::pair::containment::PlacedSolid;
 use crate::pair::frame::{Frame, Stretch};
 use crate::pair::table::PlacedComplex;
-use crate::tree::{Around, NearLeaves};
+use crate::tree::{Around, Leaf, NearLeaves};
 use crate::triangle_triangle::Triangle;
 
 /// Nearer to a face, its own normal is better than the way from the nearest point, of which rounding has that part. In the common
@@ -95,8 +95,8 @@ struct Nearest<'s, C> {
 
 impl<C: Fn(u32) -> Triangle> NearLeaves for Nearest<'_, C> {
     #[inline(always)]
-    fn visit<S: Simd>(&mut self, _: S, leaf: &[u32], best: &mut f64) {
-        for &primitive in leaf {
+    fn visit<S: Simd>(&mut self, _: S, leaf: &Leaf, best: &mut f64) {
+        for &primitive in leaf.primitives {
             *self.primitive_tests += 1;
             let triangle = (self.corners)(primitive);
             let foot = Foot::of(&triangle, self.p);

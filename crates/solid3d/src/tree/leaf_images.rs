@@ -1,0 +1,257 @@
+//! Small images of the triangles of each leaf: what is looked at before the triangles themselves.
+//!
+//! To go from the order of the tree to a triangle, and from there to its corners, waits for memory three times; here the
+//! triangles of a leaf stand beside each other, in lanes, each corner in one word. Its coordinates are whole numbers from 0 to
+//! [`STEPS`], those of a grid over the box of the leaf, which is known when the leaf is visited: 12 bytes a triangle. What is told from an
+//! image must hold for all triangles that have it; what cannot be told, the triangles themselves tell.
+//!
+//! # The error
+//!
+//! A coordinate x in `f64` is `u = (x - origin) * inverse` in tree coordinates. The product is exact, and rounding of the difference is
+//! below 2^-53 |u|. The box of the leaf has u in it, and has grown by at least 2^-24 |u| to either side when it was rounded to `f32`
+//! (`normal`); so a step of its grid is at least 2^-33 |u|, and the error 2^-20 of a step. Roundings on the way from `u - min` to the grid are
+//! relative to numbers up to [`STEPS`]: below 2^-40. So the nearest point of the grid is within [`HALF_STEP`] of the corner, counted from
+//! where the grid exactly is.
+
+use std::ops::Range;
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8, i32x8, u32x8};
+use glam::DVec3;
+
+use super::node::{Child, Kind, LEAF_SIZE, Node};
+use super::{Normal, Tree};
+
+/// The steps of the grid over a leaf's box, along each axis.
+pub(crate) const STEPS: u32 = (1 << AXIS_BITS) - 1;
+
+/// How far a corner is from its image, in steps, along each axis: see the module.
+pub(crate) const HALF_STEP: f64 = 0.5 + 1.0 / 65536.0;
+
+/// The bits of a word that one axis has.
+const AXIS_BITS: u32 = 10;
+
+/// Corners of a triangle.
+const CORNERS: usize = 3;
+
+/// The images of the leaves of a tree over triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LeafImages {
+    /// Those of a leaf that begins at `start` in the order begin at `CORNERS * start`: all first corners, all second ones, all
+    /// third ones. At the end is room for a vector that begins at the last.
+    words: Vec<u32>,
+}
+
+/// A leaf to which a walk has come.
+#[derive(Clone, Copy)]
+pub(crate) struct Leaf<'t> {
+    /// What is in it.
+    pub primitives: &'t [u32],
+    /// Where it begins in the order.
+    start: usize,
+    /// Where its box is.
+    node: &'t Node,
+    lane: usize,
+}
+
+/// The image of a leaf.
+#[derive(Clone, Copy)]
+pub(crate) struct Image<'t> {
+    leaf: Leaf<'t>,
+    /// From its first word on.
+    words: &'t [u32],
+}
+
+/// The images of a corner of up to eight triangles. What is in lanes beyond those of the leaf means nothing.
+#[derive(Clone, Copy)]
+pub(crate) struct ImageCorner<S: Simd>(u32x8<S>);
+
+impl LeafImages {
+    /// Of a tree, given the corners of its primitives, around which its boxes are. Cost: `O(n)`.
+    pub fn new(tree: &Tree, triangle: impl Fn(u32) -> [DVec3; CORNERS]) -> Self {
+        let mut words = vec![0; CORNERS * tree.len() + LEAF_SIZE - 1];
+        for leaf in tree.leaves() {
+            let grid = Grid::new(&tree.normal, &leaf);
+            let columns = &mut words[CORNERS * leaf.start..];
+            for (lane, &primitive) in leaf.primitives.iter().enumerate() {
+                for (corner, point) in triangle(primitive).into_iter().enumerate() {
+                    columns[corner * leaf.primitives.len() + lane] = grid.nearest(point);
+                }
+            }
+        }
+        LeafImages { words }
+    }
+
+    /// The image of a leaf of their tree.
+    #[inline(always)]
+    pub fn of<'t>(&'t self, leaf: &Leaf<'t>) -> Image<'t> {
+        Image { leaf: *leaf, words: &self.words[CORNERS * leaf.start..] }
+    }
+
+    /// The memory that they own, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.words.capacity() * size_of::<u32>()
+    }
+}
+
+/// The grid over a leaf's box.
+struct Grid<'t> {
+    normal: &'t Normal,
+    min: DVec3,
+    per_step: DVec3,
+}
+
+impl<'t> Grid<'t> {
+    fn new(normal: &'t Normal, leaf: &Leaf) -> Self {
+        let packed = leaf.node.lane(leaf.lane);
+        let [min, max] = [packed.min(), packed.max()].map(|corner| DVec3::from_array(corner.map(f64::from)));
+        // A box that is rounded outward has a size on each axis.
+        Grid { normal, min, per_step: f64::from(STEPS) / (max - min) }
+    }
+
+    /// The word of the point of the grid nearest to a point in the box.
+    fn nearest(&self, point: DVec3) -> u32 {
+        let u = (point - self.normal.origin) * self.normal.inverse;
+        let [x, y, z] = ((u - self.min) * self.per_step + 0.5).to_array().map(|q| (q as u32).min(STEPS));
+        x | y << AXIS_BITS | z << (2 * AXIS_BITS)
+    }
+}
+
+impl Tree {
+    /// All leaves.
+    pub(crate) fn leaves(&self) -> impl Iterator<Item = Leaf<'_>> {
+        self.nodes.iter().enumerate().flat_map(move |(index, node)| {
+            let leaf = move |(lane, child): (usize, Child)| match child.kind() {
+                Kind::Leaf(range) => Some(Leaf::new(self, range, index, lane)),
+                Kind::Empty | Kind::Inner(_) => None,
+            };
+            node.child.into_iter().enumerate().filter_map(leaf)
+        })
+    }
+}
+
+impl<'t> Leaf<'t> {
+    pub(super) fn new(tree: &'t Tree, range: Range<usize>, node: usize, lane: usize) -> Self {
+        Leaf { start: range.start, primitives: tree.leaf(range), node: &tree.nodes[node], lane }
+    }
+
+    /// The lanes in use, as bits.
+    #[inline(always)]
+    pub fn lanes(&self) -> u32 {
+        (1 << self.primitives.len()) - 1
+    }
+}
+
+impl Image<'_> {
+    /// The first point of the grid along an axis, and the length of a step, in tree coordinates; the step rounded, by less than 2^-50 of it.
+    #[inline(always)]
+    pub fn axis(&self, axis: usize) -> (f64, f64) {
+        let Leaf { node, lane, .. } = self.leaf;
+        let (min, max) = (f64::from(node.min[axis][lane]), f64::from(node.max[axis][lane]));
+        (min, (max - min) * (1.0 / f64::from(STEPS)))
+    }
+
+    /// The images of one corner of all triangles.
+    #[inline(always)]
+    pub fn corner<S: Simd>(&self, simd: S, corner: usize) -> ImageCorner<S> {
+        let from = corner * self.leaf.primitives.len();
+        ImageCorner(u32x8::from_slice(simd, &self.words[from..from + LEAF_SIZE]))
+    }
+}
+
+impl<S: Simd> ImageCorner<S> {
+    /// The coordinates along an axis, in steps of the grid.
+    #[inline(always)]
+    pub fn along(self, simd: S, axis: usize) -> f32x8<S> {
+        let steps = self.0 >> (axis as u32 * AXIS_BITS) & u32x8::splat(simd, STEPS);
+        let steps: i32x8<S> = steps.bitcast();
+        f32x8::float_from(steps)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Aabb;
+    use crate::tree::tests::scenes::{point, rng};
+    use rand::Rng;
+    use solid_convex::simd::{dispatch, levels};
+
+    /// A primitive, the images of its corners in whole steps, and the grid of its leaf.
+    type Found = (u32, [[f32; 3]; 3], [(f64, f64); 3]);
+
+    /// The images of all leaves.
+    fn images_of(tree: &Tree, images: &LeafImages) -> Vec<Found> {
+        let mut found = Vec::new();
+        for leaf in tree.leaves() {
+            let image = images.of(&leaf);
+            let mut all = levels().map(|level| {
+                let mut steps = [[[0.0f32; 8]; 3]; 3];
+                dispatch!(level, simd => {
+                    for (corner, axes) in steps.iter_mut().enumerate() {
+                        for (axis, lanes) in axes.iter_mut().enumerate() {
+                            *lanes = image.corner(simd, corner).along(simd, axis).to_array();
+                        }
+                    }
+                });
+                steps
+            });
+            for steps in &mut all {
+                steps
+                    .as_flattened_mut()
+                    .iter_mut()
+                    .for_each(|lanes| lanes[leaf.primitives.len()..].fill(0.0));
+            }
+            assert_eq!(all[0], all[1]);
+            let grid = [image.axis(0), image.axis(1), image.axis(2)];
+            for (lane, &primitive) in leaf.primitives.iter().enumerate() {
+                let at = |corner: usize| [0, 1, 2].map(|axis| all[0][corner][axis][lane]);
+                found.push((primitive, [at(0), at(1), at(2)], grid));
+            }
+        }
+        found
+    }
+
+    /// Law: a corner is within half a step of its image, at any size, far from the origin, of flat and degenerate triangles.
+    #[test]
+    fn corners_are_near_their_images() {
+        let mut rng = rng(91);
+        let mut largest: f64 = 0.0;
+        for case in 0..200 {
+            let size = 10f64.powi(rng.random_range(-90..90));
+            let away = if case % 2 == 0 { 0.0 } else { 10f64.powi(rng.random_range(0..10)) };
+            let count = rng.random_range(1..100);
+            let triangles: Vec<[DVec3; 3]> = (0..count)
+                .map(|_| {
+                    let (p, reach) = (point(&mut rng, 1.0), 10f64.powi(rng.random_range(-12..0)));
+                    let mut corners = [p, p + point(&mut rng, reach), p + point(&mut rng, reach)];
+                    match case % 4 {
+                        0 => corners[2] = corners[1],
+                        1 => corners.iter_mut().for_each(|corner| corner.z = 0.25),
+                        _ => {}
+                    }
+                    corners.map(|corner| (corner + away) * size)
+                })
+                .collect();
+            let boxes: Vec<Aabb> = triangles.iter().map(|corners| Aabb::of_points(*corners)).collect();
+            let tree = Tree::build(&boxes);
+            let images = LeafImages::new(&tree, |primitive| triangles[primitive as usize]);
+            let found = images_of(&tree, &images);
+            assert_eq!(found.len(), count);
+            for (primitive, corners, grid) in found {
+                for (image, corner) in corners.iter().zip(triangles[primitive as usize]) {
+                    for axis in 0..3 {
+                        let (min, step) = grid[axis];
+                        // As exactly as may be: both differences are of numbers that are near each other.
+                        let u = (corner[axis] - tree.normal.origin[axis]) * tree.normal.inverse;
+                        let off = ((u - min) / step - f64::from(image[axis])).abs();
+                        assert!(off <= HALF_STEP, "case {case}: {off} steps");
+                        largest = largest.max(off);
+                    }
+                }
+            }
+        }
+        println!("at most {largest} steps");
+        assert!(largest > 0.49);
+    }
+}
