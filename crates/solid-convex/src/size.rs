@@ -45,6 +45,7 @@ pub(crate) fn positive(argument: &'static str, value: f64) -> Result<f64, SizeEr
 /// ```
 /// assert_eq!(solid_convex::unit_scale(1000.0), 1.0 / 512.0);
 /// ```
+#[inline]
 pub fn unit_scale(size: f64) -> f64 {
     if size == 0.0 {
         return 1.0;
