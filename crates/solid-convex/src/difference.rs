@@ -45,7 +45,7 @@ pub(crate) struct Difference<'a, A: ?Sized, B: ?Sized> {
 pub(crate) const SUPPORT_ERROR: f64 = 64.0 / (1u64 << 53) as f64;
 
 impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
-    #[inline]
+    #[inline(always)]
     pub fn new(a: &'a A, placement_a: &DAffine3, b: &'a B, placement_b: &DAffine3) -> Self {
         let offset = placement_b.translation - placement_a.translation;
         let size = extent(&placement_a.matrix3, a.reach())
@@ -131,7 +131,7 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
 }
 
 /// The largest coordinate of the image of a box of half extents `reach`.
-#[inline]
+#[inline(always)]
 fn extent(linear: &DMat3, reach: DVec3) -> f64 {
     let DMat3 { x_axis, y_axis, z_axis } = *linear;
     (x_axis.abs() * reach.x + y_axis.abs() * reach.y + z_axis.abs() * reach.z).max_element()

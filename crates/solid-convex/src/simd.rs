@@ -45,17 +45,27 @@ pub enum Level {
 #[doc(hidden)]
 macro_rules! dispatch {
     ($level:expr, $simd:ident => $kernel:expr) => {
+        $crate::dispatch!(@ $level, $simd, #[inline(always)] || $kernel)
+    };
+    // With copies of what the kernel takes from its surroundings, which is few words.
+    ($level:expr, move $simd:ident => $kernel:expr) => {
+        $crate::dispatch!(@ $level, $simd, #[inline(always)] move || $kernel)
+    };
+    (@ $level:expr, $simd:ident, $kernel:expr) => {
         match $level {
-            $crate::simd::Level::Scalar($simd) => $kernel,
-            $crate::simd::Level::Wide($simd) => $crate::simd::vectorize(
-                $simd,
-                #[inline(always)]
-                || $kernel,
-            ),
+            $crate::simd::Level::Scalar($simd) => $crate::simd::one_by_one($kernel),
+            $crate::simd::Level::Wide($simd) => $crate::simd::vectorize($simd, $kernel),
         }
     };
 }
 pub use dispatch;
+
+/// Runs what is inlined into `kernel` without vectors: out of the way of its caller, in which every register that it took would be saved first.
+#[inline(never)]
+#[doc(hidden)]
+pub fn one_by_one<R>(kernel: impl FnOnce() -> R) -> R {
+    kernel()
+}
 
 /// Runs what is inlined into `kernel` on the wide instructions.
 #[inline(always)]

@@ -2,8 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use fearless_simd::{Simd, f64x4, mask64x4, prelude::*};
-use glam::{DAffine3, DMat3, DVec3};
+use fearless_simd::{Simd, f64x2, f64x4, mask64x4, prelude::*};
+use glam::{DAffine3, DVec3};
 
 use crate::MAGNITUDE_MAX;
 
@@ -19,25 +19,40 @@ const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
 /// some hundred times the rounding error of the two.
 const VOLUME_LOSS_MAX: f64 = 1e-13;
 
+/// Added to the squared volume that is asked for: nothing, to one whose products are far from losing digits. Placements with scales below 1e-42 are refused
+/// by it; those above 1e51 are where the cube overflows, since nothing is more than that.
+const SQUARED_VOLUME_MIN: f64 = 1e-270;
+
 /// Of what is nearly a similarity, no stretch differs by more than this part from the scale. Let the squares of the stretches be `f (1 + e)`, where `f` is their
 /// mean: if one `e` is given, their product, which is the squared volume, is at most `f^3 (1 - 3/4 e^2 + 1/4 |e|^3)`, where the two others are
 /// equal. So `e^2` is at most twice the loss, and half of `e` 2.3e-7.
 pub const STRETCH_ERROR: f64 = 3e-7;
 
-/// The square of the scale of a placement of a plain size that nearly is a similarity: a good placement. `None` for others.
+/// The squares of the scales of two placements of plain sizes that nearly are similarities: good placements. `None` unless both are.
+///
+/// A lane for each, since what is done for one is done for the other. The sum of the squares of all entries is three times the mean squared stretch.
 #[inline(always)]
-pub fn rough_square(DAffine3 { matrix3, translation }: &DAffine3) -> Option<f64> {
+pub fn rough_squares<S: Simd>(simd: S, [a, b]: [&DAffine3; 2]) -> Option<[f64; 2]> {
     /// The square of what has coordinates below the greatest allowed.
     const SQUARE_MAX: f64 = MAGNITUDE_MAX * MAGNITUDE_MAX;
-    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *matrix3;
-    let square = (x.length_squared() + y.length_squared() + z.length_squared()) * (1.0 / 3.0);
-    let volume = x.cross(y).dot(z);
+    let splat = |value: f64| f64x2::splat(simd, value);
+    let both = |of_a: f64, of_b: f64| f64x2::simd_from(simd, [of_a, of_b]);
+    let column = |a: DVec3, b: DVec3| [both(a.x, b.x), both(a.y, b.y), both(a.z, b.z)];
+    let (linear_a, linear_b) = (&a.matrix3, &b.matrix3);
+    let x = column(linear_a.x_axis, linear_b.x_axis);
+    let y = column(linear_a.y_axis, linear_b.y_axis);
+    let z = column(linear_a.z_axis, linear_b.z_axis);
+    let t = column(a.translation, b.translation);
+    let dot = |u: [f64x2<S>; 3], v: [f64x2<S>; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    let normal = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
+    let volume = dot(normal, z);
+    let sums = dot(x, x) + dot(y, y) + dot(z, z);
     // All is false of what is no number.
-    let good = square >= *PLAIN_SQUARES.start()
-        && square <= *PLAIN_SQUARES.end()
-        && volume * volume >= square * square * square * (1.0 - VOLUME_LOSS_MAX)
-        && translation.length_squared() <= SQUARE_MAX;
-    good.then_some(square)
+    let cube = (sums * sums) * (sums * splat((1.0 - VOLUME_LOSS_MAX) / 27.0));
+    let volume_min = cube + splat(SQUARED_VOLUME_MIN);
+    let good = (volume * volume).simd_gt(volume_min) & dot(t, t).simd_le(splat(SQUARE_MAX));
+    let squares = sums * splat(1.0 / 3.0);
+    good.all_true().then(|| [squares.as_slice()[0], squares.as_slice()[1]])
 }
 
 /// The squares of the scales of two placements that are similarities of plain sizes, and so good placements; `None` unless both are.
@@ -80,6 +95,8 @@ fn plain_square<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) 
 
 #[cfg(test)]
 mod tests {
+    use glam::DMat3;
+
     use super::*;
     use crate::simd::{dispatch, levels};
     use crate::testing::placement;
@@ -90,6 +107,19 @@ mod tests {
         });
         assert_eq!(found[0], found[1], "every level says the same");
         found[0].map(|squares| squares.map(|square| f64::from_bits(square).sqrt()))
+    }
+
+    /// The squared scale of what nearly is a similarity: the same on every level, in either lane.
+    fn rough(at: &DAffine3) -> Option<f64> {
+        let here = DAffine3::IDENTITY;
+        let found = levels().map(|level| {
+            let first = dispatch!(level, simd => rough_squares(simd, [at, &here])).map(|[square, _]| square);
+            let second = dispatch!(level, simd => rough_squares(simd, [&here, at])).map(|[_, square]| square);
+            assert_eq!(first.map(f64::to_bits), second.map(f64::to_bits));
+            first
+        });
+        assert_eq!(found[0].map(f64::to_bits), found[1].map(f64::to_bits), "every level says the same");
+        found[0]
     }
 
     #[test]
@@ -143,8 +173,8 @@ mod tests {
             let scale = [1.0, 1e-29, 1e29, -0.3][k as usize % 4];
             let DAffine3 { matrix3, translation } = placement(k);
             let at = DAffine3 { matrix3: matrix3 * (DMat3::IDENTITY + skew * size) * scale, translation };
-            assert!(rough_square(&DAffine3 { matrix3: matrix3 * scale, translation }).is_some());
-            let Some(square) = rough_square(&at) else {
+            assert!(rough(&DAffine3 { matrix3: matrix3 * scale, translation }).is_some());
+            let Some(square) = rough(&at) else {
                 refused += 1;
                 continue;
             };
@@ -156,13 +186,12 @@ mod tests {
             }
         }
         assert!(passed > 6_000 && refused > 6_000, "{passed} and {refused}");
-        let lost =
-            |linear: DMat3, translation: DVec3| rough_square(&DAffine3 { matrix3: linear, translation });
+        let lost = |linear: DMat3, translation: DVec3| rough(&DAffine3 { matrix3: linear, translation });
         for wild in [f64::NAN, f64::INFINITY, 1e101] {
             assert_eq!(lost(DMat3::IDENTITY, DVec3::new(0.0, wild, 0.0)), None);
             assert_eq!(lost(DMat3::from_diagonal(DVec3::splat(wild)), DVec3::ZERO), None);
         }
-        for flat in [0.0, 1e-100, 1e-31] {
+        for flat in [0.0, 1e-100, 1e-43] {
             assert_eq!(lost(DMat3::from_diagonal(DVec3::splat(flat)), DVec3::ZERO), None);
         }
     }

@@ -338,7 +338,7 @@ pub(crate) enum Within {
 }
 
 /// The point of a face closest to the origin, to which its first corner should be the nearest.
-#[inline]
+#[inline(always)]
 pub(crate) fn within_face([p, q, r]: [DVec3; 3]) -> Within {
     let (pq, pr) = (q - p, r - p);
     let n = pq.cross(pr);

@@ -14,10 +14,13 @@ use crate::error::{Error, Result};
 const VOLUME_MIN: f64 = 1e-12;
 
 /// The placement itself when it can be used: finite, in range, and not singular.
+#[inline]
 pub(crate) fn checked(placement: &DAffine3) -> Result<&DAffine3> {
-    if plainly_good(placement) {
-        return Ok(placement);
-    }
+    if plainly_good(placement) { Ok(placement) } else { checked_at_length(placement) }
+}
+
+#[inline(never)]
+fn checked_at_length(placement: &DAffine3) -> Result<&DAffine3> {
     let out_of_range = |x: &f64| !x.is_finite() || x.abs() > MAGNITUDE_MAX;
     if let Some(value) = placement.to_cols_array().into_iter().find(out_of_range) {
         return Err(Error::PlacementEntry { value });
@@ -38,6 +41,7 @@ pub(crate) fn is_same(a: &DAffine3, b: &DAffine3) -> bool {
 }
 
 /// Whether a placement is so ordinary that a few products show it to be good: a third of the time.
+#[inline]
 fn plainly_good(placement: &DAffine3) -> bool {
     /// Squares of lengths between which no product below overflows or loses digits.
     const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;

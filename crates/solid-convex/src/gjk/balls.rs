@@ -6,10 +6,12 @@
 
 use std::ops::RangeInclusive;
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::difference::SUPPORT_ERROR;
-use crate::similarity::{STRETCH_ERROR, rough_square};
+use crate::simd::{self, dispatch};
+use crate::similarity::{STRETCH_ERROR, rough_squares};
 use crate::{Polytope, Support};
 
 /// Balls about a point, by which a pair may be decided.
@@ -87,7 +89,18 @@ pub enum Glance {
 /// ```
 #[inline]
 pub fn glance(a: &Polytope, placement_a: &DAffine3, b: &Polytope, placement_b: &DAffine3) -> Glance {
-    let (Some(square_a), Some(square_b)) = (rough_square(placement_a), rough_square(placement_b)) else {
+    dispatch!(simd::level(), simd => glance_by(simd, (a, placement_a), (b, placement_b)))
+}
+
+/// A [`glance`], for kernels that it is a part of.
+#[doc(hidden)]
+#[inline(always)]
+pub fn glance_by<S: Simd>(
+    simd: S,
+    (a, placement_a): (&Polytope, &DAffine3),
+    (b, placement_b): (&Polytope, &DAffine3),
+) -> Glance {
+    let Some([square_a, square_b]) = rough_squares(simd, [placement_a, placement_b]) else {
         return Glance::Unusual;
     };
     let offset = placement_b.translation - placement_a.translation;
@@ -97,16 +110,9 @@ pub fn glance(a: &Polytope, placement_a: &DAffine3, b: &Polytope, placement_b: &
     let ([inside_a, outside_a], [inside_b, outside_b]) = (a.sure_radii(), b.sure_radii());
     let near = inside_a * scale_a + inside_b * scale_b;
     let far = outside_a * scale_a + outside_b * scale_b;
-    if !PLAIN_SQUARES.contains(&(far * far)) {
-        return Glance::Open;
-    }
-    if square > far * far {
-        Glance::Sure(false)
-    } else if near > 0.0 && square < near * near {
-        Glance::Sure(true)
-    } else {
-        Glance::Open
-    }
+    let meet = (near > 0.0) & (square < near * near);
+    let sure = PLAIN_SQUARES.contains(&(far * far)) & (meet | (square > far * far));
+    if sure { Glance::Sure(meet) } else { Glance::Open }
 }
 
 fn compare(a: &Balls, placement_a: &DAffine3, b: &Balls, placement_b: &DAffine3) -> Option<bool> {

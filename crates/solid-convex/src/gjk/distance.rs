@@ -147,7 +147,9 @@ impl Task for Measure<'_> {
 }
 
 /// From nothing, and without the points, which would be carried about for nothing.
-struct MeasureAnew(Measure<'static>);
+struct MeasureAnew {
+    bound: f64,
+}
 
 impl Task for MeasureAnew {
     type Found = Answer;
@@ -158,7 +160,10 @@ impl Task for MeasureAnew {
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        self.0.run(difference, against).0
+        let goal = Measure { bound: self.bound, warm: &[] }.goal(difference.scale());
+        let mut lean = Lean::default();
+        Search { goal, warm: &[] }.descend(&mut lean, difference, against);
+        Answer::of(&lean, goal, difference.scale())
     }
 }
 
@@ -175,11 +180,11 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let task = Measure { bound, warm: &[] };
-    match lean::run(a, placement_a, b, placement_b, MeasureAnew(task)) {
+    match lean::run(a, placement_a, b, placement_b, MeasureAnew { bound }) {
         Answer::Beyond => None,
         Answer::Closest(closest, v) => Some((closest, v)),
         Answer::Unknown => {
+            let task = Measure { bound, warm: &[] };
             let found = measure_robustly(&Difference::new(a, placement_a, b, placement_b), task)?;
             Some((found.closest, found.v))
         }

@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::balls;
 use super::descent::{End, Goal, descend_robustly};
-use super::lean::{self, Search, Sure, Task};
+use super::lean::{self, Lean, Search, Sure, Task};
 use crate::Support;
 use crate::difference::{Difference, SupportPoint};
 use crate::simplex::Simplex;
@@ -99,6 +99,24 @@ where
 /// The search for an axis, from nothing.
 const SEARCH: Search = Search { goal: Goal::Separation, warm: &[] };
 
+/// What [`SEARCH`] is sure of, without the evidence.
+struct Verdict;
+
+impl Task for Verdict {
+    type Found = Sure;
+
+    #[inline(always)]
+    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Sure
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let mut lean = Lean::default();
+        SEARCH.descend(&mut lean, difference, against);
+        lean.sure
+    }
+}
+
 /// Whether two placed convex objects have a point in common: exactly when [`intersection`] does not say
 /// [`Separated`](Outcome::Separated), for less work.
 ///
@@ -135,7 +153,7 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    match lean::run(a, placement_a, b, placement_b, SEARCH).sure {
+    match lean::run(a, placement_a, b, placement_b, Verdict) {
         Sure::Separated => false,
         Sure::Inside => true,
         Sure::Nothing | Sure::Near(_) | Sure::Beyond => {

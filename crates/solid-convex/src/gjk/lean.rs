@@ -12,10 +12,10 @@ use glam::{DAffine3, DVec3};
 use super::Witness;
 use super::coherent::Pair;
 use super::descent::Goal;
-use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simd::{self, Level, dispatch};
 use crate::simplex::{Simplex, VOLUME_ERROR, Within, sides_of_origin, within_edge, within_face};
+use crate::{Polytope, Support};
 
 /// Support points after which it gives up. A random pair of polytopes takes 3 of each object, in the mean, to tell whether it
 /// intersects, and 5 to tell how far it is apart; what takes many times that is about to touch.
@@ -52,6 +52,15 @@ pub(super) struct Lean {
     len: usize,
 }
 
+impl Default for Lean {
+    /// One that has not begun.
+    #[inline(always)]
+    fn default() -> Self {
+        let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
+        Lean { sure: Sure::Nothing, v: DVec3::ZERO, points: [zero; 4], len: 0 }
+    }
+}
+
 impl Lean {
     /// The support points that it ended with, the oldest first.
     pub fn points(&self) -> &[SupportPoint] {
@@ -78,6 +87,7 @@ impl Lean {
 
     /// The closest point of the hull of up to three points, measured again by more careful means, with the points of the objects that
     /// it is the difference of; `None` where it takes yet more care.
+    #[inline(always)]
     pub fn closest_point(&self) -> Option<(DVec3, Witness)> {
         closest_point(self.points())
     }
@@ -113,13 +123,17 @@ pub(super) fn closest_point(points: &[SupportPoint]) -> Option<(DVec3, Witness)>
             (v, [x, y, 0.0])
         }
         [p, q, r] => {
-            let squares = [p, q, r].map(|p| p.w.length_squared());
-            // Around the face from the corner nearest to the origin; then back.
-            let turn = if squares[1] < squares[0] { 1 } else { 0 };
-            let turn = if squares[2] < squares[turn] { 2 } else { turn };
-            let [p, q, r] = [p.w, q.w, r.w];
-            match within_face([[p, q, r], [q, r, p], [r, p, q]][turn]) {
-                Within::Face(v, [x, y, z]) => (v, [[x, y, z], [z, x, y], [y, z, x]][turn]),
+            let squares = [p.w.length_squared(), q.w.length_squared(), r.w.length_squared()];
+            // Around the face from the corner nearest to the origin.
+            let i = if squares[1] < squares[0] { 1 } else { 0 };
+            let i = if squares[2] < squares[i] { 2 } else { i };
+            let [j, k] = [[1, 2], [2, 0], [0, 1]][i];
+            match within_face([points[i].w, points[j].w, points[k].w]) {
+                Within::Face(v, [x, y, z]) => {
+                    let mut weights = [0.0; 3];
+                    (weights[i], weights[j], weights[k]) = (x, y, z);
+                    (v, weights)
+                }
                 Within::Outside | Within::Sliver => return None,
             }
         }
@@ -183,19 +197,29 @@ where
     T: Task,
 {
     match (a.as_polytope(), b.as_polytope()) {
-        (Some(a), Some(b)) => dispatch!(simd::level(), simd => {
-            let difference = Difference::new(a, placement_a, b, placement_b);
-            task.run(&difference, #[inline(always)] |v| difference.point_against(
-                v,
-                #[inline(always)] |d| a.furthest(simd, d),
-                #[inline(always)] |d| b.furthest(simd, d),
-            ))
-        }),
+        (Some(a), Some(b)) => run_on_polytopes(a, placement_a, b, placement_b, task),
         _ => {
             let difference = Difference::new(a, placement_a, b, placement_b);
             task.run(&difference, |v| difference.support_against(v))
         }
     }
+}
+
+fn run_on_polytopes<T: Task>(
+    a: &Polytope,
+    placement_a: &DAffine3,
+    b: &Polytope,
+    placement_b: &DAffine3,
+    task: T,
+) -> T::Found {
+    dispatch!(simd::level(), simd => {
+        let difference = Difference::new(a, placement_a, b, placement_b);
+        task.run(&difference, #[inline(always)] |v| difference.point_against(
+            v,
+            #[inline(always)] |d| a.furthest(simd, d),
+            #[inline(always)] |d| b.furthest(simd, d),
+        ))
+    })
 }
 
 /// Runs a task on a difference.
@@ -230,15 +254,31 @@ pub(super) struct Search<'w> {
 impl Task for Search<'_> {
     type Found = Lean;
 
-    // v / divisor: the point of conv(W) closest to the origin; p.w: a support point of A - B against v; W: the points.
     #[inline(always)]
     fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Lean
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
-        let mut lean = Lean { sure: Sure::Nothing, v: DVec3::ZERO, points: [zero; 4], len: 0 };
+        let mut lean = Lean::default();
+        self.descend(&mut lean, difference, against);
+        lean
+    }
+}
+
+impl Search<'_> {
+    /// Runs a descent in place: what it ends with is too large to be moved about.
+    // v / divisor: the point of conv(W) closest to the origin; p.w: a support point of A - B against v; W: the points.
+    #[inline(always)]
+    pub fn descend<A, B>(
+        self,
+        lean: &mut Lean,
+        difference: &Difference<A, B>,
+        against: impl Fn(DVec3) -> SupportPoint,
+    ) where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
         let mut v;
         let mut divisor = 1.0;
         let mut before = f64::INFINITY;
@@ -253,7 +293,7 @@ impl Task for Search<'_> {
             (v, divisor) = (closest.v, closest.divisor);
             before = v.length_squared() / (divisor * divisor);
             if !(divisor >= DIVISOR_MIN && before > SUPPORT_ERROR * SUPPORT_ERROR) {
-                return lean;
+                return;
             }
         }
         for _ in 0..STEPS_MAX {
@@ -263,7 +303,7 @@ impl Task for Search<'_> {
                 let sure = self.reached(v, divisor, vw, lean.len);
                 if sure != Sure::Nothing {
                     (lean.sure, lean.v) = (sure, v);
-                    return lean;
+                    return;
                 }
             }
             let [x, y, z, _] = lean.points;
@@ -276,7 +316,7 @@ impl Task for Search<'_> {
                     None => {
                         (lean.points[3], lean.len) = (p, 4);
                         lean.sure = Sure::Inside;
-                        return lean;
+                        return;
                     }
                 },
             };
@@ -286,11 +326,10 @@ impl Task for Search<'_> {
             let square = v.length_squared() / (divisor * divisor);
             let progress = square < before * (1.0 - PROGRESS_MIN);
             if !(progress && divisor >= DIVISOR_MIN && square > SUPPORT_ERROR * SUPPORT_ERROR) {
-                return lean;
+                return;
             }
             before = square;
         }
-        lean
     }
 }
 

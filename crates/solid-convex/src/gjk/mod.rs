@@ -22,7 +22,7 @@ mod lean;
 #[cfg(test)]
 mod tests;
 
-pub use balls::{Balls, Glance, glance};
+pub use balls::{Balls, Glance, glance, glance_by};
 pub use cast::{CAST_ERROR, Impact, cast};
 pub use coherent::{Coherent, Memory};
 pub(crate) use descent::{End, Goal, descend};

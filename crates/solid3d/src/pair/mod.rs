@@ -34,6 +34,7 @@ mod table;
 
 use std::ops::ControlFlow;
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach, overlap, proximity};
@@ -86,21 +87,21 @@ pub(crate) struct Separation {
 
 /// Whether two shapes intersect, where that takes no search: as [`gjk::glance`], of other simple shapes too. Placements need not have been
 /// checked.
-pub(crate) fn glance(a: Placed, b: Placed) -> Glance {
+#[inline(always)]
+pub(crate) fn glance<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
     match (a.shape.polytope(), b.shape.polytope()) {
-        (Some(on_a), Some(on_b)) => gjk::glance(on_a, a.placement, on_b, b.placement),
-        _ => closed_form::intersects(a, b).map_or(Glance::Unusual, Glance::Sure),
+        (Some(on_a), Some(on_b)) => gjk::glance_by(simd, (on_a, a.placement), (on_b, b.placement)),
+        _ => closed_form::glance(simd, a, b),
     }
 }
 
 /// What [`intersects`] says of shapes of which a [`glance`] told nothing but that their placements are good.
+#[inline(never)]
 pub(crate) fn intersects_closely(a: Placed, b: Placed) -> bool {
-    match (a.shape.class(), b.shape.class()) {
-        (Class::Convex(on_a), Class::Convex(on_b)) => {
-            gjk::intersects_closely(on_a, a.placement, on_b, b.placement)
-        }
-        _ => intersects(a, b, &mut Scratch::default()),
+    if let (Some(on_a), Some(on_b)) = (a.shape.polytope(), b.shape.polytope()) {
+        return gjk::intersects_closely(on_a, a.placement, on_b, b.placement);
     }
+    closed_form::closely_intersects(a, b).unwrap_or_else(|| intersects(a, b, &mut Scratch::default()))
 }
 
 /// Calls `found` with every pair of primitives that meet, in no particular order, until it breaks off. A convex shape is

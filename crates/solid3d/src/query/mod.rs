@@ -25,6 +25,7 @@ use std::ops::ControlFlow;
 use glam::{DAffine3, DVec3};
 use solid_convex::Closest;
 use solid_convex::gjk::Glance;
+use solid_convex::simd::{dispatch, level};
 
 use crate::bounds::Aabb;
 use crate::error::Result;
@@ -68,19 +69,19 @@ pub struct Distance {
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn intersects(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<bool> {
-    // A glance before anything is prepared, convex shapes before working memory.
-    let unchecked = |shape, placement| Placed { shape, placement };
-    let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
-    match pair::glance(on_a, on_b) {
+    let pair = [Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b }];
+    dispatch!(level(), move simd => match pair::glance(simd, pair[0], pair[1]) {
         Glance::Sure(answer) => Ok(answer),
-        Glance::Open => Ok(pair::intersects_closely(on_a, on_b)),
-        Glance::Unusual => intersects_at_length(on_a, on_b),
-    }
+        seen => intersects_at_length(&pair, seen),
+    })
 }
 
-/// What [`intersects`] says where a glance tells nothing.
+/// What [`intersects`] says where a glance does not tell. The pair is not taken apart for the call, which few reach.
 #[inline(never)]
-fn intersects_at_length(a: Placed, b: Placed) -> Result<bool> {
+fn intersects_at_length(&[a, b]: &[Placed; 2], seen: Glance) -> Result<bool> {
+    if seen == Glance::Open {
+        return Ok(pair::intersects_closely(a, b));
+    }
     let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
     let answer = pair::convex_intersects(a, b);
     Ok(answer.unwrap_or_else(|| Scratch::with(|scratch| pair::intersects(a, b, scratch))))
@@ -262,6 +263,7 @@ pub fn bounds(shape: &Shape, placement: &DAffine3) -> Result<Aabb> {
     Ok(pair::world_bounds(placed(shape, placement)?))
 }
 
+#[inline]
 fn placed<'a>(shape: &'a Shape, placement: &'a DAffine3) -> Result<Placed<'a>> {
     Ok(Placed { shape, placement: placement::checked(placement)? })
 }

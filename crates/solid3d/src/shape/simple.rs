@@ -16,6 +16,12 @@ pub(crate) enum Simple {
 }
 
 impl Shape {
+    /// Whether it is one.
+    #[inline(always)]
+    pub(crate) fn is_simple(&self) -> bool {
+        matches!(self.geometry, Geometry::Sphere(_) | Geometry::Capsule(_) | Geometry::Cuboid(_))
+    }
+
     /// The shape as a simple one, if it is one.
     #[inline(always)]
     pub(crate) fn simple(&self) -> Option<Simple> {

@@ -6,11 +6,14 @@ use glam::{DMat3, DVec3};
 /// Points that are compared at once.
 const LANES: usize = 4;
 
+/// Rows whose products all stay in registers.
+const FEW: usize = 6;
+
 /// The coordinates of four points: their x, their y, their z.
 type Row = [[f64; LANES]; 3];
 
-/// Points with their coordinates in rows. Invariant: there are at least two, an even number; they are filled up with the last
-/// point.
+/// Points with their coordinates in rows. Invariant: there are at least two, and an even number where there are more than [`FEW`]; they are
+/// filled up with the last point.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     rows: Vec<Row>,
@@ -22,7 +25,11 @@ impl Rows {
         let last = *points.last()?;
         let lane = |i: usize| *points.get(i).unwrap_or(&last);
         let row = |first: usize| [0, 1, 2].map(|axis| std::array::from_fn(|i| lane(first + i)[axis]));
-        let count = points.len().div_ceil(LANES).next_multiple_of(2);
+        let count = match points.len().div_ceil(LANES) {
+            1 => 2,
+            few @ 2..=FEW => few,
+            many => many.next_multiple_of(2),
+        };
         Some(Rows { rows: (0..count).map(|k| row(k * LANES)).collect() })
     }
 
@@ -31,7 +38,9 @@ impl Rows {
     pub fn furthest<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
         match self.rows.as_slice() {
             [_, _] => self.furthest_of_few::<S, 2>(simd, direction),
+            [_, _, _] => self.furthest_of_few::<S, 3>(simd, direction),
             [_, _, _, _] => self.furthest_of_few::<S, 4>(simd, direction),
+            [_, _, _, _, _] => self.furthest_of_few::<S, 5>(simd, direction),
             [_, _, _, _, _, _] => self.furthest_of_few::<S, 6>(simd, direction),
             _ => self.furthest_of_many(simd, direction),
         }

@@ -12,7 +12,9 @@ mod similarity;
 #[cfg(test)]
 mod tests;
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
+use solid_convex::gjk::Glance;
 use solid_convex::simd::{dispatch, level};
 use solid_convex::{Closest, Witness, unit_scale};
 
@@ -20,7 +22,6 @@ use super::{Mirror, Placed, Relation};
 use crate::shape::Simple;
 use boxes::PlacedBox;
 pub(super) use point::surface_point;
-use quick::Quick;
 use round::{Cores, PlacedRound};
 pub(super) use similarity::Similarity;
 
@@ -38,20 +39,25 @@ enum Pair {
     Boxes(PlacedBox, PlacedBox),
 }
 
-/// Whether they intersect; `None` where GJK has to say, and where placements have yet to be checked: those of an answer are good.
-pub(crate) fn intersects(a: Placed, b: Placed) -> Option<bool> {
+/// Whether they intersect, as [`gjk::glance`](solid_convex::gjk::glance): placements have yet to be checked.
+#[inline(always)]
+pub(super) fn glance<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
     // Most pairs are of other shapes: nothing is looked at for them.
-    let (Some(_), Some(_)) = (a.shape.simple(), b.shape.simple()) else { return None };
-    match quick::intersects(a, b) {
-        Quick::Sure(answer) => Some(answer),
-        Quick::Open => closely_intersects(a, b),
-        Quick::Unusual => None,
+    if a.shape.is_simple() && b.shape.is_simple() { quick::intersects(simd, a, b) } else { Glance::Unusual }
+}
+
+/// Whether they intersect; `None` where GJK has to say, and where placements have yet to be checked: those of an answer are good.
+pub(super) fn intersects(a: Placed, b: Placed) -> Option<bool> {
+    match dispatch!(level(), simd => glance(simd, a, b)) {
+        Glance::Sure(answer) => Some(answer),
+        Glance::Open => closely_intersects(a, b),
+        Glance::Unusual => None,
     }
 }
 
 /// Whether they intersect, of pairs that take a common space.
 #[inline(never)]
-fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
+pub(super) fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
     match Pair::new(a, b)? {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).gap().intersects(),
         Pair::RoundBox(round, cuboid) | Pair::BoxRound(cuboid, round) => {

@@ -4,16 +4,20 @@ use std::ops::RangeInclusive;
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
-use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_square};
+use solid_convex::gjk::Glance;
+use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_squares};
 use solid_convex::{Closest, Witness};
 
 use super::GAP_MIN;
 use super::round::{DISTANCE_ERROR, closest_on_segments};
 use crate::pair::Placed;
-use crate::shape::{Shape, Simple};
+use crate::shape::Simple;
 
 /// Sizes of the data whose squares and the products of these neither overflow nor vanish.
 const PLAIN_SIZES: RangeInclusive<f64> = 1e-30..=1e30;
+
+/// The least square of a size, of which the same holds. None is too large where squares are compared alone: what overflows is the greater.
+const SQUARE_MIN: f64 = 1e-60;
 
 /// The squares of scales relative to that of the size of the data, where closest points are found: then they are plain also in a unit near that size,
 /// which gives the same bits.
@@ -26,49 +30,35 @@ const ROUGH_GAP_MIN: f64 = 8.0 * STRETCH_ERROR;
 /// The error of a distance that is given out, in the margins of an answer.
 const MARGIN_TO_ERROR: f64 = DISTANCE_ERROR / GAP_MIN;
 
-/// What a first look says. Whatever it says but [`Unusual`](Quick::Unusual), the placements are good: similarities of plain sizes.
-pub(super) enum Quick<T> {
-    Sure(T),
-    /// A closer look has to say.
-    Open,
-    /// Nothing is known, of the placements neither.
-    Unusual,
-}
-
 /// Whether two shapes intersect: squares of lengths against squares, and no evidence.
-#[inline]
-pub(super) fn intersects(a: Placed, b: Placed) -> Quick<bool> {
-    if let (Some(Simple::Ball { radius: of_a }), Some(Simple::Ball { radius: of_b })) =
-        (a.shape.simple(), b.shape.simple())
-    {
-        return balls((of_a, a.placement), (of_b, b.placement));
-    }
-    match View::rough([a.placement, b.placement]) {
-        Some(view) => view.intersects(a.shape, b.shape).map_or(Quick::Open, Quick::Sure),
-        None => Quick::Unusual,
-    }
+#[inline(always)]
+pub(super) fn intersects<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
+    let at = [a.placement, b.placement];
+    let (of_a, of_b) = (a.shape.simple(), b.shape.simple());
+    let Some(squares) = rough_squares(simd, at) else { return Glance::Unusual };
+    let meet = match (of_a, of_b) {
+        (Some(Simple::Ball { radius: a }), Some(Simple::Ball { radius: b })) => {
+            balls_meet([a, b], squares, at[1].translation - at[0].translation)
+        }
+        (Some(a), Some(b)) => View::with_squares(at, squares).meet(a, b),
+        _ => return Glance::Unusual,
+    };
+    meet.map_or(Glance::Open, Glance::Sure)
 }
 
 /// Whether two balls intersect. Where they touch, the size of the data is less than three times the sum of their radii.
 #[inline(always)]
-fn balls((of_a, at_a): (f64, &DAffine3), (of_b, at_b): (f64, &DAffine3)) -> Quick<bool> {
+fn balls_meet([a, b]: [f64; 2], squares: [f64; 2], offset: DVec3) -> Option<bool> {
     /// Of squares.
     const MARGIN: f64 = 6.0 * ROUGH_GAP_MIN;
-    let (Some(square_a), Some(square_b)) = (rough_square(at_a), rough_square(at_b)) else {
-        return Quick::Unusual;
-    };
-    let square = (at_b.translation - at_a.translation).length_squared();
-    let radii = of_a * square_a.sqrt() + of_b * square_b.sqrt();
-    let touching = radii * radii;
-    if !PLAIN_SIZES.contains(&radii) {
-        Quick::Open
-    } else if square > touching * (1.0 + MARGIN) {
-        Quick::Sure(false)
-    } else if square < touching * (1.0 - MARGIN) {
-        Quick::Sure(true)
-    } else {
-        Quick::Open
-    }
+    let square = offset.length_squared();
+    // The square of the sum of the radii is the sum of their squares and the root of this: no root is waited for.
+    let (a, b) = (a * a * squares[0], b * b * squares[1]);
+    let (sum, product) = (a + b, 4.0 * (a * b));
+    let (less, more) = (square * (1.0 - MARGIN) - sum, square * (1.0 + MARGIN) - sum);
+    let meet = (more < 0.0) | (more * more < product);
+    let apart = (less > 0.0) & (less * less > product);
+    ((sum >= SQUARE_MIN) & (meet | apart)).then_some(meet)
 }
 
 /// The closest points of two shapes; `None` where a closer look has to say.
@@ -92,12 +82,6 @@ impl<'a> View<'a> {
         Some(View::with_squares(at, plain_squares(simd, at)?))
     }
 
-    /// Of placements that nearly turn and scale alike in all directions: lengths are off by up to [`STRETCH_ERROR`].
-    #[inline(always)]
-    fn rough(at: [&'a DAffine3; 2]) -> Option<Self> {
-        Some(View::with_squares(at, [rough_square(at[0])?, rough_square(at[1])?]))
-    }
-
     #[inline(always)]
     fn with_squares(at: [&'a DAffine3; 2], squares: [f64; 2]) -> Self {
         let scales = [squares[0].sqrt(), squares[1].sqrt()];
@@ -112,46 +96,55 @@ impl<'a> View<'a> {
         PLAIN_SIZES.contains(&size).then_some([reach, size])
     }
 
+    /// Whether two shapes intersect.
     #[inline(always)]
-    fn intersects(&self, a: &Shape, b: &Shape) -> Option<bool> {
-        let square = self.offset.length_squared();
-        match (a.simple()?, b.simple()?) {
-            // In the box's own space, times the square of its scale.
-            (a @ Simple::Ball { radius }, b @ Simple::Cuboid { half }) => {
-                let [_, size] = self.reach_and_size(&a, &b)?;
-                let square = self.ball_and_box(1, half).way().length_squared();
-                let unit = self.scales[1];
-                decide([square, square], radius * self.scales[0] * unit, ROUGH_GAP_MIN * size * unit)
-            }
-            (a @ Simple::Cuboid { half }, b @ Simple::Ball { radius }) => {
-                let [_, size] = self.reach_and_size(&a, &b)?;
-                let square = self.ball_and_box(0, half).way().length_squared();
-                let unit = self.scales[0];
-                decide([square, square], radius * self.scales[1] * unit, ROUGH_GAP_MIN * size * unit)
-            }
-            // By the balls around them and in them.
-            (a @ Simple::Cuboid { half: half_a }, b @ Simple::Cuboid { half: half_b }) => {
-                let [reach, size] = self.reach_and_size(&a, &b)?;
-                let margin = ROUGH_GAP_MIN * size;
-                let far = reach + margin;
-                let near =
-                    half_a.min_element() * self.scales[0] + half_b.min_element() * self.scales[1] - margin;
-                let meet = (near > 0.0) & (square < near * near);
-                ((square > far * far) | meet).then_some(meet)
-            }
-            (a, b) => {
-                let [reach, size] = self.reach_and_size(&a, &b)?;
-                let margin = ROUGH_GAP_MIN * size;
-                // Balls around them are apart.
-                if square > (reach + margin) * (reach + margin) {
-                    return Some(false);
-                }
-                let ((radius_a, height_a), (radius_b, height_b)) = (a.core()?, b.core()?);
-                let cores = self.segments(height_a, height_b);
-                let radii = radius_a * self.scales[0] + radius_b * self.scales[1];
-                decide([cores.least_squared(), cores.square], radii, ROUGH_GAP_MIN * size)
-            }
+    fn meet(&self, a: Simple, b: Simple) -> Option<bool> {
+        match (a, b) {
+            (Simple::Ball { radius }, Simple::Cuboid { half }) => self.ball_and_box_meet(radius, 1, half),
+            (Simple::Cuboid { half }, Simple::Ball { radius }) => self.ball_and_box_meet(radius, 0, half),
+            (Simple::Cuboid { half: a }, Simple::Cuboid { half: b }) => self.boxes_meet([a, b]),
+            (a, b) => self.rounds_meet(&a, &b),
         }
+    }
+
+    /// Whether a ball and a box, the `cuboid`th of the two, intersect: in the box's own space, times the square of its scale.
+    #[inline(always)]
+    fn ball_and_box_meet(&self, radius: f64, cuboid: usize, half: DVec3) -> Option<bool> {
+        let unit = self.scales[cuboid];
+        let radius = radius * self.scales[1 - cuboid];
+        let size = radius + half.element_sum() * unit + self.offset.abs().element_sum();
+        if !PLAIN_SIZES.contains(&size) {
+            return None;
+        }
+        let square = self.ball_and_box(cuboid, half).way().length_squared();
+        decide([square, square], radius * unit, ROUGH_GAP_MIN * size * unit)
+    }
+
+    /// Whether two boxes intersect, by the balls around them and in them.
+    #[inline(always)]
+    fn boxes_meet(&self, [a, b]: [DVec3; 2]) -> Option<bool> {
+        let [reach, size] = self.reach_and_size(&Simple::Cuboid { half: a }, &Simple::Cuboid { half: b })?;
+        let square = self.offset.length_squared();
+        let margin = ROUGH_GAP_MIN * size;
+        let far = reach + margin;
+        let near = a.min_element() * self.scales[0] + b.min_element() * self.scales[1] - margin;
+        let meet = (near > 0.0) & (square < near * near);
+        ((square > far * far) | meet).then_some(meet)
+    }
+
+    /// Whether balls or capsules intersect.
+    #[inline(always)]
+    fn rounds_meet(&self, a: &Simple, b: &Simple) -> Option<bool> {
+        let [reach, size] = self.reach_and_size(a, b)?;
+        let margin = ROUGH_GAP_MIN * size;
+        // Balls around them are apart.
+        if self.offset.length_squared() > (reach + margin) * (reach + margin) {
+            return Some(false);
+        }
+        let ((radius_a, height_a), (radius_b, height_b)) = (a.core()?, b.core()?);
+        let cores = self.segments(height_a, height_b);
+        let radii = radius_a * self.scales[0] + radius_b * self.scales[1];
+        decide([cores.least_squared(), cores.square], radii, margin)
     }
 
     #[inline(always)]

@@ -114,7 +114,9 @@ fn a_quick_look_says_what_a_close_one_says() {
             for _ in 0..1_000 {
                 let [at_a, at_b] = placements(&mut rng);
                 let (a, b) = (Placed { shape: a, placement: &at_a }, Placed { shape: b, placement: &at_b });
-                if let Quick::Sure(answer) = quick::intersects(a, b) {
+                let seen = levels().map(|level| dispatch!(level, simd => quick::intersects(simd, a, b)));
+                assert_eq!(seen[0], seen[1]);
+                if let Glance::Sure(answer) = seen[0] {
                     decided += 1;
                     // Of a capsule and a box, that the balls around them are apart is all that is known.
                     assert!(closely_intersects(a, b).is_none_or(|closely| closely == answer));
@@ -145,8 +147,9 @@ fn a_rough_look_says_what_gjk_says() {
                     DAffine3 { matrix3: at.matrix3 * (DMat3::IDENTITY + skew), ..at }
                 });
                 let placed = [Placed { shape: a, placement: &at_a }, Placed { shape: b, placement: &at_b }];
-                if let Quick::Sure(answer) = quick::intersects(placed[0], placed[1]) {
-                    let outcome = gjk::intersection(support(a), &at_a, support(b), &at_b);
+                let [a, b] = placed;
+                if let Glance::Sure(answer) = dispatch!(level(), simd => quick::intersects(simd, a, b)) {
+                    let outcome = gjk::intersection(support(a.shape), &at_a, support(b.shape), &at_b);
                     assert_eq!(answer, outcome.witness().is_some(), "{at_a}, {at_b}");
                     (hits, decided) = (hits + usize::from(answer), decided + 1);
                 }
@@ -154,5 +157,36 @@ fn a_rough_look_says_what_gjk_says() {
         }
     }
     assert!(decided > 5_500, "{decided} of 9000 decided");
+    assert!((30..=70).contains(&(100 * hits / decided)), "{hits} of {decided} hit");
+}
+
+/// Balls of any two radii, placed in any size that has one: by squares alone, as far as they reach, and close to where they touch.
+#[test]
+fn balls_of_any_size_are_told_as_gjk_tells_them() {
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let (mut hits, mut decided, mut near) = (0, 0, 0);
+    for i in 0..20_000 {
+        let size = [1.0, 1e-90, 1e-45, 1e-29, 1e30, 1e50, 1e90][i % 7];
+        let radii =
+            [(); 2].map(|()| size * 10f64.powf(rng.random_range(-9.0..0.0) * f64::from(i as u32 % 2)));
+        let unit = [1.0, 1e-9, 1e9][i / 7 % 3];
+        let [at_a, mut at_b] = placements(&mut rng)
+            .map(|at| DAffine3 { matrix3: at.matrix3 * unit, translation: at.translation * (size * unit) });
+        let radii_placed = radii[0] * at_a.matrix3.x_axis.length() + radii[1] * at_b.matrix3.x_axis.length();
+        if i % 3 == 0 {
+            let way = (at_b.translation / (size * unit) - at_a.translation / (size * unit)).normalize();
+            let gap = [-1e-3, -1e-5, -1e-6, 0.0, 1e-6, 1e-5, 1e-3][i / 3 % 7];
+            at_b.translation = at_a.translation + way * (radii_placed * (1.0 + gap));
+            near += 1;
+        }
+        let [a, b] = radii.map(|radius| Shape::sphere(radius).unwrap());
+        let (a, b) = (Placed { shape: &a, placement: &at_a }, Placed { shape: &b, placement: &at_b });
+        if let Glance::Sure(answer) = dispatch!(level(), simd => quick::intersects(simd, a, b)) {
+            let outcome = gjk::intersection(support(a.shape), &at_a, support(b.shape), &at_b);
+            assert_eq!(answer, outcome.witness().is_some(), "{radii:?}, {at_a}, {at_b}");
+            (hits, decided) = (hits + usize::from(answer), decided + 1);
+        }
+    }
+    assert!(decided > 8_000 && near > 6_000, "{decided} decided, {near} near");
     assert!((30..=70).contains(&(100 * hits / decided)), "{hits} of {decided} hit");
 }
