@@ -9,6 +9,7 @@
 //! sixteen. SSE2 alone runs the scalar code, which the compiler vectorises by itself. Each further copy of the kernels would
 //! cost seconds of everybody's build.
 
+use std::any::TypeId;
 use std::sync::OnceLock;
 
 use fearless_simd::Fallback;
@@ -65,6 +66,12 @@ pub use dispatch;
 #[doc(hidden)]
 pub fn one_by_one<R>(kernel: impl FnOnce() -> R) -> R {
     kernel()
+}
+
+/// Whether a kernel is the copy that runs without vectors.
+#[inline(always)]
+pub(crate) fn is_scalar<S: fearless_simd::Simd>() -> bool {
+    TypeId::of::<S>() == TypeId::of::<Fallback>()
 }
 
 /// Runs what is inlined into `kernel` on the wide instructions.

@@ -91,9 +91,24 @@ impl Polytope {
         self.sure_radii
     }
 
-    /// The support point, for searches that are compiled into one piece with it.
+    /// The support point, for searches that are compiled into one piece with it: but for those without vectors, of which each copy would be
+    /// long, and which nobody is in a hurry for.
     #[inline(always)]
     pub(crate) fn furthest<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
+        if simd::is_scalar::<S>() {
+            self.furthest_apart(simd, direction)
+        } else {
+            self.furthest_within(simd, direction)
+        }
+    }
+
+    #[inline(never)]
+    fn furthest_apart<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
+        self.furthest_within(simd, direction)
+    }
+
+    #[inline(always)]
+    fn furthest_within<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
         let mapped = self.map.as_ref().and_then(|map| map.furthest(&self.points, direction));
         let furthest = match mapped {
             Some(furthest) => furthest,
