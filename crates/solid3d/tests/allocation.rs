@@ -42,6 +42,7 @@ fn memory() {
     let laws = || {
         an_object_takes_little_beyond_its_shape();
         a_frame_like_those_before_allocates_nothing();
+        nor_does_one_that_threads_share();
     };
     // A pool's own queue of work from outside it allocates now and then.
     #[cfg(feature = "rayon")]
@@ -139,4 +140,37 @@ fn a_frame_like_those_before_allocates_nothing() {
         assert!(found > 1000 && changed > 100, "{found} collisions, {changed} began or ended");
         assert_eq!((change.allocations, change.reallocations), (0, 0), "{options:?}: {change:?}");
     }
+}
+
+/// Of so many objects that all move, threads share each step of a frame.
+fn nor_does_one_that_threads_share() {
+    const OBJECTS: usize = 5_000;
+    let ball = Shape::sphere(0.5).unwrap();
+    let mut rng = seeded(831);
+    let mut anywhere = |reach: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(0.0..reach)));
+    let ways: Vec<[DVec3; 2]> = (0..OBJECTS).map(|_| [anywhere(16.0), anywhere(0.1)]).collect();
+    // There and back, so that some leave their fat boxes at any time.
+    let place = |i: usize, frame: usize| {
+        let [home, step] = ways[i];
+        DAffine3::from_translation(home + step * ((frame + i) % PERIOD).abs_diff(PERIOD / 2) as f64)
+    };
+    let mut world = World::new();
+    let ids: Vec<_> = (0..OBJECTS).map(|i| world.add(&ball, place(i, 0)).unwrap()).collect();
+    let mut collisions = Vec::new();
+    let mut run = |frames: std::ops::Range<usize>| {
+        for frame in frames {
+            for (i, &id) in ids.iter().enumerate() {
+                world.set_placement(id, place(i, frame)).unwrap();
+            }
+            world.test_into(&mut collisions);
+            world.proceed();
+        }
+        collisions.len()
+    };
+    run(0..10 * PERIOD);
+    let region = Region::new(ALLOCATOR);
+    let found = run(10 * PERIOD..11 * PERIOD);
+    let change = region.change();
+    assert!(found > OBJECTS / 10, "{found} collisions");
+    assert_eq!((change.allocations, change.reallocations), (0, 0), "{change:?}");
 }

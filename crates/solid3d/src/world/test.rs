@@ -46,6 +46,17 @@ enum Outcome {
     Described,
 }
 
+impl Outcome {
+    /// What was found, if anything was. What stands elsewhere is the next there.
+    fn found(self, next_described: impl FnOnce() -> Option<(When, Contact)>) -> Option<(When, Contact)> {
+        match self {
+            Outcome::Apart => None,
+            Outcome::Plain => Some((When::Now, Contact::Simple)),
+            Outcome::Described => next_described(),
+        }
+    }
+}
+
 /// What examining some candidates gave.
 #[derive(Debug, Default)]
 pub(super) struct Verdicts {
@@ -175,11 +186,7 @@ impl World {
         let mut described = Vec::new();
         let Examined { verdict, work } = self.examine(a, b, None, workers.own(), &mut described);
         self.workers = workers;
-        let found = match verdict.outcome {
-            Outcome::Apart => None,
-            Outcome::Plain => Some((When::Now, Contact::Simple)),
-            Outcome::Described => described.pop(),
-        };
+        let found = verdict.outcome.found(|| described.pop());
         self.statistics += Statistics { candidates: 1, collisions: u64::from(found.is_some()), ..work };
         Ok(found.map(|(when, contact)| Collision { a, b, when, contact }))
     }
@@ -237,11 +244,7 @@ impl World {
             let was_plain = std::mem::replace(&mut candidate.is_plain, verdict.outcome == Outcome::Plain);
             let mattered = std::mem::replace(&mut candidate.matters, verdict.matters);
             candidate.axis = verdict.axis;
-            let found = match verdict.outcome {
-                Outcome::Apart => None,
-                Outcome::Plain => Some((When::Now, Contact::Simple)),
-                Outcome::Described => described.next(),
-            };
+            let found = verdict.outcome.found(|| described.next());
             let &mut Candidate { a, b, found: id, .. } = candidate;
             match (id, found) {
                 (None, None) => {}

@@ -141,7 +141,7 @@ impl DynamicTree {
         self.tree.nodes.shrink_to_fit();
         self.tree.places.shrink_to_fit();
         self.pairs.trim();
-        self.notes.queue = Vec::new();
+        self.notes.trim();
         self.builder = Builder::default();
         self.search = Search::default();
     }

@@ -15,7 +15,7 @@ use crate::broad::room::extend;
 use crate::broad::room::push;
 use crate::broad::{Proxy, is_ordered, is_valid};
 #[cfg(feature = "rayon")]
-use crate::threads::{first_part_where, for_each_part, share};
+use crate::threads::{first_part_where, share};
 
 /// What is kept of the boxes of some proxies that follow one another.
 pub(super) struct Slots<'a> {
@@ -43,10 +43,7 @@ impl Slots<'_> {
         {
             if *tight != *bounds {
                 *tight = *bounds;
-                notes.changed = true;
-                if status.put(Status::MOVED) {
-                    notes.note_moved(proxy, moved_max);
-                }
+                notes.note_moved(proxy, status, moved_max);
             }
             return true;
         }
@@ -62,10 +59,7 @@ impl Slots<'_> {
         }
         let was = std::mem::replace(tight, *bounds);
         *fat = FatBox::with_room(proxy, &was, bounds);
-        notes.changed = true;
-        if status.put(Status::MOVED) {
-            notes.note_moved(proxy, moved_max);
-        }
+        notes.note_moved(proxy, status, moved_max);
         if status.put(Status::QUEUED) {
             push(&mut notes.queue, proxy);
         }
@@ -99,27 +93,43 @@ pub(super) struct Notes {
     pub all_moved: bool,
     /// Those whose fat boxes are not in the tree as they are, each once; some may have been removed since.
     pub queue: Vec<Proxy>,
+    /// What threads note of their parts; empty but for its memory.
+    #[cfg(feature = "rayon")]
+    parts: Vec<Notes>,
 }
 
 impl Notes {
-    /// Notes that a box moved for the first time since the last flush; of more than `moved_max` only that they are so many.
+    /// Notes that a box moved; of more than `moved_max` only that they are so many.
     #[inline(always)]
-    fn note_moved(&mut self, proxy: Proxy, moved_max: usize) {
-        if !self.all_moved {
+    fn note_moved(&mut self, proxy: Proxy, status: &mut Status, moved_max: usize) {
+        self.changed = true;
+        if !self.all_moved && status.put(Status::MOVED) {
             push(&mut self.moved, proxy);
             self.all_moved = self.moved.len() > moved_max;
         }
     }
 
-    /// Adds what was noted after this.
+    /// Adds what was noted after this, and leaves nothing there.
     #[cfg(feature = "rayon")]
-    fn append(&mut self, later: &Notes, moved_max: usize) {
+    fn append(&mut self, later: &mut Notes, moved_max: usize) {
         self.changed |= later.changed;
         self.all_moved |= later.all_moved || self.moved.len() + later.moved.len() > moved_max;
         if !self.all_moved {
             extend(&mut self.moved, &later.moved);
         }
         extend(&mut self.queue, &later.queue);
+        later.changed = false;
+        later.moved.clear();
+        later.queue.clear();
+    }
+
+    /// Gives back what a first insertion of all boxes took. Nothing may be queued.
+    pub fn trim(&mut self) {
+        self.queue = Vec::new();
+        #[cfg(feature = "rayon")]
+        {
+            self.parts = Vec::new();
+        }
     }
 }
 
@@ -131,15 +141,21 @@ pub(super) enum Work {
 }
 
 impl Slots<'_> {
-    /// Does a work with boxes one after the other, until one is refused: how many were not.
-    fn each(&mut self, work: Work, boxes: &[(Proxy, Aabb)], notes: &mut Notes, moved_max: usize) -> usize {
+    /// Does a work with boxes one after the other, until one is refused. How many were taken, and which was refused, if one was.
+    fn each(
+        &mut self,
+        work: Work,
+        boxes: &[(Proxy, Aabb)],
+        notes: &mut Notes,
+        moved_max: usize,
+    ) -> (usize, Option<usize>) {
         let refused = match work {
             Work::Insert => boxes.iter().position(|(proxy, bounds)| !self.insert(*proxy, bounds, notes)),
             Work::Update => {
                 boxes.iter().position(|(proxy, bounds)| !self.update(*proxy, bounds, notes, moved_max))
             }
         };
-        refused.unwrap_or(boxes.len())
+        (refused.unwrap_or(boxes.len()), refused)
     }
 
     /// Does a work with many boxes, as if one after the other. How many were taken, and the first that was refused, if one was.
@@ -154,8 +170,7 @@ impl Slots<'_> {
         if share(boxes.len(), MANY) && ascend(boxes) {
             return self.on_threads(work, boxes, notes, moved_max);
         }
-        let taken = self.each(work, boxes, notes, moved_max);
-        (taken, (taken < boxes.len()).then_some(taken))
+        self.each(work, boxes, notes, moved_max)
     }
 }
 
@@ -186,46 +201,41 @@ impl<'a> Slots<'a> {
 
     /// See [`many`](Self::many); the proxies ascend.
     fn on_threads(
-        mut self,
+        self,
         work: Work,
         boxes: &[(Proxy, Aabb)],
         notes: &mut Notes,
         moved_max: usize,
     ) -> (usize, Option<usize>) {
-        struct Part<'a, 'b> {
-            slots: Slots<'a>,
-            boxes: &'b [(Proxy, Aabb)],
-            notes: Notes,
-            taken: usize,
+        let mut parts = std::mem::take(&mut notes.parts);
+        parts.resize_with(boxes.len().div_ceil(PART), Notes::default);
+        parts.iter_mut().for_each(|part| part.all_moved = notes.all_moved);
+        let done = self.in_parts(work, boxes, &mut parts, moved_max);
+        parts.iter_mut().for_each(|part| notes.append(part, moved_max));
+        notes.parts = parts;
+        done
+    }
+
+    /// Does a work with boxes that are noted in one part, or with both halves of them at the same time.
+    fn in_parts(
+        mut self,
+        work: Work,
+        boxes: &[(Proxy, Aabb)],
+        parts: &mut [Notes],
+        moved_max: usize,
+    ) -> (usize, Option<usize>) {
+        if let [part] = parts {
+            return self.each(work, boxes, part, moved_max);
         }
-        let mut parts: Vec<Part> = (boxes.chunks(PART))
-            .map(|boxes| {
-                let end = boxes.last().map_or(0, |(proxy, _)| *proxy as usize + 1);
-                let moved_max = if notes.all_moved || work == Work::Insert { 0 } else { boxes.len() };
-                let queue_max = if work == Work::Insert { boxes.len() } else { 0 };
-                let notes = Notes {
-                    changed: false,
-                    moved: Vec::with_capacity(moved_max),
-                    all_moved: notes.all_moved,
-                    queue: Vec::with_capacity(queue_max),
-                };
-                Part { slots: self.split_off(end), boxes, notes, taken: 0 }
-            })
-            .collect();
-        for_each_part(&mut parts, 1, 1, |_, parts| {
-            for Part { slots, boxes, notes, taken } in parts {
-                *taken = slots.each(work, boxes, notes, moved_max);
-            }
-        });
-        let (mut taken, mut refused) = (0, None);
-        for (i, part) in parts.iter().enumerate() {
-            notes.append(&part.notes, moved_max);
-            taken += part.taken;
-            if refused.is_none() && part.taken < part.boxes.len() {
-                refused = Some(i * PART + part.taken);
-            }
-        }
-        (taken, refused)
+        let half = parts.len() / 2;
+        let (boxes, later_boxes) = boxes.split_at(half * PART);
+        let (parts, later_parts) = parts.split_at_mut(half);
+        let slots = self.split_off(later_boxes[0].0 as usize);
+        let ((taken, refused), (later_taken, later_refused)) = rayon::join(
+            || slots.in_parts(work, boxes, parts, moved_max),
+            || self.in_parts(work, later_boxes, later_parts, moved_max),
+        );
+        (taken + later_taken, refused.or(later_refused.map(|refused| boxes.len() + refused)))
     }
 }
 
