@@ -68,9 +68,31 @@ pub fn one_by_one<R>(kernel: impl FnOnce() -> R) -> R {
     kernel()
 }
 
+/// A part that many kernels have in them: inlined into each among wide instructions, and a call without, where its loops over lanes
+/// are eight times as long, and the compiler would take minutes for all their copies.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! part {
+    ($simd:expr => $part:expr) => {
+        $crate::simd::run_part(
+            $simd,
+            #[inline(always)]
+            || $part,
+        )
+    };
+}
+pub use part;
+
+/// See [`part!`].
+#[inline(always)]
+#[doc(hidden)]
+pub fn run_part<S: fearless_simd::Simd, R>(_: S, part: impl FnOnce() -> R) -> R {
+    if is_scalar::<S>() { one_by_one(part) } else { part() }
+}
+
 /// Whether a kernel is the copy that runs without vectors.
 #[inline(always)]
-pub(crate) fn is_scalar<S: fearless_simd::Simd>() -> bool {
+fn is_scalar<S: fearless_simd::Simd>() -> bool {
     TypeId::of::<S>() == TypeId::of::<Fallback>()
 }
 

@@ -20,6 +20,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 use glam::{DAffine3, DVec3};
+use solid_convex::simd::part;
 
 use super::direct::Direct;
 use super::row::Verdict;
@@ -98,9 +99,11 @@ impl Glance {
     /// What is clear of the triangles of an image, as bits; in lanes beyond those in use it means nothing.
     #[inline(always)]
     pub fn verdict<S: Simd>(&self, simd: S, image: &Image) -> Verdict {
-        let placed = self.place(simd, image);
         let Body { is_ball, inner, outer } = self.body;
-        if is_ball { of_ball(simd, &placed, inner, outer) } else { of_cube(simd, &placed, inner, outer) }
+        part!(simd => {
+            let placed = self.place(simd, image);
+            if is_ball { of_ball(simd, &placed, inner, outer) } else { of_cube(simd, &placed, inner, outer) }
+        })
     }
 
     #[inline(always)]

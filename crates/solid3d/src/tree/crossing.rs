@@ -23,6 +23,7 @@ use super::relative::Relative;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, f64x4};
 use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::simd::part;
 
 /// 8u for `f32`: see the module.
 pub(super) const MARGIN: f64 = 4.0 * f32::EPSILON as f64;
@@ -153,6 +154,11 @@ impl Crossing {
     /// Prepares a box of S.
     #[inline(always)]
     pub fn probe<S: Simd>(&self, simd: S, bounds: &PackedBox) -> Probe {
+        part!(simd => self.probe_on(simd, bounds))
+    }
+
+    #[inline(always)]
+    fn probe_on<S: Simd>(&self, simd: S, bounds: &PackedBox) -> Probe {
         // In the fourth lane the box is inverted and the maps are zero: a number comes out, and is not used.
         let (min, negated_max) = simd.widen_f32x8(f32x8::load_array(simd, bounds.0));
         let center = one(simd, 0.5) * (min - negated_max);

@@ -6,17 +6,20 @@ use fearless_simd::{Simd, f32x8, mask32x8};
 use super::crossing::{Crossing, Probe};
 use super::node::{Node, WIDTH};
 use super::packed::PackedBox;
+use solid_convex::simd::part;
 
 /// The lanes whose box overlaps a box of the same tree coordinates, as bits.
 #[inline(always)]
 pub(super) fn overlapping_box<S: Simd>(simd: S, node: &Node, query: &PackedBox) -> u32 {
-    let (lo, hi) = (query.min(), query.max());
-    let [x, y, z] = three(
-        #[inline(always)]
-        |axis| interval_gap(simd, node, axis, (lo[axis], hi[axis])),
-    );
-    let zero = splat(simd, 0.0);
-    !((x.simd_gt(zero) | y.simd_gt(zero) | z.simd_gt(zero)).to_bitmask() as u32) & LANES
+    part!(simd => {
+        let (lo, hi) = (query.min(), query.max());
+        let [x, y, z] = three(
+            #[inline(always)]
+            |axis| interval_gap(simd, node, axis, (lo[axis], hi[axis])),
+        );
+        let zero = splat(simd, 0.0);
+        !((x.simd_gt(zero) | y.simd_gt(zero) | z.simd_gt(zero)).to_bitmask() as u32) & LANES
+    })
 }
 
 /// The lanes whose box may overlap a box of the other space, as bits; and how far each is apart from it on its own axes, below zero
@@ -28,13 +31,15 @@ pub(super) fn overlapping_probe<S: Simd>(
     crossing: &Crossing,
     probe: &Probe,
 ) -> (u32, f32x8<S>) {
-    let [x, y, z] = interval_gaps(simd, node, probe);
-    let [u, v, w] = projected_gaps(simd, node, crossing, probe);
-    let zero = f32x8::splat(simd, 0.0);
-    // What is not a number is not greater: it separates nothing.
-    let gap = x.max(y).max(z);
-    let apart: mask32x8<S> = gap.simd_gt(zero) | u.simd_gt(zero) | v.simd_gt(zero) | w.simd_gt(zero);
-    (!(apart.to_bitmask() as u32) & LANES, gap)
+    part!(simd => {
+        let [x, y, z] = interval_gaps(simd, node, probe);
+        let [u, v, w] = projected_gaps(simd, node, crossing, probe);
+        let zero = f32x8::splat(simd, 0.0);
+        // What is not a number is not greater: it separates nothing.
+        let gap = x.max(y).max(z);
+        let apart: mask32x8<S> = gap.simd_gt(zero) | u.simd_gt(zero) | v.simd_gt(zero) | w.simd_gt(zero);
+        (!(apart.to_bitmask() as u32) & LANES, gap)
+    })
 }
 
 /// The sizes of the lanes, by which nodes compare: the sums of the sides.
@@ -71,9 +76,11 @@ pub(super) fn distances_squared<S: Simd>(
     on_lanes: &Weights,
     on_box: &Weights,
 ) -> f32x8<S> {
-    let along_lanes = weighed(simd, interval_gaps(simd, node, probe), on_lanes);
-    let along_box = weighed(simd, projected_gaps(simd, node, crossing, probe), on_box);
-    along_lanes.max(along_box)
+    part!(simd => {
+        let along_lanes = weighed(simd, interval_gaps(simd, node, probe), on_lanes);
+        let along_box = weighed(simd, projected_gaps(simd, node, crossing, probe), on_box);
+        along_lanes.max(along_box)
+    })
 }
 
 /// Lower bounds of the squared distances between a box of the same tree coordinates and the lanes, up to the same rounding.
@@ -84,12 +91,14 @@ pub(super) fn distances_squared_to_box<S: Simd>(
     query: &PackedBox,
     weights: &Weights,
 ) -> f32x8<S> {
-    let (lo, hi) = (query.min(), query.max());
-    let gaps = three(
-        #[inline(always)]
-        |axis| interval_gap(simd, node, axis, (lo[axis], hi[axis])),
-    );
-    weighed(simd, gaps, weights)
+    part!(simd => {
+        let (lo, hi) = (query.min(), query.max());
+        let gaps = three(
+            #[inline(always)]
+            |axis| interval_gap(simd, node, axis, (lo[axis], hi[axis])),
+        );
+        weighed(simd, gaps, weights)
+    })
 }
 
 /// The gaps between the lanes and the single box on each axis of the lanes; negative where they overlap. The sign is exact.

@@ -11,6 +11,7 @@
 //! sphere volumes*, 1999); they are tight all around, but take three times the memory beside the boxes that are here anyway.
 
 use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::simd::part;
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
@@ -241,14 +242,10 @@ impl<'t> Faces<'t> {
         offset: DVec3,
         bounds: &mut [f64; WIDTH],
     ) {
-        let gaps = gaps(
-            simd,
-            many,
-            &Patch::lanes(simd, node, slabs),
-            one,
-            &Patch::one(simd, one, tree, place),
-            offset,
-        );
+        let gaps = part!(simd => {
+            let (lanes, single) = (Patch::lanes(simd, node, slabs), Patch::one(simd, one, tree, place));
+            gaps(simd, many, &lanes, one, &single, offset)
+        });
         for (bound, gap) in bounds.iter_mut().zip(gaps) {
             let raised = (f64::from(gap) * self.unit - self.margin) * NORM;
             if raised > *bound {

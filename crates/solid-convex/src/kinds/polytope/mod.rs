@@ -95,16 +95,7 @@ impl Polytope {
     /// long, and which nobody is in a hurry for.
     #[inline(always)]
     pub(crate) fn furthest<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
-        if simd::is_scalar::<S>() {
-            self.furthest_apart(simd, direction)
-        } else {
-            self.furthest_within(simd, direction)
-        }
-    }
-
-    #[inline(never)]
-    fn furthest_apart<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
-        self.furthest_within(simd, direction)
+        simd::part!(simd => self.furthest_within(simd, direction))
     }
 
     #[inline(always)]
