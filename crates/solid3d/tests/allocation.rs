@@ -105,6 +105,7 @@ fn a_frame_like_those_before_allocates_nothing() {
     let options = [
         defaults(),
         WorldOptions { default_response: Response::Smart, ..defaults() },
+        WorldOptions { default_response: Response::Depth, ..defaults() },
         WorldOptions { motion: Motion::Swept, boxes: Boxes::FixedSize, ..defaults() },
         WorldOptions { broad_phase: BroadPhaseKind::SweepAndPrune, caching: false, ..defaults() },
     ];

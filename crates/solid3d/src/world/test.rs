@@ -95,8 +95,9 @@ impl World {
     }
 
     /// Like [`test`](World::test), but puts the collisions into a vector, in place of what was there: a caller that keeps it, in a
-    /// world in which as much happens as before, makes tests that allocate nothing. Only [`Response::Curve`] does, for each
-    /// curve. [`collisions`](World::collisions) are then also there to be looked at without a copy.
+    /// world in which as much happens as before, makes tests that allocate nothing. Only [`Response::Curve`] and
+    /// [`Response::Contacts`] do, for each pair that they describe anew: such results own their memory. [`collisions`](World::collisions) are then
+    /// also there to be looked at without a copy.
     ///
     /// ```
     /// use solid3d::{Shape, World, glam::DAffine3};
