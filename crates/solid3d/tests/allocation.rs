@@ -93,6 +93,8 @@ fn an_object_takes_little_beyond_its_shape() {
 }
 
 fn a_frame_like_those_before_allocates_nothing() {
+    /// Which of the shapes is one.
+    const MESH: usize = 3;
     let (vertices, triangles) = band();
     let shapes = [
         Shape::sphere(0.5).unwrap(),
@@ -114,11 +116,18 @@ fn a_frame_like_those_before_allocates_nothing() {
         let ids: Vec<_> =
             (0..200).map(|i| world.add(&shapes[i % shapes.len()], place(i, 0)).unwrap()).collect();
         let mut collisions: Vec<Collision> = Vec::new();
+        let mut positions = vertices.clone();
         let mut run = |frames: std::ops::Range<usize>| {
             let (mut found, mut changed) = (0, 0);
             for frame in frames {
                 for (i, &id) in ids.iter().enumerate() {
                     world.set_placement(id, place(i, frame)).unwrap();
+                }
+                // Some of the meshes breathe.
+                let size = 1.0 + 0.01 * (frame % PERIOD) as f64;
+                positions.iter_mut().zip(&vertices).for_each(|(position, vertex)| *position = size * *vertex);
+                for &id in ids.iter().skip(MESH).step_by(4 * shapes.len()) {
+                    world.deform(id, &positions).unwrap();
                 }
                 world.test_into(&mut collisions);
                 let mut progress = TestProgress::default();
