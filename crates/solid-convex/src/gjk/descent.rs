@@ -43,6 +43,9 @@ pub(crate) struct Descent {
     pub end: End,
     /// The point of the simplex closest to the origin, or the separating axis.
     pub v: DVec3,
+    /// Of those looked along, the axis along which the objects are known to be the furthest apart; `v`, where none was kept. It may be a
+    /// better one than `v`: on round objects, what is next to the closest point is not yet next to the normal there.
+    pub axis: DVec3,
     /// The simplex; may be empty when the search for an axis ends with the first.
     pub simplex: Simplex,
     /// Whether the objects are further apart than the goal asked for; `v` is then not the closest point.
@@ -91,7 +94,7 @@ fn finished(lean: &Lean, goal: Goal) -> Option<Descent> {
             _ => return None,
         },
     };
-    Some(Descent { end, v, simplex, beyond: lean.sure == Sure::Beyond })
+    Some(Descent { end, v, axis: v, simplex, beyond: lean.sure == Sure::Beyond })
 }
 
 /// Runs the robust descent. `v` starts along the initial direction; the objects' own support points take over from there.
@@ -116,14 +119,19 @@ where
     B: Support + ?Sized,
 {
     // v: the point of conv(W) closest to the origin; w: a support point of A - B against v; W: `simplex`;
-    // mu: the greatest lower bound of the distance so far.
+    // mu: the greatest lower bound of the distance so far, along `axis`.
     let (mut simplex, mut v) = (Simplex::new(), difference.initial_direction());
-    let mut mu = 0.0;
+    let (mut mu, mut axis) = (0.0, v);
     let mut refinements = 0;
     for _ in 0..iterations_max {
         let p = difference.support_against(v);
-        if goal.reached(v, &p, &mut mu, !simplex.is_empty()) {
-            return Descent { end: End::Separated, v, simplex, beyond: goal.is_exceeded(mu) };
+        let mu_before = mu;
+        let reached = goal.reached(v, &p, &mut mu, !simplex.is_empty());
+        if mu > mu_before {
+            axis = v;
+        }
+        if reached {
+            return Descent { end: End::Separated, v, axis, simplex, beyond: goal.is_exceeded(mu) };
         }
         let (members_before, v_before) = (simplex.members(), v);
         let mut stalled = simplex.contains(&p);
@@ -131,13 +139,13 @@ where
             simplex.push(p);
             match simplex.reduce() {
                 Reduced::ContainsOrigin => {
-                    return Descent { end: End::Inside, v: DVec3::ZERO, simplex, beyond: false };
+                    return Descent { end: End::Inside, v: DVec3::ZERO, axis, simplex, beyond: false };
                 }
                 Reduced::Closest(closest) => v = closest,
             }
             let length_squared = v.length_squared();
             if length_squared <= SUPPORT_ERROR * SUPPORT_ERROR {
-                return Descent { end: End::Undecided, v, simplex, beyond: false };
+                return Descent { end: End::Undecided, v, axis, simplex, beyond: false };
             }
             if members_before.any() {
                 let before = v_before.length_squared();
@@ -174,7 +182,7 @@ where
         }
     }
     let end = if mu > 0.0 { End::Separated } else { End::Undecided };
-    Descent { end, v, simplex, beyond: false }
+    Descent { end, v, axis, simplex, beyond: false }
 }
 
 impl Goal {

@@ -7,7 +7,8 @@ use rand::{Rng, SeedableRng};
 use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_robustly, descend_within};
 use super::lean::{self, Search, Sure};
 use super::{
-    Closest, Coherent, DISTANCE_TOLERANCE, Outcome, TOUCHING_ERROR, closest_points, intersection, separates,
+    CAST_ERROR, Closest, Coherent, DISTANCE_TOLERANCE, Outcome, TOUCHING_ERROR, cast, closest_points,
+    intersection, separates,
 };
 use crate::difference::Difference;
 use crate::simd;
@@ -396,4 +397,34 @@ fn coherence_changes_no_answer() {
         }
     }
     assert!((30..=70).contains(&(100 * hits / frames)), "{hits} of {frames}: not representative");
+}
+
+/// Law: where a cast ends, the objects are no further apart than is stated, and before it they are apart; flat, thin and round ones, too.
+#[test]
+fn a_cast_ends_at_the_stated_gap() {
+    const SEED: u64 = 52;
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let (mut hits, cases) = (0, 20_000);
+    for case in 0..cases {
+        let (a, b) = (any_shape(&mut rng), any_shape(&mut rng));
+        let (at_a, map) = (DAffine3::from_mat3(any_map(&mut rng)), any_map(&mut rng));
+        let reach = |shape: &dyn Support, map: &DMat3| {
+            let [min, max] = shape.image_bounds(map);
+            min.abs().max(max.abs()).max_element()
+        };
+        let extents = reach(&*a, &at_a.matrix3) + reach(&*b, &map);
+        if extents == 0.0 {
+            continue; // two points
+        }
+        let away = in_cube(&mut rng).normalize_or_zero() * extents * rng.random_range(1.0..4.0);
+        let motion = away * rng.random_range(0.5..2.0) + in_cube(&mut rng) * extents * rng.random::<f64>();
+        let at_b = DAffine3 { matrix3: map, translation: away };
+        let Some(impact) = cast(&*a, &at_a, motion, &*b, &at_b, 2.0) else { continue };
+        let at = |time: f64| DAffine3 { translation: motion * time, ..at_a };
+        let gap = closest_points(&*a, &at(impact.time), &*b, &at_b).distance;
+        let size = extents + (motion * impact.time - away).abs().max_element();
+        hits += 1;
+        assert!(gap <= CAST_ERROR * size, "seed {SEED}, {case}: {:e} of the size", gap / size);
+    }
+    assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
 }
