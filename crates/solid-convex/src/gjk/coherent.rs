@@ -8,7 +8,7 @@ use super::distance::{Measure, Measured, measure};
 use super::intersection::CACHED_GAP_MIN;
 use super::lean::{self, Lean, Search, Sure, Task};
 use super::{Closest, DISTANCE_TOLERANCE, Witness, closest_points};
-use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
+use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
 use crate::{Support, epa};
 
@@ -295,15 +295,7 @@ impl Task for SameFeature<'_> {
     type Found = Option<Closest>;
 
     #[inline(always)]
-    fn run<A, B>(
-        self,
-        difference: &Difference<A, B>,
-        against: impl Fn(DVec3) -> SupportPoint,
-    ) -> Option<Closest>
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> Option<Closest> {
         let Memory { ref pairs, len, .. } = *self.memory;
         if len == 0 {
             return None;
@@ -325,7 +317,7 @@ impl Task for SameFeature<'_> {
         }
         let (v, witness) = lean::closest_point(&points[..len])?;
         // One support point shows that nothing is nearer.
-        let (length, vw) = (v.length(), v.dot(against(v).w));
+        let (length, vw) = (v.length(), v.dot(difference.support_against(v).w));
         let goal = Goal::Distance { tolerance: DISTANCE_TOLERANCE };
         let sure =
             vw > SUPPORT_ERROR * v.abs().element_sum() && goal.is_within_tolerance(length, vw / length);
@@ -355,14 +347,10 @@ impl Task for Again<'_> {
     type Found = Found;
 
     #[inline(always)]
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Found
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> Found {
         let Memory { axis, ref pairs, len, .. } = *self.memory;
         if axis != DVec3::ZERO {
-            let (gap, clear) = gap(axis, against(axis).w);
+            let (gap, clear) = gap(axis, difference.support_against(axis).w);
             if clear {
                 return Found::Separated { gap: gap / difference.scale() };
             }
@@ -395,16 +383,11 @@ impl Task for Again<'_> {
         // First from where the last search ended, then from nothing.
         for warm in [warm, &[]] {
             let search = Search { goal: Goal::Separation, warm };
-            #[expect(clippy::redundant_closure, reason = "a closure is inlined, a reference to one is not")]
-            let lean = search.run(
-                difference,
-                #[inline(always)]
-                |v| against(v),
-            );
+            let lean = search.run(difference);
             match lean.sure {
                 Sure::Separated => {
                     let axis = lean.v.normalize_or_zero();
-                    let (gap, clear) = gap(axis, against(axis).w);
+                    let (gap, clear) = gap(axis, difference.support_against(axis).w);
                     // Of a small gap a search from nothing has the word.
                     if clear || warm.is_empty() {
                         return Found::Anew { lean, gap: gap / difference.scale() };

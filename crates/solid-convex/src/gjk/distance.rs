@@ -7,7 +7,7 @@ use super::coherent::Pair;
 use super::descent::{Descent, End, Goal, descend_robustly};
 use super::lean::{self, Lean, Search, Sure, Task};
 use crate::Support;
-use crate::difference::{Difference, SupportPoint};
+use crate::difference::{Difference, MinkowskiDifference, SupportPoint};
 use crate::rounded::Core;
 
 /// The closest points of two placed convex objects.
@@ -131,17 +131,9 @@ impl Task for Measure<'_> {
     type Found = (Answer, Lean);
 
     #[inline(always)]
-    fn run<A, B>(
-        self,
-        difference: &Difference<A, B>,
-        against: impl Fn(DVec3) -> SupportPoint,
-    ) -> (Answer, Lean)
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> (Answer, Lean) {
         let goal = self.goal(difference.scale());
-        let lean = Search { goal, warm: self.warm }.run(difference, against);
+        let lean = Search { goal, warm: self.warm }.run(difference);
         (Answer::of(&lean, goal, difference.scale()), lean)
     }
 }
@@ -155,14 +147,10 @@ impl Task for MeasureAnew {
     type Found = Answer;
 
     #[inline(always)]
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Answer
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> Answer {
         let goal = Measure { bound: self.bound, warm: &[] }.goal(difference.scale());
         let mut lean = Lean::default();
-        Search { goal, warm: &[] }.descend(&mut lean, difference, against);
+        Search { goal, warm: &[] }.descend(&mut lean, difference);
         Answer::of(&lean, goal, difference.scale())
     }
 }

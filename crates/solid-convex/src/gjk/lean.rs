@@ -7,12 +7,14 @@
 //!
 //! It is compiled into one piece with the support mappings of polytopes, once for each level of instructions.
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 
 use super::Witness;
 use super::coherent::Pair;
 use super::descent::Goal;
-use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
+use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
+use crate::polytope_difference::{PolytopeDifference, Scanned};
 use crate::simd::{self, Level, dispatch};
 use crate::simplex::{Simplex, VOLUME_ERROR, Within, sides_of_origin, within_edge, within_face};
 use crate::{Polytope, Support};
@@ -181,11 +183,8 @@ pub(super) trait Task {
     /// What is found.
     type Found;
 
-    /// Finds it: `against` gives the support points, as [`Difference::support_against`]. To be inlined.
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Self::Found
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized;
+    /// Finds it. To be inlined.
+    fn run(self, difference: &impl MinkowskiDifference) -> Self::Found;
 }
 
 /// Runs a task on two placed objects: on polytopes in one piece, compiled for the level of instructions.
@@ -200,7 +199,7 @@ where
         (Some(a), Some(b)) => run_on_polytopes(a, placement_a, b, placement_b, task),
         _ => {
             let difference = Difference::new(a, placement_a, b, placement_b);
-            task.run(&difference, |v| difference.support_against(v))
+            task.run(&difference)
         }
     }
 }
@@ -212,14 +211,22 @@ fn run_on_polytopes<T: Task>(
     placement_b: &DAffine3,
     task: T,
 ) -> T::Found {
-    dispatch!(simd::level(), simd => {
+    dispatch!(simd::level(), simd => run_in_kernel(simd, (a, placement_a), (b, placement_b), task))
+}
+
+#[inline(always)]
+fn run_in_kernel<S: Simd, T: Task>(
+    simd: S,
+    (a, placement_a): (&Polytope, &DAffine3),
+    (b, placement_b): (&Polytope, &DAffine3),
+    task: T,
+) -> T::Found {
+    if simd::is_scalar::<S>() {
         let difference = Difference::new(a, placement_a, b, placement_b);
-        task.run(&difference, #[inline(always)] |v| difference.point_against(
-            v,
-            #[inline(always)] |d| a.furthest(simd, d),
-            #[inline(always)] |d| b.furthest(simd, d),
-        ))
-    })
+        task.run(&Scanned { simd, difference: &difference, polytopes: [a, b] })
+    } else {
+        task.run(&PolytopeDifference::new(simd, (a, placement_a), (b, placement_b)))
+    }
 }
 
 /// Runs a task on a difference.
@@ -232,14 +239,10 @@ where
 {
     let (a, b) = difference.objects();
     match (a.as_polytope(), b.as_polytope()) {
-        (Some(a), Some(b)) => dispatch!(level, simd => {
-            task.run(difference, #[inline(always)] |v| difference.point_against(
-                v,
-                #[inline(always)] |d| a.furthest(simd, d),
-                #[inline(always)] |d| b.furthest(simd, d),
-            ))
-        }),
-        _ => task.run(difference, |v| difference.support_against(v)),
+        (Some(a), Some(b)) => {
+            dispatch!(level, simd => task.run(&Scanned { simd, difference, polytopes: [a, b] }))
+        }
+        _ => task.run(difference),
     }
 }
 
@@ -255,13 +258,9 @@ impl Task for Search<'_> {
     type Found = Lean;
 
     #[inline(always)]
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Lean
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> Lean {
         let mut lean = Lean::default();
-        self.descend(&mut lean, difference, against);
+        self.descend(&mut lean, difference);
         lean
     }
 }
@@ -270,15 +269,7 @@ impl Search<'_> {
     /// Runs a descent in place: what it ends with is too large to be moved about.
     // v / divisor: the point of conv(W) closest to the origin; p.w: a support point of A - B against v; W: the points.
     #[inline(always)]
-    pub fn descend<A, B>(
-        self,
-        lean: &mut Lean,
-        difference: &Difference<A, B>,
-        against: impl Fn(DVec3) -> SupportPoint,
-    ) where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    pub fn descend(self, lean: &mut Lean, difference: &impl MinkowskiDifference) {
         let mut v;
         let mut divisor = 1.0;
         let mut before = f64::INFINITY;
@@ -297,7 +288,7 @@ impl Search<'_> {
             }
         }
         for _ in 0..STEPS_MAX {
-            let p = against(v);
+            let p = difference.support_against(v);
             let vw = v.dot(p.w);
             if vw > SUPPORT_ERROR * v.abs().element_sum() {
                 let sure = self.reached(v, divisor, vw, lean.len);
@@ -353,12 +344,17 @@ impl Search<'_> {
     /// What is sure, after `v` was found to separate the objects: `vw` is its product with a support point against it.
     #[inline(always)]
     fn reached(self, v: DVec3, divisor: f64, vw: f64, len: usize) -> Sure {
+        let square = v.length_squared();
         let tolerance = match self.goal {
             Goal::Separation => return Sure::Separated,
-            Goal::DistanceWithin { .. } if self.goal.is_exceeded(vw / v.length()) => return Sure::Beyond,
+            // What exceeds the bound by its margin does so squared: most need no root.
+            Goal::DistanceWithin { bound, .. }
+                if vw * vw > bound * bound * square && self.goal.is_exceeded(vw / square.sqrt()) =>
+            {
+                return Sure::Beyond;
+            }
             Goal::Distance { tolerance } | Goal::DistanceWithin { tolerance, .. } => tolerance,
         };
-        let square = v.length_squared();
         if len > 0 && square - vw * divisor <= tolerance * square {
             Sure::Near(vw / square.sqrt())
         } else {
