@@ -1,10 +1,18 @@
 //! The Minkowski difference of two placed polytopes, for kernels.
 
+use std::ops::RangeInclusive;
+
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::{DAffine3, DVec3};
 
 use crate::difference::{Difference, MinkowskiDifference, SupportPoint, start_along};
-use crate::{Polytope, Support, unit_scale};
+use crate::{MAGNITUDE_MAX, Polytope, Support, unit_scale};
+
+/// Squared lengths of the axes of a plain placement: no product of theirs overflows or loses digits.
+const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
+
+/// The least squared volume between the axes of a plain placement, brought to unit length. Far above what rounding makes of nothing.
+const PLAIN_VOLUME_SQUARED: f64 = 1e-18;
 
 /// A [`Difference`] of polytopes whose support points are found by a kernel.
 pub(crate) struct Scanned<'d, A: ?Sized, B: ?Sized, S> {
@@ -87,6 +95,32 @@ impl<'a, S: Simd> PolytopeDifference<'a, S> {
             scale,
         }
     }
+}
+
+/// Whether a placement is finite, far from singular and of plain size. Of one that is, no product below or in a search overflows.
+#[inline(always)]
+pub(crate) fn is_plain<S: Simd>(simd: S, placement: &DAffine3) -> bool {
+    let Linear { rows: [x, y, z], .. } = Linear::new(simd, placement);
+    // Of the axes: in each lane one.
+    let squares = point(x * x + y * y + z * z);
+    let DAffine3 { matrix3, translation } = placement;
+    let volume = matrix3.x_axis.cross(matrix3.y_axis).dot(matrix3.z_axis);
+    // No branches; and of what is no number nothing is true.
+    let [x, y, z] = squares.to_array();
+    PLAIN_SQUARES.contains(&x)
+        & PLAIN_SQUARES.contains(&y)
+        & PLAIN_SQUARES.contains(&z)
+        & (volume * volume > PLAIN_VOLUME_SQUARED * x * y * z)
+        & (translation.x.abs() <= MAGNITUDE_MAX)
+        & (translation.y.abs() <= MAGNITUDE_MAX)
+        & (translation.z.abs() <= MAGNITUDE_MAX)
+}
+
+/// A point of an object in the world.
+#[inline(always)]
+pub(crate) fn in_world<S: Simd>(simd: S, placement: &DAffine3, local: DVec3) -> DVec3 {
+    let placed = combination(simd, &Linear::new(simd, placement).columns, local);
+    point(placed + vector(simd, placement.translation))
 }
 
 impl<S: Simd> MinkowskiDifference for PolytopeDifference<'_, S> {

@@ -7,10 +7,10 @@ use super::descent::{End, Goal, descend_robustly};
 use super::distance::{Measure, Measured, measure};
 use super::intersection::CACHED_GAP_MIN;
 use super::lean::{self, Lean, Search, Sure, Task};
-use super::{Closest, DISTANCE_TOLERANCE, Witness, closest_points};
+use super::{Closest, ClosestInWorld, DISTANCE_TOLERANCE, Witness, closest_points};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
-use crate::{Support, epa};
+use crate::{Polytope, Support, epa};
 
 /// Two convex objects about which the same is asked frame after frame, as they move a little: what was found last is tried
 /// first (thesis, section 4.4.3, and for objects that intersect likewise).
@@ -240,9 +240,22 @@ impl Memory {
             // The cores, which are not what is kept, are as fast from scratch.
             return closest_points(a, placement_a, b, placement_b);
         }
-        if let Some(closest) = lean::run(a, placement_a, b, placement_b, SameFeature { memory: self }) {
-            return closest;
-        }
+        let still = lean::run(a, placement_a, b, placement_b, SameFeature { memory: self });
+        still.unwrap_or_else(|| self.closest_points_anew(a, placement_a, b, placement_b))
+    }
+
+    /// The same of objects that are not rounded, when [`still_closest`](Memory::still_closest) was asked already, and said nothing.
+    pub fn closest_points_anew<A, B>(
+        &mut self,
+        a: &A,
+        placement_a: &DAffine3,
+        b: &B,
+        placement_b: &DAffine3,
+    ) -> Closest
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
         if let Some(simplex) = self.tetrahedron(&Difference::new(a, placement_a, b, placement_b)) {
             return Closest { distance: 0.0, points: Witness::of(&simplex) };
         }
@@ -251,6 +264,18 @@ impl Memory {
         let Measured { closest, v, points, len } = found.expect("every distance is finite");
         self.keep(closest.distance > 0.0, v, &points[..len]);
         closest
+    }
+
+    /// What [`closest_points`](Memory::closest_points) says of two polytopes, to the bit, where the points lie on the same features as
+    /// before. Of placements and of no answer, see [`quickly_closest`](super::quickly_closest).
+    pub fn still_closest(
+        &self,
+        a: &Polytope,
+        placement_a: &DAffine3,
+        b: &Polytope,
+        placement_b: &DAffine3,
+    ) -> Option<ClosestInWorld> {
+        lean::run_in_world(a, placement_a, b, placement_b, SameFeature { memory: self })
     }
 
     /// The tetrahedron of the four kept pairs, when it still contains the origin: then no axis separates the objects.

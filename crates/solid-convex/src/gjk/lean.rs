@@ -13,8 +13,9 @@ use glam::{DAffine3, DVec3};
 use super::Witness;
 use super::coherent::Pair;
 use super::descent::Goal;
+use super::distance::{Closest, ClosestInWorld};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
-use crate::polytope_difference::{PolytopeDifference, Scanned};
+use crate::polytope_difference::{PolytopeDifference, Scanned, in_world, is_plain};
 use crate::simd::{self, Level, dispatch};
 use crate::simplex::{Simplex, VOLUME_ERROR, Within, sides_of_origin, within_edge, within_face};
 use crate::{Polytope, Support};
@@ -151,30 +152,59 @@ pub(super) fn closest_point(points: &[SupportPoint]) -> Option<(DVec3, Witness)>
 
 /// The closest point of a hull: `v / divisor`, on the newest point and those older ones whose bits are set.
 #[derive(Clone, Copy)]
-struct Closest {
+struct Nearest {
     v: DVec3,
     divisor: f64,
     older: u8,
 }
 
-impl Closest {
+impl Nearest {
     /// The same, where the older point is the second of two.
     #[inline(always)]
-    fn of_second(self) -> Closest {
-        Closest { older: self.older << 1, ..self }
+    fn of_second(self) -> Nearest {
+        Nearest { older: self.older << 1, ..self }
     }
 
     /// The nearer one to the origin of two.
     #[inline(always)]
-    fn or_nearer(self, other: Closest) -> Closest {
+    fn or_nearer(self, other: Nearest) -> Nearest {
         if other.is_nearer_than(&self) { other } else { self }
     }
 
     /// Whether it is nearer to the origin than another.
     #[inline(always)]
-    fn is_nearer_than(&self, other: &Closest) -> bool {
-        let (mine, its) = (self.divisor * self.divisor, other.divisor * other.divisor);
-        self.v.length_squared() * its < other.v.length_squared() * mine
+    fn is_nearer_than(&self, other: &Nearest) -> bool {
+        let (mine, its) = (self.square(), other.square());
+        mine.dividend * its.divisor < its.dividend * mine.divisor
+    }
+
+    /// Its distance to the origin, squared.
+    #[inline(always)]
+    fn square(&self) -> Square {
+        Square { dividend: self.v.length_squared(), divisor: self.divisor * self.divisor }
+    }
+}
+
+/// A squared length as a quotient, for which no division is waited.
+#[derive(Clone, Copy)]
+struct Square {
+    dividend: f64,
+    divisor: f64,
+}
+
+impl Square {
+    const INFINITE: Square = Square { dividend: f64::INFINITY, divisor: 1.0 };
+
+    /// Whether it is more than rounding makes of nothing.
+    #[inline(always)]
+    fn is_sure(self) -> bool {
+        self.dividend > SUPPORT_ERROR * SUPPORT_ERROR * self.divisor
+    }
+
+    /// Whether a step made it so much smaller that it is progress.
+    #[inline(always)]
+    fn is_progress_from(self, before: Square) -> bool {
+        self.dividend * before.divisor < before.dividend * self.divisor * (1.0 - PROGRESS_MIN)
     }
 }
 
@@ -229,6 +259,27 @@ fn run_in_kernel<S: Simd, T: Task>(
     }
 }
 
+/// Runs a search for closest points on two polytopes, of whose placements nothing was asked, and places what it finds; `None` where a
+/// placement is not plain, or nothing is found.
+#[inline]
+pub(super) fn run_in_world<T: Task<Found = Option<Closest>>>(
+    a: &Polytope,
+    placement_a: &DAffine3,
+    b: &Polytope,
+    placement_b: &DAffine3,
+    task: T,
+) -> Option<ClosestInWorld> {
+    dispatch!(simd::level(), simd => {
+        if !(is_plain(simd, placement_a) & is_plain(simd, placement_b)) {
+            return None;
+        }
+        let Closest { distance, points } = run_in_kernel(simd, (a, placement_a), (b, placement_b), task)?;
+        let point_on_a = in_world(simd, placement_a, points.on_a);
+        let point_on_b = in_world(simd, placement_b, points.on_b);
+        Some(ClosestInWorld { distance, point_on_a, point_on_b })
+    })
+}
+
 /// Runs a task on a difference.
 #[inline]
 pub(super) fn run_on<A, B, T>(level: Level, difference: &Difference<A, B>, task: T) -> T::Found
@@ -272,7 +323,7 @@ impl Search<'_> {
     pub fn descend(self, lean: &mut Lean, difference: &impl MinkowskiDifference) {
         let mut v;
         let mut divisor = 1.0;
-        let mut before = f64::INFINITY;
+        let mut before = Square::INFINITE;
         if self.warm.is_empty() {
             v = difference.initial_direction();
         } else {
@@ -282,8 +333,8 @@ impl Search<'_> {
             lean.len = self.warm.len().min(3);
             let closest = closest_of_any(&mut lean.points, &mut lean.len);
             (v, divisor) = (closest.v, closest.divisor);
-            before = v.length_squared() / (divisor * divisor);
-            if !(divisor >= DIVISOR_MIN && before > SUPPORT_ERROR * SUPPORT_ERROR) {
+            before = closest.square();
+            if !(divisor >= DIVISOR_MIN && before.is_sure()) {
                 return;
             }
         }
@@ -299,7 +350,7 @@ impl Search<'_> {
             }
             let [x, y, z, _] = lean.points;
             let closest = match lean.len {
-                0 => Closest { v: p.w, divisor: 1.0, older: 0 },
+                0 => Nearest { v: p.w, divisor: 1.0, older: 0 },
                 1 => edge(x.w, p.w),
                 2 => face(x.w, y.w, p.w),
                 _ => match tetrahedron(x.w, y.w, z.w, p.w) {
@@ -314,9 +365,9 @@ impl Search<'_> {
             lean.keep(closest.older);
             (lean.points[lean.len & 3], lean.len) = (p, (lean.len & 3) + 1);
             (v, divisor) = (closest.v, closest.divisor);
-            let square = v.length_squared() / (divisor * divisor);
-            let progress = square < before * (1.0 - PROGRESS_MIN);
-            if !(progress && divisor >= DIVISOR_MIN && square > SUPPORT_ERROR * SUPPORT_ERROR) {
+            let square = closest.square();
+            // All of it at once, for a single branch.
+            if !(square.is_progress_from(before) & (divisor >= DIVISOR_MIN) & square.is_sure()) {
                 return;
             }
             before = square;
@@ -365,19 +416,19 @@ impl Search<'_> {
 
 /// Of the edge from an older point to the newest, which is needed in any case (Theorem 4.8).
 #[inline(always)]
-fn edge(p: DVec3, newest: DVec3) -> Closest {
+fn edge(p: DVec3, newest: DVec3) -> Nearest {
     let d = newest - p;
     let along = newest.dot(d);
     if along <= 0.0 {
-        return Closest { v: newest, divisor: 1.0, older: 0 };
+        return Nearest { v: newest, divisor: 1.0, older: 0 };
     }
     let square = d.length_squared();
-    Closest { v: newest * square - d * along, divisor: square, older: 1 }
+    Nearest { v: newest * square - d * along, divisor: square, older: 1 }
 }
 
 /// Of the face of two older points and the newest.
 #[inline(always)]
-fn face(p: DVec3, q: DVec3, newest: DVec3) -> Closest {
+fn face(p: DVec3, q: DVec3, newest: DVec3) -> Nearest {
     let (to_p, to_q) = (p - newest, q - newest);
     let n = to_p.cross(to_q);
     let square = n.length_squared();
@@ -385,7 +436,7 @@ fn face(p: DVec3, q: DVec3, newest: DVec3) -> Closest {
     let across = newest.cross(n);
     let (x, y) = (to_q.dot(across), -to_p.dot(across));
     if x > 0.0 && y > 0.0 && x + y < square {
-        return Closest { v: n * n.dot(newest), divisor: square, older: 3 };
+        return Nearest { v: n * n.dot(newest), divisor: square, older: 3 };
     }
     let with_p = || edge(p, newest);
     let with_q = || edge(q, newest).of_second();
@@ -401,33 +452,33 @@ fn face(p: DVec3, q: DVec3, newest: DVec3) -> Closest {
 
 /// Of the tetrahedron of three older points and the newest; `None` when it certainly contains the origin.
 #[inline(always)]
-fn tetrahedron(p: DVec3, q: DVec3, r: DVec3, newest: DVec3) -> Option<Closest> {
+fn tetrahedron(p: DVec3, q: DVec3, r: DVec3, newest: DVec3) -> Option<Nearest> {
     let (sides, least) = sides_of_origin([p, q, r, newest]);
     let [pq, qr, rp, old] = sides.map(|side| side > 0.0);
     if pq && qr && rp {
         // Of what is too flat to tell, nothing: no divisor is that small.
-        let unknown = Closest { v: newest, divisor: 0.0, older: 7 };
+        let unknown = Nearest { v: newest, divisor: 0.0, older: 7 };
         return if old && least > VOLUME_ERROR { None } else { Some(unknown) };
     }
     // On a face with the newest point that has the origin outside.
-    let mut closest = Closest { v: DVec3::INFINITY, divisor: 1.0, older: 0 };
+    let mut closest = Nearest { v: DVec3::INFINITY, divisor: 1.0, older: 0 };
     if !pq {
         closest = face(p, q, newest);
     }
     if !qr {
         let found = face(q, r, newest);
-        closest = closest.or_nearer(Closest { older: found.older << 1, ..found });
+        closest = closest.or_nearer(Nearest { older: found.older << 1, ..found });
     }
     if !rp {
         let found = face(p, r, newest);
-        closest = closest.or_nearer(Closest { older: found.older & 1 | (found.older & 2) << 1, ..found });
+        closest = closest.or_nearer(Nearest { older: found.older & 1 | (found.older & 2) << 1, ..found });
     }
     Some(closest)
 }
 
 /// The closest point of the hull of up to three points in any order, of which those that it does not need are dropped.
 #[inline(always)]
-fn closest_of_any(points: &mut [SupportPoint; 4], len: &mut usize) -> Closest {
+fn closest_of_any(points: &mut [SupportPoint; 4], len: &mut usize) -> Nearest {
     let [p, q, r, _] = *points;
     if *len == 3 {
         let closest = face(p.w, q.w, r.w);

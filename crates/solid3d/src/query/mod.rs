@@ -24,7 +24,7 @@ use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
 use solid_convex::Closest;
-use solid_convex::gjk::Glance;
+use solid_convex::gjk::{self, ClosestInWorld, Glance};
 use solid_convex::simd::{dispatch, level};
 
 use crate::bounds::Aabb;
@@ -185,6 +185,22 @@ pub fn separating_axis(
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<Distance> {
+    if let (Some(on_a), Some(on_b)) = (a.polytope(), b.polytope())
+        && let Some(found) = gjk::quickly_closest(on_a, placement_a, on_b, placement_b)
+    {
+        return Ok(found.into());
+    }
+    distance_at_length(a, placement_a, b, placement_b)
+}
+
+/// What [`distance`] says, where nothing was said yet.
+#[inline(never)]
+fn distance_at_length(
+    a: &Shape,
+    placement_a: &DAffine3,
+    b: &Shape,
+    placement_b: &DAffine3,
+) -> Result<Distance> {
     let unchecked = |shape, placement| Placed { shape, placement };
     let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
     if let Some(closest) = pair::quickly_closest(on_a, on_b) {
@@ -194,6 +210,13 @@ pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAff
     let closest = pair::convex_closest_within(a, b, f64::INFINITY).flatten();
     let closest = closest.unwrap_or_else(|| Scratch::with(|scratch| pair::closest(a, b, scratch)));
     Ok(Distance::new(a, b, &closest))
+}
+
+impl From<ClosestInWorld> for Distance {
+    fn from(found: ClosestInWorld) -> Distance {
+        let ClosestInWorld { distance, point_on_a, point_on_b } = found;
+        Distance { distance, point_on_a, point_on_b }
+    }
 }
 
 impl Distance {
