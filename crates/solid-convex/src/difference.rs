@@ -171,7 +171,14 @@ impl<A: Support + ?Sized, B: Support + ?Sized> MinkowskiDifference for Differenc
 /// The first direction of a search, by the way from the middle of `B` to that of `A`.
 #[inline(always)]
 pub(crate) fn start_along(way: DVec3) -> DVec3 {
-    if way.abs().max_element() > SUPPORT_ERROR { way } else { DVec3::X }
+    // A branch: the first step does not wait for what hardly any search begins with.
+    if way.abs().max_element() > SUPPORT_ERROR { way } else { along_x() }
+}
+
+#[cold]
+#[inline(never)]
+fn along_x() -> DVec3 {
+    DVec3::X
 }
 
 /// The largest coordinate of the image of a box of half extents `reach`.

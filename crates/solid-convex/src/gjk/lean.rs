@@ -46,6 +46,7 @@ pub(super) enum Sure {
 }
 
 /// Where a lean descent ended. Space: the difference's own.
+#[repr(align(32))]
 pub(super) struct Lean {
     pub sure: Sure,
     /// The axis, or a vector along the shortest way from the origin to the hull; of any length.

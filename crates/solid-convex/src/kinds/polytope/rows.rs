@@ -9,8 +9,10 @@ const LANES: usize = 4;
 /// Rows whose products all stay in registers.
 const FEW: usize = 6;
 
-/// The coordinates of four points: their x, their y, their z.
-type Row = [[f64; LANES]; 3];
+/// The coordinates of four points: their x, their y, their z. Aligned, so that no vector lies in two lines of the cache.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+struct Row([[f64; LANES]; 3]);
 
 /// Points with their coordinates in rows. Invariant: there are an even number of rows, and at least [`FEW`]; they are filled up with the
 /// last point.
@@ -26,7 +28,7 @@ impl Rows {
     pub fn new(points: &[DVec3]) -> Option<Rows> {
         let last = *points.last()?;
         let lane = |i: usize| *points.get(i).unwrap_or(&last);
-        let row = |first: usize| [0, 1, 2].map(|axis| std::array::from_fn(|i| lane(first + i)[axis]));
+        let row = |first: usize| Row([0, 1, 2].map(|axis| std::array::from_fn(|i| lane(first + i)[axis])));
         let count = points.len().div_ceil(LANES).max(2);
         let filled = count.max(FEW).next_multiple_of(2);
         Some(Rows { rows: (0..filled).map(|k| row(k * LANES)).collect(), count })
@@ -122,7 +124,7 @@ impl Rows {
         let (x, y, z) = (column(linear.x_axis), column(linear.y_axis), column(linear.z_axis));
         let mut least = [f64x4::splat(simd, f64::INFINITY); 3];
         let mut greatest = [f64x4::splat(simd, f64::NEG_INFINITY); 3];
-        for [xs, ys, zs] in &self.rows[..self.count] {
+        for Row([xs, ys, zs]) in &self.rows[..self.count] {
             let xs = f64x4::simd_from(simd, *xs);
             let ys = f64x4::simd_from(simd, *ys);
             let zs = f64x4::simd_from(simd, *zs);
@@ -174,7 +176,7 @@ fn products<S: Simd>(simd: S, direction: DVec3) -> impl Fn(&Row) -> f64x4<S> {
     let (x, y, z) =
         (f64x4::splat(simd, direction.x), f64x4::splat(simd, direction.y), f64x4::splat(simd, direction.z));
     #[inline(always)]
-    move |[xs, ys, zs]: &Row| {
+    move |Row([xs, ys, zs]): &Row| {
         f64x4::simd_from(simd, *xs) * x + f64x4::simd_from(simd, *ys) * y + f64x4::simd_from(simd, *zs) * z
     }
 }
