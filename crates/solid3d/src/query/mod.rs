@@ -185,28 +185,23 @@ pub fn separating_axis(
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<Distance> {
-    if let (Some(on_a), Some(on_b)) = (a.polytope(), b.polytope())
-        && let Some(found) = gjk::quickly_closest(on_a, placement_a, on_b, placement_b)
-    {
-        return Ok(found.into());
-    }
-    distance_at_length(a, placement_a, b, placement_b)
-}
-
-/// What [`distance`] says, where nothing was said yet.
-#[inline(never)]
-fn distance_at_length(
-    a: &Shape,
-    placement_a: &DAffine3,
-    b: &Shape,
-    placement_b: &DAffine3,
-) -> Result<Distance> {
     let unchecked = |shape, placement| Placed { shape, placement };
     let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
     if let Some(closest) = pair::quickly_closest(on_a, on_b) {
         return Ok(Distance::new(on_a, on_b, &closest));
     }
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    if let (Some(on_a), Some(on_b)) = (a.polytope(), b.polytope())
+        && let Some(found) = gjk::quickly_closest(on_a, placement_a, on_b, placement_b)
+    {
+        return Ok(found.into());
+    }
+    distance_at_length(on_a, on_b)
+}
+
+/// What [`distance`] says, where nothing was said yet.
+#[inline(never)]
+fn distance_at_length(a: Placed, b: Placed) -> Result<Distance> {
+    let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
     let closest = pair::convex_closest_within(a, b, f64::INFINITY).flatten();
     let closest = closest.unwrap_or_else(|| Scratch::with(|scratch| pair::closest(a, b, scratch)));
     Ok(Distance::new(a, b, &closest))
