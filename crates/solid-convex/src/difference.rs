@@ -22,6 +22,22 @@ impl SupportPoint {
     }
 }
 
+/// What a search asks of `A - B`. To be inlined, all of it.
+pub(crate) trait MinkowskiDifference {
+    /// A support point in the direction `-v`: where `v` points from `B` to `A`, the point that is least along `v`.
+    /// Theorem 4.7 for each of the two objects.
+    fn support_against(&self, v: DVec3) -> SupportPoint;
+
+    /// The point of the difference that a point of each object makes.
+    fn point(&self, a: DVec3, b: DVec3) -> SupportPoint;
+
+    /// Where to start: from the middle of `B` to that of `A`, and along x when they coincide.
+    fn initial_direction(&self) -> DVec3;
+
+    /// World lengths times this are lengths of the difference; a power of two.
+    fn scale(&self) -> f64;
+}
+
 /// `A - B` for two placed objects. (The thesis writes "Minkowski sum of A and -B", section 4.2.)
 ///
 /// Space: along the world's axes, in a unit of length that is the power of two just above half the size of the data,
@@ -101,8 +117,8 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
     /// Where to start: from the middle of `B` to that of `A`, and along x when they coincide.
     #[inline]
     pub fn initial_direction(&self) -> DVec3 {
-        let v = self.linear_a * self.a.center() - (self.linear_b * self.b.center() + self.offset);
-        if v.abs().max_element() > SUPPORT_ERROR { v } else { DVec3::X }
+        let [a, b] = self.centers();
+        start_along(self.point(a, b).w)
     }
 
     /// Of two parallelepipeds: the half edges of both, those of `A` first, in their local spaces and in that of the difference; and its middle.
@@ -128,6 +144,41 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
     pub fn scale(&self) -> f64 {
         self.scale
     }
+}
+
+impl<A: Support + ?Sized, B: Support + ?Sized> MinkowskiDifference for Difference<'_, A, B> {
+    #[inline(always)]
+    fn support_against(&self, v: DVec3) -> SupportPoint {
+        self.support_against(v)
+    }
+
+    #[inline(always)]
+    fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
+        self.point(a, b)
+    }
+
+    #[inline(always)]
+    fn initial_direction(&self) -> DVec3 {
+        self.initial_direction()
+    }
+
+    #[inline(always)]
+    fn scale(&self) -> f64 {
+        self.scale
+    }
+}
+
+/// The first direction of a search, by the way from the middle of `B` to that of `A`.
+#[inline(always)]
+pub(crate) fn start_along(way: DVec3) -> DVec3 {
+    // A branch: the first step does not wait for what hardly any search begins with.
+    if way.abs().max_element() > SUPPORT_ERROR { way } else { along_x() }
+}
+
+#[cold]
+#[inline(never)]
+fn along_x() -> DVec3 {
+    DVec3::X
 }
 
 /// The largest coordinate of the image of a box of half extents `reach`.

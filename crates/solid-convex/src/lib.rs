@@ -25,6 +25,7 @@ mod difference;
 pub mod epa;
 pub mod gjk;
 mod kinds;
+mod polytope_difference;
 mod rounded;
 pub mod simd;
 #[doc(hidden)]

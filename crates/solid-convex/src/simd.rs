@@ -92,7 +92,7 @@ pub fn run_part<S: fearless_simd::Simd, R>(_: S, part: impl FnOnce() -> R) -> R 
 
 /// Whether a kernel is the copy that runs without vectors.
 #[inline(always)]
-fn is_scalar<S: fearless_simd::Simd>() -> bool {
+pub(crate) fn is_scalar<S: fearless_simd::Simd>() -> bool {
     TypeId::of::<S>() == TypeId::of::<Fallback>()
 }
 

@@ -10,7 +10,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::Witness;
-use super::descent::{End, Goal, descend, descend_robustly};
+use super::descent::{End, Goal, descend};
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR};
 
@@ -36,10 +36,6 @@ pub const CAST_ERROR: f64 = 1e-10;
 /// The relative error of the distance at each step: the axis need only be nearly normal to the surface, and a step leaves
 /// about this part of the way. Between 0.1 and 1e-4 the cost hardly changes.
 const STEP_TOLERANCE: f64 = 1e-2;
-
-/// The axis through the closest points is good enough along which the gap is this part of their distance: each step then leaves no more
-/// than the rest of the way. Next to a round object, or on slivers, it may be one along which there is hardly a gap.
-const GAP_SHARE: f64 = 0.5;
 
 /// A gap, relative to the size of the data, within which objects meet: four times what a support point may be off.
 const CONTACT_GAP: f64 = 4.0 * SUPPORT_ERROR;
@@ -120,18 +116,10 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let clear = |v: DVec3| {
-        let v = v.normalize_or_zero();
-        let gap = v.dot(difference.support_against(v).w) - SUPPORT_ERROR * v.abs().element_sum();
-        (gap > CONTACT_GAP).then_some((v, gap))
-    };
-    let goal = Goal::Distance { tolerance: STEP_TOLERANCE };
-    let nearest = descend(difference, goal);
+    let nearest = descend(difference, Goal::Distance { tolerance: STEP_TOLERANCE });
     let (on_a, on_b) = nearest.simplex.witness();
-    let along = |v| clear(v).filter(|&(_, gap)| gap >= GAP_SHARE * nearest.v.length());
-    let clip = match nearest.end {
-        End::Inside => None,
-        _ => along(nearest.v).or_else(|| clear(descend_robustly(difference, goal).axis)),
-    };
+    let v = nearest.axis.normalize_or_zero();
+    let gap = v.dot(difference.support_against(v).w) - SUPPORT_ERROR * v.abs().element_sum();
+    let clip = (nearest.end != End::Inside && gap > CONTACT_GAP).then_some((v, gap));
     (clip, Witness { on_a, on_b })
 }

@@ -7,10 +7,10 @@ use super::descent::{End, Goal, descend_robustly};
 use super::distance::{Measure, Measured, measure};
 use super::intersection::CACHED_GAP_MIN;
 use super::lean::{self, Lean, Search, Sure, Task};
-use super::{Closest, DISTANCE_TOLERANCE, Witness, closest_points};
-use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
+use super::{Closest, ClosestInWorld, DISTANCE_TOLERANCE, Witness, closest_points};
+use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
-use crate::{Support, epa};
+use crate::{Polytope, Support, epa};
 
 /// Two convex objects about which the same is asked frame after frame, as they move a little: what was found last is tried
 /// first (thesis, section 4.4.3, and for objects that intersect likewise).
@@ -240,9 +240,22 @@ impl Memory {
             // The cores, which are not what is kept, are as fast from scratch.
             return closest_points(a, placement_a, b, placement_b);
         }
-        if let Some(closest) = lean::run(a, placement_a, b, placement_b, SameFeature { memory: self }) {
-            return closest;
-        }
+        let still = lean::run(a, placement_a, b, placement_b, SameFeature { memory: self });
+        still.unwrap_or_else(|| self.closest_points_anew(a, placement_a, b, placement_b))
+    }
+
+    /// The same of objects that are not rounded, when [`still_closest`](Memory::still_closest) was asked already, and said nothing.
+    pub fn closest_points_anew<A, B>(
+        &mut self,
+        a: &A,
+        placement_a: &DAffine3,
+        b: &B,
+        placement_b: &DAffine3,
+    ) -> Closest
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
         if let Some(simplex) = self.tetrahedron(&Difference::new(a, placement_a, b, placement_b)) {
             return Closest { distance: 0.0, points: Witness::of(&simplex) };
         }
@@ -251,6 +264,18 @@ impl Memory {
         let Measured { closest, v, points, len } = found.expect("every distance is finite");
         self.keep(closest.distance > 0.0, v, &points[..len]);
         closest
+    }
+
+    /// What [`closest_points`](Memory::closest_points) says of two polytopes, to the bit, where the points lie on the same features as
+    /// before. Of placements and of no answer, see [`quickly_closest`](super::quickly_closest).
+    pub fn still_closest(
+        &self,
+        a: &Polytope,
+        placement_a: &DAffine3,
+        b: &Polytope,
+        placement_b: &DAffine3,
+    ) -> Option<ClosestInWorld> {
+        lean::run_in_world(a, placement_a, b, placement_b, SameFeature { memory: self })
     }
 
     /// The tetrahedron of the four kept pairs, when it still contains the origin: then no axis separates the objects.
@@ -295,15 +320,7 @@ impl Task for SameFeature<'_> {
     type Found = Option<Closest>;
 
     #[inline(always)]
-    fn run<A, B>(
-        self,
-        difference: &Difference<A, B>,
-        against: impl Fn(DVec3) -> SupportPoint,
-    ) -> Option<Closest>
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> Option<Closest> {
         let Memory { ref pairs, len, .. } = *self.memory;
         if len == 0 {
             return None;
@@ -325,7 +342,7 @@ impl Task for SameFeature<'_> {
         }
         let (v, witness) = lean::closest_point(&points[..len])?;
         // One support point shows that nothing is nearer.
-        let (length, vw) = (v.length(), v.dot(against(v).w));
+        let (length, vw) = (v.length(), v.dot(difference.support_against(v).w));
         let goal = Goal::Distance { tolerance: DISTANCE_TOLERANCE };
         let sure =
             vw > SUPPORT_ERROR * v.abs().element_sum() && goal.is_within_tolerance(length, vw / length);
@@ -355,14 +372,10 @@ impl Task for Again<'_> {
     type Found = Found;
 
     #[inline(always)]
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Found
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> Found {
         let Memory { axis, ref pairs, len, .. } = *self.memory;
         if axis != DVec3::ZERO {
-            let (gap, clear) = gap(axis, against(axis).w);
+            let (gap, clear) = gap(axis, difference.support_against(axis).w);
             if clear {
                 return Found::Separated { gap: gap / difference.scale() };
             }
@@ -395,16 +408,11 @@ impl Task for Again<'_> {
         // First from where the last search ended, then from nothing.
         for warm in [warm, &[]] {
             let search = Search { goal: Goal::Separation, warm };
-            #[expect(clippy::redundant_closure, reason = "a closure is inlined, a reference to one is not")]
-            let lean = search.run(
-                difference,
-                #[inline(always)]
-                |v| against(v),
-            );
+            let lean = search.run(difference);
             match lean.sure {
                 Sure::Separated => {
                     let axis = lean.v.normalize_or_zero();
-                    let (gap, clear) = gap(axis, against(axis).w);
+                    let (gap, clear) = gap(axis, difference.support_against(axis).w);
                     // Of a small gap a search from nothing has the word.
                     if clear || warm.is_empty() {
                         return Found::Anew { lean, gap: gap / difference.scale() };

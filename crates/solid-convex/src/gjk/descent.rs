@@ -43,8 +43,8 @@ pub(crate) struct Descent {
     pub end: End,
     /// The point of the simplex closest to the origin, or the separating axis.
     pub v: DVec3,
-    /// Of those looked along, the axis along which the objects are known to be the furthest apart; `v`, where none was kept. It may be a
-    /// better one than `v`: on round objects, what is next to the closest point is not yet next to the normal there.
+    /// Along which the objects are known to be the furthest apart, if they are. It may be far better than `v`: next to what is round, the
+    /// normal of a thin simplex may not even separate.
     pub axis: DVec3,
     /// The simplex; may be empty when the search for an axis ends with the first.
     pub simplex: Simplex,
@@ -94,7 +94,7 @@ fn finished(lean: &Lean, goal: Goal) -> Option<Descent> {
             _ => return None,
         },
     };
-    Some(Descent { end, v, axis: v, simplex, beyond: lean.sure == Sure::Beyond })
+    Some(Descent { end, v, axis: lean.v, simplex, beyond: lean.sure == Sure::Beyond })
 }
 
 /// Runs the robust descent. `v` starts along the initial direction; the objects' own support points take over from there.

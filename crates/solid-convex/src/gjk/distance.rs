@@ -6,9 +6,9 @@ use super::Witness;
 use super::coherent::Pair;
 use super::descent::{Descent, End, Goal, descend_robustly};
 use super::lean::{self, Lean, Search, Sure, Task};
-use crate::Support;
-use crate::difference::{Difference, SupportPoint};
+use crate::difference::{Difference, MinkowskiDifference, SupportPoint};
 use crate::rounded::Core;
+use crate::{Polytope, Support};
 
 /// The closest points of two placed convex objects.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,17 +131,9 @@ impl Task for Measure<'_> {
     type Found = (Answer, Lean);
 
     #[inline(always)]
-    fn run<A, B>(
-        self,
-        difference: &Difference<A, B>,
-        against: impl Fn(DVec3) -> SupportPoint,
-    ) -> (Answer, Lean)
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> (Answer, Lean) {
         let goal = self.goal(difference.scale());
-        let lean = Search { goal, warm: self.warm }.run(difference, against);
+        let lean = Search { goal, warm: self.warm }.run(difference);
         (Answer::of(&lean, goal, difference.scale()), lean)
     }
 }
@@ -155,15 +147,60 @@ impl Task for MeasureAnew {
     type Found = Answer;
 
     #[inline(always)]
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Answer
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> Answer {
         let goal = Measure { bound: self.bound, warm: &[] }.goal(difference.scale());
         let mut lean = Lean::default();
-        Search { goal, warm: &[] }.descend(&mut lean, difference, against);
+        Search { goal, warm: &[] }.descend(&mut lean, difference);
         Answer::of(&lean, goal, difference.scale())
+    }
+}
+
+/// The closest points of two placed polytopes, each in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosestInWorld {
+    /// Their distance; 0 when the polytopes intersect or touch. World units.
+    pub distance: f64,
+    /// That of the first. Space: world.
+    pub point_on_a: DVec3,
+    /// That of the second. Space: world.
+    pub point_on_b: DVec3,
+}
+
+/// What [`closest_points`] says of two polytopes, to the bit, where a search without care is enough. Nothing is asked of the placements: of an
+/// answer they are finite, far from singular and of plain size. `None` says nothing.
+///
+/// ```
+/// use solid_convex::{Polytope, gjk};
+/// use glam::{DAffine3, DVec3};
+/// let corners = (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)));
+/// let block = Polytope::new(corners.collect()).unwrap();
+/// let right = DAffine3::from_translation(DVec3::new(3.0, 0.5, 0.5));
+/// let found = gjk::quickly_closest(&block, &DAffine3::IDENTITY, &block, &right).unwrap();
+/// assert_eq!((found.distance, found.point_on_a.x, found.point_on_b.x), (2.0, 1.0, 3.0));
+/// let wild = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
+/// assert_eq!(gjk::quickly_closest(&block, &wild, &block, &right), None);
+/// ```
+pub fn quickly_closest(
+    a: &Polytope,
+    placement_a: &DAffine3,
+    b: &Polytope,
+    placement_b: &DAffine3,
+) -> Option<ClosestInWorld> {
+    lean::run_in_world(a, placement_a, b, placement_b, MeasureSurely)
+}
+
+/// From nothing, and nothing where that is not sure.
+struct MeasureSurely;
+
+impl Task for MeasureSurely {
+    type Found = Option<Closest>;
+
+    #[inline(always)]
+    fn run(self, difference: &impl MinkowskiDifference) -> Option<Closest> {
+        match (MeasureAnew { bound: f64::INFINITY }).run(difference) {
+            Answer::Closest(closest, _) => Some(closest),
+            Answer::Beyond | Answer::Unknown => None,
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use super::balls;
 use super::descent::{End, Goal, descend_robustly};
 use super::lean::{self, Lean, Search, Sure, Task};
 use crate::Support;
-use crate::difference::{Difference, SupportPoint};
+use crate::difference::{Difference, MinkowskiDifference};
 use crate::simplex::Simplex;
 
 /// Whether two placed convex objects intersect, with the evidence.
@@ -106,13 +106,9 @@ impl Task for Verdict {
     type Found = Sure;
 
     #[inline(always)]
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Sure
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> Sure {
         let mut lean = Lean::default();
-        SEARCH.descend(&mut lean, difference, against);
+        SEARCH.descend(&mut lean, difference);
         lean.sure
     }
 }
@@ -204,12 +200,8 @@ impl Task for Separates {
     type Found = bool;
 
     #[inline(always)]
-    fn run<A, B>(self, _: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> bool
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
-        clearly_separates(self.axis, against(self.axis).w)
+    fn run(self, difference: &impl MinkowskiDifference) -> bool {
+        clearly_separates(self.axis, difference.support_against(self.axis).w)
     }
 }
 

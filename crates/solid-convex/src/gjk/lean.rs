@@ -7,12 +7,15 @@
 //!
 //! It is compiled into one piece with the support mappings of polytopes, once for each level of instructions.
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 
 use super::Witness;
 use super::coherent::Pair;
 use super::descent::Goal;
-use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
+use super::distance::{Closest, ClosestInWorld};
+use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
+use crate::polytope_difference::{PolytopeDifference, Scanned, in_world, is_plain};
 use crate::simd::{self, Level, dispatch};
 use crate::simplex::{Simplex, VOLUME_ERROR, Within, sides_of_origin, within_edge, within_face};
 use crate::{Polytope, Support};
@@ -43,6 +46,7 @@ pub(super) enum Sure {
 }
 
 /// Where a lean descent ended. Space: the difference's own.
+#[repr(align(32))]
 pub(super) struct Lean {
     pub sure: Sure,
     /// The axis, or a vector along the shortest way from the origin to the hull; of any length.
@@ -149,30 +153,59 @@ pub(super) fn closest_point(points: &[SupportPoint]) -> Option<(DVec3, Witness)>
 
 /// The closest point of a hull: `v / divisor`, on the newest point and those older ones whose bits are set.
 #[derive(Clone, Copy)]
-struct Closest {
+struct Nearest {
     v: DVec3,
     divisor: f64,
     older: u8,
 }
 
-impl Closest {
+impl Nearest {
     /// The same, where the older point is the second of two.
     #[inline(always)]
-    fn of_second(self) -> Closest {
-        Closest { older: self.older << 1, ..self }
+    fn of_second(self) -> Nearest {
+        Nearest { older: self.older << 1, ..self }
     }
 
     /// The nearer one to the origin of two.
     #[inline(always)]
-    fn or_nearer(self, other: Closest) -> Closest {
+    fn or_nearer(self, other: Nearest) -> Nearest {
         if other.is_nearer_than(&self) { other } else { self }
     }
 
     /// Whether it is nearer to the origin than another.
     #[inline(always)]
-    fn is_nearer_than(&self, other: &Closest) -> bool {
-        let (mine, its) = (self.divisor * self.divisor, other.divisor * other.divisor);
-        self.v.length_squared() * its < other.v.length_squared() * mine
+    fn is_nearer_than(&self, other: &Nearest) -> bool {
+        let (mine, its) = (self.square(), other.square());
+        mine.dividend * its.divisor < its.dividend * mine.divisor
+    }
+
+    /// Its distance to the origin, squared.
+    #[inline(always)]
+    fn square(&self) -> Square {
+        Square { dividend: self.v.length_squared(), divisor: self.divisor * self.divisor }
+    }
+}
+
+/// A squared length as a quotient, for which no division is waited.
+#[derive(Clone, Copy)]
+struct Square {
+    dividend: f64,
+    divisor: f64,
+}
+
+impl Square {
+    const INFINITE: Square = Square { dividend: f64::INFINITY, divisor: 1.0 };
+
+    /// Whether it is more than rounding makes of nothing.
+    #[inline(always)]
+    fn is_sure(self) -> bool {
+        self.dividend > SUPPORT_ERROR * SUPPORT_ERROR * self.divisor
+    }
+
+    /// Whether a step made it so much smaller that it is progress.
+    #[inline(always)]
+    fn is_progress_from(self, before: Square) -> bool {
+        self.dividend * before.divisor < before.dividend * self.divisor * (1.0 - PROGRESS_MIN)
     }
 }
 
@@ -181,11 +214,8 @@ pub(super) trait Task {
     /// What is found.
     type Found;
 
-    /// Finds it: `against` gives the support points, as [`Difference::support_against`]. To be inlined.
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Self::Found
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized;
+    /// Finds it. To be inlined.
+    fn run(self, difference: &impl MinkowskiDifference) -> Self::Found;
 }
 
 /// Runs a task on two placed objects: on polytopes in one piece, compiled for the level of instructions.
@@ -200,7 +230,7 @@ where
         (Some(a), Some(b)) => run_on_polytopes(a, placement_a, b, placement_b, task),
         _ => {
             let difference = Difference::new(a, placement_a, b, placement_b);
-            task.run(&difference, |v| difference.support_against(v))
+            task.run(&difference)
         }
     }
 }
@@ -212,13 +242,42 @@ fn run_on_polytopes<T: Task>(
     placement_b: &DAffine3,
     task: T,
 ) -> T::Found {
-    dispatch!(simd::level(), simd => {
+    dispatch!(simd::level(), simd => run_in_kernel(simd, (a, placement_a), (b, placement_b), task))
+}
+
+#[inline(always)]
+fn run_in_kernel<S: Simd, T: Task>(
+    simd: S,
+    (a, placement_a): (&Polytope, &DAffine3),
+    (b, placement_b): (&Polytope, &DAffine3),
+    task: T,
+) -> T::Found {
+    if simd::is_scalar::<S>() {
         let difference = Difference::new(a, placement_a, b, placement_b);
-        task.run(&difference, #[inline(always)] |v| difference.point_against(
-            v,
-            #[inline(always)] |d| a.furthest(simd, d),
-            #[inline(always)] |d| b.furthest(simd, d),
-        ))
+        task.run(&Scanned { simd, difference: &difference, polytopes: [a, b] })
+    } else {
+        task.run(&PolytopeDifference::new(simd, (a, placement_a), (b, placement_b)))
+    }
+}
+
+/// Runs a search for closest points on two polytopes, of whose placements nothing was asked, and places what it finds; `None` where a
+/// placement is not plain, or nothing is found.
+#[inline]
+pub(super) fn run_in_world<T: Task<Found = Option<Closest>>>(
+    a: &Polytope,
+    placement_a: &DAffine3,
+    b: &Polytope,
+    placement_b: &DAffine3,
+    task: T,
+) -> Option<ClosestInWorld> {
+    dispatch!(simd::level(), simd => {
+        if !(is_plain(simd, placement_a) & is_plain(simd, placement_b)) {
+            return None;
+        }
+        let Closest { distance, points } = run_in_kernel(simd, (a, placement_a), (b, placement_b), task)?;
+        let point_on_a = in_world(simd, placement_a, points.on_a);
+        let point_on_b = in_world(simd, placement_b, points.on_b);
+        Some(ClosestInWorld { distance, point_on_a, point_on_b })
     })
 }
 
@@ -232,14 +291,10 @@ where
 {
     let (a, b) = difference.objects();
     match (a.as_polytope(), b.as_polytope()) {
-        (Some(a), Some(b)) => dispatch!(level, simd => {
-            task.run(difference, #[inline(always)] |v| difference.point_against(
-                v,
-                #[inline(always)] |d| a.furthest(simd, d),
-                #[inline(always)] |d| b.furthest(simd, d),
-            ))
-        }),
-        _ => task.run(difference, |v| difference.support_against(v)),
+        (Some(a), Some(b)) => {
+            dispatch!(level, simd => task.run(&Scanned { simd, difference, polytopes: [a, b] }))
+        }
+        _ => task.run(difference),
     }
 }
 
@@ -255,13 +310,9 @@ impl Task for Search<'_> {
     type Found = Lean;
 
     #[inline(always)]
-    fn run<A, B>(self, difference: &Difference<A, B>, against: impl Fn(DVec3) -> SupportPoint) -> Lean
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    fn run(self, difference: &impl MinkowskiDifference) -> Lean {
         let mut lean = Lean::default();
-        self.descend(&mut lean, difference, against);
+        self.descend(&mut lean, difference);
         lean
     }
 }
@@ -270,18 +321,10 @@ impl Search<'_> {
     /// Runs a descent in place: what it ends with is too large to be moved about.
     // v / divisor: the point of conv(W) closest to the origin; p.w: a support point of A - B against v; W: the points.
     #[inline(always)]
-    pub fn descend<A, B>(
-        self,
-        lean: &mut Lean,
-        difference: &Difference<A, B>,
-        against: impl Fn(DVec3) -> SupportPoint,
-    ) where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    pub fn descend(self, lean: &mut Lean, difference: &impl MinkowskiDifference) {
         let mut v;
         let mut divisor = 1.0;
-        let mut before = f64::INFINITY;
+        let mut before = Square::INFINITE;
         if self.warm.is_empty() {
             v = difference.initial_direction();
         } else {
@@ -291,13 +334,13 @@ impl Search<'_> {
             lean.len = self.warm.len().min(3);
             let closest = closest_of_any(&mut lean.points, &mut lean.len);
             (v, divisor) = (closest.v, closest.divisor);
-            before = v.length_squared() / (divisor * divisor);
-            if !(divisor >= DIVISOR_MIN && before > SUPPORT_ERROR * SUPPORT_ERROR) {
+            before = closest.square();
+            if !(divisor >= DIVISOR_MIN && before.is_sure()) {
                 return;
             }
         }
         for _ in 0..STEPS_MAX {
-            let p = against(v);
+            let p = difference.support_against(v);
             let vw = v.dot(p.w);
             if vw > SUPPORT_ERROR * v.abs().element_sum() {
                 let sure = self.reached(v, divisor, vw, lean.len);
@@ -308,7 +351,7 @@ impl Search<'_> {
             }
             let [x, y, z, _] = lean.points;
             let closest = match lean.len {
-                0 => Closest { v: p.w, divisor: 1.0, older: 0 },
+                0 => Nearest { v: p.w, divisor: 1.0, older: 0 },
                 1 => edge(x.w, p.w),
                 2 => face(x.w, y.w, p.w),
                 _ => match tetrahedron(x.w, y.w, z.w, p.w) {
@@ -323,9 +366,9 @@ impl Search<'_> {
             lean.keep(closest.older);
             (lean.points[lean.len & 3], lean.len) = (p, (lean.len & 3) + 1);
             (v, divisor) = (closest.v, closest.divisor);
-            let square = v.length_squared() / (divisor * divisor);
-            let progress = square < before * (1.0 - PROGRESS_MIN);
-            if !(progress && divisor >= DIVISOR_MIN && square > SUPPORT_ERROR * SUPPORT_ERROR) {
+            let square = closest.square();
+            // All of it at once, for a single branch.
+            if !(square.is_progress_from(before) & (divisor >= DIVISOR_MIN) & square.is_sure()) {
                 return;
             }
             before = square;
@@ -353,12 +396,17 @@ impl Search<'_> {
     /// What is sure, after `v` was found to separate the objects: `vw` is its product with a support point against it.
     #[inline(always)]
     fn reached(self, v: DVec3, divisor: f64, vw: f64, len: usize) -> Sure {
+        let square = v.length_squared();
         let tolerance = match self.goal {
             Goal::Separation => return Sure::Separated,
-            Goal::DistanceWithin { .. } if self.goal.is_exceeded(vw / v.length()) => return Sure::Beyond,
+            // What exceeds the bound by its margin does so squared: most need no root.
+            Goal::DistanceWithin { bound, .. }
+                if vw * vw > bound * bound * square && self.goal.is_exceeded(vw / square.sqrt()) =>
+            {
+                return Sure::Beyond;
+            }
             Goal::Distance { tolerance } | Goal::DistanceWithin { tolerance, .. } => tolerance,
         };
-        let square = v.length_squared();
         if len > 0 && square - vw * divisor <= tolerance * square {
             Sure::Near(vw / square.sqrt())
         } else {
@@ -369,19 +417,19 @@ impl Search<'_> {
 
 /// Of the edge from an older point to the newest, which is needed in any case (Theorem 4.8).
 #[inline(always)]
-fn edge(p: DVec3, newest: DVec3) -> Closest {
+fn edge(p: DVec3, newest: DVec3) -> Nearest {
     let d = newest - p;
     let along = newest.dot(d);
     if along <= 0.0 {
-        return Closest { v: newest, divisor: 1.0, older: 0 };
+        return Nearest { v: newest, divisor: 1.0, older: 0 };
     }
     let square = d.length_squared();
-    Closest { v: newest * square - d * along, divisor: square, older: 1 }
+    Nearest { v: newest * square - d * along, divisor: square, older: 1 }
 }
 
 /// Of the face of two older points and the newest.
 #[inline(always)]
-fn face(p: DVec3, q: DVec3, newest: DVec3) -> Closest {
+fn face(p: DVec3, q: DVec3, newest: DVec3) -> Nearest {
     let (to_p, to_q) = (p - newest, q - newest);
     let n = to_p.cross(to_q);
     let square = n.length_squared();
@@ -389,7 +437,7 @@ fn face(p: DVec3, q: DVec3, newest: DVec3) -> Closest {
     let across = newest.cross(n);
     let (x, y) = (to_q.dot(across), -to_p.dot(across));
     if x > 0.0 && y > 0.0 && x + y < square {
-        return Closest { v: n * n.dot(newest), divisor: square, older: 3 };
+        return Nearest { v: n * n.dot(newest), divisor: square, older: 3 };
     }
     let with_p = || edge(p, newest);
     let with_q = || edge(q, newest).of_second();
@@ -405,33 +453,33 @@ fn face(p: DVec3, q: DVec3, newest: DVec3) -> Closest {
 
 /// Of the tetrahedron of three older points and the newest; `None` when it certainly contains the origin.
 #[inline(always)]
-fn tetrahedron(p: DVec3, q: DVec3, r: DVec3, newest: DVec3) -> Option<Closest> {
+fn tetrahedron(p: DVec3, q: DVec3, r: DVec3, newest: DVec3) -> Option<Nearest> {
     let (sides, least) = sides_of_origin([p, q, r, newest]);
     let [pq, qr, rp, old] = sides.map(|side| side > 0.0);
     if pq && qr && rp {
         // Of what is too flat to tell, nothing: no divisor is that small.
-        let unknown = Closest { v: newest, divisor: 0.0, older: 7 };
+        let unknown = Nearest { v: newest, divisor: 0.0, older: 7 };
         return if old && least > VOLUME_ERROR { None } else { Some(unknown) };
     }
     // On a face with the newest point that has the origin outside.
-    let mut closest = Closest { v: DVec3::INFINITY, divisor: 1.0, older: 0 };
+    let mut closest = Nearest { v: DVec3::INFINITY, divisor: 1.0, older: 0 };
     if !pq {
         closest = face(p, q, newest);
     }
     if !qr {
         let found = face(q, r, newest);
-        closest = closest.or_nearer(Closest { older: found.older << 1, ..found });
+        closest = closest.or_nearer(Nearest { older: found.older << 1, ..found });
     }
     if !rp {
         let found = face(p, r, newest);
-        closest = closest.or_nearer(Closest { older: found.older & 1 | (found.older & 2) << 1, ..found });
+        closest = closest.or_nearer(Nearest { older: found.older & 1 | (found.older & 2) << 1, ..found });
     }
     Some(closest)
 }
 
 /// The closest point of the hull of up to three points in any order, of which those that it does not need are dropped.
 #[inline(always)]
-fn closest_of_any(points: &mut [SupportPoint; 4], len: &mut usize) -> Closest {
+fn closest_of_any(points: &mut [SupportPoint; 4], len: &mut usize) -> Nearest {
     let [p, q, r, _] = *points;
     if *len == 3 {
         let closest = face(p.w, q.w, r.w);

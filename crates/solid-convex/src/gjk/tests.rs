@@ -7,8 +7,8 @@ use rand::{Rng, SeedableRng};
 use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_robustly, descend_within};
 use super::lean::{self, Search, Sure};
 use super::{
-    CAST_ERROR, Closest, Coherent, DISTANCE_TOLERANCE, Outcome, TOUCHING_ERROR, cast, closest_points,
-    intersection, separates,
+    CAST_ERROR, Closest, ClosestInWorld, Coherent, DISTANCE_TOLERANCE, Memory, Outcome, TOUCHING_ERROR, cast,
+    closest_points, intersection, quickly_closest, separates,
 };
 use crate::difference::Difference;
 use crate::simd;
@@ -313,6 +313,58 @@ fn the_lean_descent_says_what_the_robust_one_says() {
     }
     assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
     assert!(2 * sure > cases && 6 * measured > cases, "{sure} sure, {measured} measured, of {cases}");
+}
+
+/// What is quickly found of two polytopes in the world is what a search finds, to the bit; and nothing where a placement is no good.
+#[test]
+fn what_is_quickly_found_is_what_is_found() {
+    const SEED: u64 = 53;
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let (mut hits, mut found) = (0, 0);
+    const CASES: usize = 4_000;
+    for case in 0..CASES {
+        let mut hull = || {
+            let flat = if rng.random() { 1.0 } else { 10f64.powf(-rng.random_range(0.0..9.0)) };
+            let points = (0..rng.random_range(1..40)).map(|_| in_cube(&mut rng) * DVec3::new(1.0, flat, 1.0));
+            crate::Polytope::new(points.collect()).unwrap()
+        };
+        let (a, b) = (hull(), hull());
+        let unit = 10f64.powi([0, 0, -9, 9][case % 4]);
+        let [at_a, at_b] = [(); 2].map(|()| DAffine3 {
+            matrix3: any_map(&mut rng) * unit,
+            translation: in_cube(&mut rng) * unit * 0.5,
+        });
+        let Closest { distance, points } = closest_points(&a, &at_a, &b, &at_b);
+        hits += usize::from(distance == 0.0);
+        let [on_a, on_b] = [at_a.transform_point3(points.on_a), at_b.transform_point3(points.on_b)];
+        let expected = ClosestInWorld { distance, point_on_a: on_a, point_on_b: on_b };
+        let quickly = quickly_closest(&a, &at_a, &b, &at_b);
+        assert!(quickly.is_none_or(|quickly| quickly == expected), "{case}: {quickly:?}, not {expected:?}");
+        found += usize::from(quickly.is_some());
+
+        let mut memory = Memory::default();
+        let kept = memory.closest_points(&a, &at_a, &b, &at_b);
+        let again = memory.closest_points(&a, &at_a, &b, &at_b);
+        let still = memory.still_closest(&a, &at_a, &b, &at_b);
+        assert!(
+            still.is_none_or(|still| still.distance == again.distance),
+            "{case}: {still:?}, not {again:?}"
+        );
+        assert!((kept.distance - again.distance).abs() <= 1e-11 * unit, "{case}: {kept:?}, {again:?}");
+
+        let wild = [f64::NAN, f64::INFINITY, 0.0, 1e-80, 1e80][case % 5];
+        let mut no_good = at_b;
+        no_good.matrix3.y_axis *= wild;
+        assert_eq!(quickly_closest(&a, &at_a, &b, &no_good), None, "{case}");
+        assert_eq!(memory.still_closest(&a, &no_good, &b, &at_b), None, "{case}");
+        no_good = DAffine3 {
+            translation: DVec3::new(0.0, [f64::NAN, f64::INFINITY, 1e101][case % 3], 0.0),
+            ..at_a
+        };
+        assert_eq!(quickly_closest(&a, &no_good, &b, &at_b), None, "{case}");
+    }
+    assert!((30..=70).contains(&(100 * hits / CASES)), "{hits} of {CASES}: not representative");
+    assert!(10 * found > 8 * CASES, "{found} of {CASES} were found");
 }
 
 #[test]

@@ -24,7 +24,7 @@ use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
 use solid_convex::Closest;
-use solid_convex::gjk::Glance;
+use solid_convex::gjk::{self, ClosestInWorld, Glance};
 use solid_convex::simd::{dispatch, level};
 
 use crate::bounds::Aabb;
@@ -190,10 +190,28 @@ pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAff
     if let Some(closest) = pair::quickly_closest(on_a, on_b) {
         return Ok(Distance::new(on_a, on_b, &closest));
     }
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    if let (Some(on_a), Some(on_b)) = (a.polytope(), b.polytope())
+        && let Some(found) = gjk::quickly_closest(on_a, placement_a, on_b, placement_b)
+    {
+        return Ok(found.into());
+    }
+    distance_at_length(on_a, on_b)
+}
+
+/// What [`distance`] says, where nothing was said yet.
+#[inline(never)]
+fn distance_at_length(a: Placed, b: Placed) -> Result<Distance> {
+    let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
     let closest = pair::convex_closest_within(a, b, f64::INFINITY).flatten();
     let closest = closest.unwrap_or_else(|| Scratch::with(|scratch| pair::closest(a, b, scratch)));
     Ok(Distance::new(a, b, &closest))
+}
+
+impl From<ClosestInWorld> for Distance {
+    fn from(found: ClosestInWorld) -> Distance {
+        let ClosestInWorld { distance, point_on_a, point_on_b } = found;
+        Distance { distance, point_on_a, point_on_b }
+    }
 }
 
 impl Distance {

@@ -109,6 +109,31 @@ impl Polytope {
         self.points[furthest.min(self.points.len() - 1)]
     }
 
+    /// The support points of two, each along a direction of its own, for kernels with vectors.
+    #[inline(always)]
+    pub(crate) fn furthest_of_both<S: Simd>(
+        simd: S,
+        [a, b]: [&Polytope; 2],
+        along: [DVec3; 2],
+    ) -> [DVec3; 2] {
+        // Those that are mapped are many.
+        let [on_a, on_b] = if a.rows.are_few() && b.rows.are_few() {
+            Rows::furthest_of_both(simd, [&a.rows, &b.rows], along)
+        } else {
+            [a.furthest_of_many(simd, along[0]), b.furthest_of_many(simd, along[1])]
+        };
+        [a.points[on_a.min(a.points.len() - 1)], b.points[on_b.min(b.points.len() - 1)]]
+    }
+
+    #[inline(always)]
+    fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
+        let mapped = self.map.as_ref().and_then(|map| map.furthest(&self.points, direction));
+        mapped.unwrap_or_else(
+            #[inline(always)]
+            || self.rows.furthest_of_many(simd, direction),
+        )
+    }
+
     /// The points.
     pub fn points(&self) -> &[DVec3] {
         &self.points

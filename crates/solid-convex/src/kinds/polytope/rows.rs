@@ -9,14 +9,18 @@ const LANES: usize = 4;
 /// Rows whose products all stay in registers.
 const FEW: usize = 6;
 
-/// The coordinates of four points: their x, their y, their z.
-type Row = [[f64; LANES]; 3];
+/// The coordinates of four points: their x, their y, their z. Aligned, so that no vector lies in two lines of the cache.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+struct Row([[f64; LANES]; 3]);
 
-/// Points with their coordinates in rows. Invariant: there are at least two, and an even number where there are more than [`FEW`]; they are
-/// filled up with the last point.
+/// Points with their coordinates in rows. Invariant: there are an even number of rows, and at least [`FEW`]; they are filled up with the
+/// last point.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     rows: Vec<Row>,
+    /// How many rows do not hold the last point alone; at least two.
+    count: usize,
 }
 
 impl Rows {
@@ -24,52 +28,63 @@ impl Rows {
     pub fn new(points: &[DVec3]) -> Option<Rows> {
         let last = *points.last()?;
         let lane = |i: usize| *points.get(i).unwrap_or(&last);
-        let row = |first: usize| [0, 1, 2].map(|axis| std::array::from_fn(|i| lane(first + i)[axis]));
-        let count = match points.len().div_ceil(LANES) {
-            1 => 2,
-            few @ 2..=FEW => few,
-            many => many.next_multiple_of(2),
-        };
-        Some(Rows { rows: (0..count).map(|k| row(k * LANES)).collect() })
+        let row = |first: usize| Row([0, 1, 2].map(|axis| std::array::from_fn(|i| lane(first + i)[axis])));
+        let count = points.len().div_ceil(LANES).max(2);
+        let filled = count.max(FEW).next_multiple_of(2);
+        Some(Rows { rows: (0..filled).map(|k| row(k * LANES)).collect(), count })
+    }
+
+    /// Whether there are so few that [`furthest_of_both`](Rows::furthest_of_both) may be asked.
+    #[inline(always)]
+    pub fn are_few(&self) -> bool {
+        self.count <= FEW
     }
 
     /// The index of the point furthest along a direction, the first of equals; past the end when the direction is not finite.
     #[inline(always)]
     pub fn furthest<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
-        match self.rows.as_slice() {
-            [_, _] => self.furthest_of_few::<S, 2>(simd, direction),
-            [_, _, _] => self.furthest_of_few::<S, 3>(simd, direction),
-            [_, _, _, _] => self.furthest_of_few::<S, 4>(simd, direction),
-            [_, _, _, _, _] => self.furthest_of_few::<S, 5>(simd, direction),
-            [_, _, _, _, _, _] => self.furthest_of_few::<S, 6>(simd, direction),
+        match self.count {
+            2 => self.furthest_of_few::<S, 2>(simd, direction),
+            3 => self.furthest_of_few::<S, 3>(simd, direction),
+            4 => self.furthest_of_few::<S, 4>(simd, direction),
+            5 => self.furthest_of_few::<S, 5>(simd, direction),
+            FEW => self.furthest_of_few::<S, FEW>(simd, direction),
             _ => self.furthest_of_many(simd, direction),
         }
+    }
+
+    /// The same of two that are few, each along a direction of its own. Neither waits for the instructions of the other to be read.
+    #[inline(always)]
+    pub fn furthest_of_both<S: Simd>(simd: S, both: [&Rows; 2], along: [DVec3; 2]) -> [usize; 2] {
+        match both[0].count.max(both[1].count) {
+            2 => furthest_of_both::<S, 2>(simd, both, along),
+            3 => furthest_of_both::<S, 3>(simd, both, along),
+            4 => furthest_of_both::<S, 4>(simd, both, along),
+            5 => furthest_of_both::<S, 5>(simd, both, along),
+            _ => furthest_of_both::<S, FEW>(simd, both, along),
+        }
+    }
+
+    /// The first rows, so many as there are at least.
+    #[inline(always)]
+    fn first<const N: usize>(&self) -> &[Row; N] {
+        self.rows.first_chunk().expect("there are at least FEW rows")
     }
 
     /// Of `N` rows, whose products all stay in registers.
     #[inline(always)]
     fn furthest_of_few<S: Simd, const N: usize>(&self, simd: S, direction: DVec3) -> usize {
-        let rows: &[Row; N] = self.rows.first_chunk().expect("the rows were counted");
         let along = products(simd, direction);
         let mut dots = [f64x4::splat(simd, 0.0); N];
-        for (dot, row) in dots.iter_mut().zip(rows) {
+        for (dot, row) in dots.iter_mut().zip(self.first::<N>()) {
             *dot = along(row);
         }
-        let mut best = dots[0];
-        for dot in &dots[1..] {
-            best = best.max(*dot);
-        }
-        let greatest = f64x4::splat(simd, best.reduce_max());
-        let mut equal = 0;
-        for (k, dot) in dots.iter().enumerate() {
-            equal |= dot.simd_eq(greatest).to_bitmask() << (k * LANES);
-        }
-        if equal == 0 { usize::MAX } else { equal.trailing_zeros() as usize }
+        first_of_greatest(simd, &dots)
     }
 
     /// Of any number of rows.
     #[inline(always)]
-    fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
+    pub fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
         let (first, second) = self.rows.split_at(self.rows.len() / 2);
         let along = products(simd, direction);
         // Each lane of either half keeps its own furthest point, the first of equals.
@@ -109,7 +124,7 @@ impl Rows {
         let (x, y, z) = (column(linear.x_axis), column(linear.y_axis), column(linear.z_axis));
         let mut least = [f64x4::splat(simd, f64::INFINITY); 3];
         let mut greatest = [f64x4::splat(simd, f64::NEG_INFINITY); 3];
-        for [xs, ys, zs] in &self.rows {
+        for Row([xs, ys, zs]) in &self.rows[..self.count] {
             let xs = f64x4::simd_from(simd, *xs);
             let ys = f64x4::simd_from(simd, *ys);
             let zs = f64x4::simd_from(simd, *zs);
@@ -126,13 +141,42 @@ impl Rows {
     }
 }
 
+/// See [`Rows::furthest_of_both`]. Of `N` rows of each.
+#[inline(always)]
+fn furthest_of_both<S: Simd, const N: usize>(simd: S, [a, b]: [&Rows; 2], along: [DVec3; 2]) -> [usize; 2] {
+    let (along_a, along_b) = (products(simd, along[0]), products(simd, along[1]));
+    let (a, b) = (a.first::<N>(), b.first::<N>());
+    let mut dots = [[f64x4::splat(simd, 0.0); N]; 2];
+    for k in 0..N {
+        dots[0][k] = along_a(&a[k]);
+        dots[1][k] = along_b(&b[k]);
+    }
+    [first_of_greatest(simd, &dots[0]), first_of_greatest(simd, &dots[1])]
+}
+
+/// The index of the greatest product, the first of equals; past the end when none is a number.
+#[inline(always)]
+fn first_of_greatest<S: Simd, const N: usize>(simd: S, dots: &[f64x4<S>; N]) -> usize {
+    let mut best = dots[0];
+    for dot in &dots[1..] {
+        best = best.max(*dot);
+    }
+    let greatest = f64x4::splat(simd, best.reduce_max());
+    // Every other row apart: masks side by side would be packed into one first, for which all wait.
+    let mut equal = [0u64; 2];
+    for (k, dot) in dots.iter().enumerate() {
+        equal[k % 2] |= dot.simd_eq(greatest).to_bitmask() << (k * LANES);
+    }
+    (equal[0] | equal[1]).trailing_zeros() as usize
+}
+
 /// The products of the points of a row with a direction.
 #[inline(always)]
 fn products<S: Simd>(simd: S, direction: DVec3) -> impl Fn(&Row) -> f64x4<S> {
     let (x, y, z) =
         (f64x4::splat(simd, direction.x), f64x4::splat(simd, direction.y), f64x4::splat(simd, direction.z));
     #[inline(always)]
-    move |[xs, ys, zs]: &Row| {
+    move |Row([xs, ys, zs]): &Row| {
         f64x4::simd_from(simd, *xs) * x + f64x4::simd_from(simd, *ys) * y + f64x4::simd_from(simd, *zs) * z
     }
 }
@@ -156,6 +200,21 @@ mod tests {
                 for level in levels() {
                     let found = dispatch!(level, simd => rows.furthest(simd, direction));
                     assert_eq!(found, first, "{level:?}");
+                    let many = dispatch!(level, simd => rows.furthest_of_many(simd, direction));
+                    assert_eq!(many, first, "{level:?}");
+                    if rows.are_few() {
+                        let other = Rows::new(&points[..points.len() / 2 + 1]).unwrap();
+                        let both = [(&rows, &other), (&other, &rows)].map(|(a, b)| {
+                            dispatch!(level, simd => Rows::furthest_of_both(simd, [a, b], [direction, -direction]))
+                        });
+                        let alone = |rows: &Rows, along| dispatch!(level, simd => rows.furthest(simd, along));
+                        assert_eq!(both[0], [first, alone(&other, -direction)], "{level:?}");
+                        assert_eq!(
+                            both[1],
+                            [alone(&other, direction), alone(&rows, -direction)],
+                            "{level:?}"
+                        );
+                    }
                 }
             }
         }
