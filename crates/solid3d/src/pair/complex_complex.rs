@@ -185,6 +185,11 @@ struct Approach<'s> {
 
 impl NearLeafPairs for Approach<'_> {
     #[inline(always)]
+    fn axis(&self) -> DVec3 {
+        self.axis
+    }
+
+    #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32], best: &mut f64) {
         let [rows_a, rows_b] = &mut *self.rows;
         let in_a = rows_a.place(simd, self.a.0, leaf_a, &self.common[0]);

@@ -3,9 +3,10 @@
 //! Balls, capsules and boxes are held against eight triangles at a time in closed form ([`direct`](super::direct)), and what is clear
 //! is not asked of GJK; where any triangle that meets will do, images of triangles come first ([`glance`](super::glance)). Of other
 //! shapes, what parts one primitive mostly parts its neighbours too: so an axis is kept, and leaves are tested along it before GJK looks
-//! at what remains.
+//! at what remains. Where the distance is sought, [`gaps`](super::gaps) bounds that of the boxes of a node and of the images of triangles, all
+//! eight at a time, and only what may be nearest is placed and measured.
 
-use std::ops::{ControlFlow, RangeInclusive};
+use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
@@ -15,23 +16,18 @@ use solid_convex::{Closest, Outcome, Support, Witness, gjk};
 use super::containment::PlacedSolid;
 use super::direct::{Direct, Round};
 use super::frame::{Frame, ROUNDINGS, Stretch};
+use super::gaps::Gaps;
 use super::glance::Glance;
 use super::reach::convex_bounds;
 use super::row::{CONFIRMED, Near, Row, Verdict, distances_of_core, exceed};
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
-use crate::tree::{Around, Leaf, LeafImages, NearLeaves, bits};
+use crate::tree::{Around, Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves, bits};
 
 /// A gap in the common frame, where the size of the data is from 1 to 2, at which GJK calls shapes separate without fail: four
 /// times the one at which it does so by a cached axis.
 pub(super) const CLEARLY_APART: f64 = 1.0 / (1u64 << 24) as f64;
-
-/// Vectors whose length comes out so long have squares that neither overflow nor lose digits to underflow.
-const LENGTHS: RangeInclusive<f64> = 1e-145..=1e145;
-
-/// A height along a direction is off by the slack of each coordinate, with that of the point it is measured from.
-const SLACKS: f64 = 4.0;
 
 /// Whether they intersect: as [`intersection`] says.
 pub(super) fn intersects(complex: PlacedComplex, convex: PlacedConvex, scratch: &mut Scratch) -> bool {
@@ -298,8 +294,21 @@ pub(super) fn closest_within(
     let shadow = Shadow::new(convex.0, &frame, &direct, ROUNDINGS);
     let around = shadow.around(&query, &frame, &direct);
     let from = [convex.0.center(); 2];
-    let mut approach =
-        Approach { complex, convex, frame: &frame, direct, shadow, from, row, primitive_tests, answer: None };
+    let gaps = Gaps::new(convex.0, &direct, &frame, complex.0.tree().normal());
+    let images = complex.0.images();
+    let mut approach = Approach {
+        complex,
+        convex,
+        frame: &frame,
+        direct,
+        shadow,
+        gaps,
+        images,
+        from,
+        row,
+        primitive_tests,
+        answer: None,
+    };
     complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut best, traversal, &mut approach);
     let (primitive, closest) = approach.answer?;
     let closest = closest.unwrap_or_else(|| closest_to(complex, primitive, convex));
@@ -319,6 +328,9 @@ struct Approach<'s> {
     direct: Direct,
     /// Its axis is from the closest point of the convex shape to that of the complex one so far.
     shadow: Shadow<'s>,
+    /// What tells, by boxes and images, which primitives may be nearest.
+    gaps: Option<Gaps>,
+    images: Option<&'s LeafImages>,
     /// Points of the convex shape, in its space, from which to look: the way to what is closest to one of them is a direction
     /// along which the shapes may be far apart. The first is its centre, the second one near to the closest so far.
     from: [DVec3; 2],
@@ -328,41 +340,26 @@ struct Approach<'s> {
     answer: Option<(u32, Option<Closest>)>,
 }
 
-impl Approach<'_> {
-    /// How far apart, in the common frame, the convex shape and a local box are at least, along the way from a point of the
-    /// shape to the box. Below zero they may meet; infinitely so when the point is in the box.
-    #[inline(always)]
-    fn gap(&self, from: DVec3, bounds: &Aabb) -> f64 {
-        let Frame { relative, stretch: [of_complex, _], .. } = self.frame;
-        let point = relative.b_to_a.transform_point3(from);
-        let way = point.clamp(bounds.min, bounds.max) - point;
-        let length = way.length();
-        if !LENGTHS.contains(&length) {
-            return f64::NEG_INFINITY; // in the box, or nothing is known
-        }
-        let furthest = self.convex.0.support(relative.b_to_a.matrix3.transpose() * way);
-        // Relative to the point, so that little is cancelled.
-        let reach = way.dot(relative.b_to_a.matrix3 * (furthest - from)) / length;
-        (length - reach - SLACKS * relative.slack_in_a) * of_complex.least
-    }
-}
-
 impl NearLeaves for Approach<'_> {
     #[inline(always)]
-    fn raise(&self, bounds: impl FnOnce() -> Aabb, bound: f64, best: f64) -> f64 {
-        if matches!(self.direct, Direct::Round(_)) {
-            return bound; // of the core, and right
+    fn raise<S: Simd>(&self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
+        if let Some(gaps) = self.gaps.as_ref().filter(|_| !matches!(self.direct, Direct::Round(_))) {
+            gaps.raise(simd, boxes, bounds);
         }
-        let [center, nearest] = self.from;
-        let bounds = &bounds();
-        let raised = bound.max(self.gap(center, bounds));
-        if raised >= best || nearest == center { raised } else { raised.max(self.gap(nearest, bounds)) }
     }
 
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, best: &mut f64) {
+        let (mut near, mut is_known) = (leaf.lanes(), false);
+        if let (Some(gaps), Some(images)) = (&self.gaps, self.images) {
+            near = gaps.prospects(simd, &images.of(leaf), near, *best + CLEARLY_APART, CLEARLY_APART);
+            is_known = true;
+            if near == 0 {
+                return;
+            }
+        }
         self.row.place(simd, self.complex.0, leaf.primitives, &self.frame.common[0]);
-        let near = self.row.nearer(simd, &self.shadow.bounds, *best * *best);
+        near &= self.row.nearer(simd, &self.shadow.bounds, *best * *best);
         if near == 0 {
             return;
         }
@@ -370,7 +367,7 @@ impl NearLeaves for Approach<'_> {
             Direct::Round(round) => self.look_from_core(simd, &round, near, best),
             _ => {
                 let near = near & !self.shadow.beyond(simd, self.row, sought(*best));
-                self.look(simd, near, best);
+                self.look(simd, near, is_known, best);
             }
         }
     }
@@ -399,6 +396,9 @@ impl Approach<'_> {
                     if gap < *best {
                         *best = gap;
                         self.answer = Some((self.row.primitive(lane), None));
+                        if let Some(gaps) = &mut self.gaps {
+                            gaps.turn(simd, self.from[0], -known.axis(lane));
+                        }
                     }
                     continue;
                 }
@@ -410,9 +410,9 @@ impl Approach<'_> {
         }
     }
 
-    /// Looks at some lanes of the row from points of the shape.
+    /// Looks at some lanes of the row from points of the shape; `is_known`: it is known already that all of them may be nearest.
     #[inline(always)]
-    fn look<S: Simd>(&mut self, simd: S, mut near: u32, best: &mut f64) {
+    fn look<S: Simd>(&mut self, simd: S, mut near: u32, is_known: bool, best: &mut f64) {
         if near == 0 {
             return;
         }
@@ -423,7 +423,7 @@ impl Approach<'_> {
         while let Some(lane) = of_center.nearest(near) {
             let left = near;
             near &= !(1 << lane);
-            if self.row.triangles() >> lane & 1 == 1 {
+            if !is_known && self.row.triangles() >> lane & 1 == 1 {
                 if self.shadow.parted(center, &of_center, lane, sought(*best)) {
                     continue;
                 }
@@ -439,18 +439,25 @@ impl Approach<'_> {
                 }
             }
             *self.primitive_tests += 1;
-            if let Some(points) = self.ask(lane, best) {
-                if *best == 0.0 {
-                    return;
-                }
-                let [from_complex, from_convex] = &self.frame.common;
-                let on_complex = from_complex.transform_point3(points.on_a);
-                let on_convex = from_convex.transform_point3(points.on_b);
-                self.shadow.turn((on_complex - on_convex).normalize_or_zero());
-                self.from[1] = points.on_b;
-                near &= !self.shadow.beyond(simd, self.row, sought(*best));
-            }
+            near &= !self.improve(simd, lane, best);
         }
+    }
+
+    /// Asks GJK of a lane; the lanes that are then known not to be nearer, as bits.
+    #[inline(always)]
+    fn improve<S: Simd>(&mut self, simd: S, lane: usize, best: &mut f64) -> u32 {
+        let Some(points) = self.ask(lane, best) else { return 0 };
+        if *best == 0.0 {
+            return u32::MAX;
+        }
+        let [from_complex, from_convex] = &self.frame.common;
+        let way = from_complex.transform_point3(points.on_a) - from_convex.transform_point3(points.on_b);
+        self.shadow.turn(way.normalize_or_zero());
+        self.from[1] = points.on_b;
+        if let Some(gaps) = &mut self.gaps {
+            gaps.turn(simd, points.on_b, way);
+        }
+        self.shadow.beyond(simd, self.row, sought(*best))
     }
 
     /// Asks GJK of a lane: the closest points, if they are nearer than all before.

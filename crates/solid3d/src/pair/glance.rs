@@ -57,7 +57,7 @@ struct Body {
 }
 
 /// Three coordinates of eight points.
-type Points<S> = [f32x8<S>; 3];
+pub(super) type Points<S> = [f32x8<S>; 3];
 
 /// An image, placed.
 struct Placed<S: Simd> {
@@ -205,7 +205,7 @@ fn normal<S: Simd>(p: &Points<S>, q: &Points<S>, r: &Points<S>) -> Points<S> {
 }
 
 #[inline(always)]
-fn dot<S: Simd>(a: &Points<S>, b: &Points<S>) -> f32x8<S> {
+pub(super) fn dot<S: Simd>(a: &Points<S>, b: &Points<S>) -> f32x8<S> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

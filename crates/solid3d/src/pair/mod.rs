@@ -23,6 +23,7 @@ mod depth;
 mod direct;
 mod fixed_box;
 mod frame;
+mod gaps;
 mod glance;
 mod ray;
 mod reach;

@@ -19,6 +19,8 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, i32x8, u32x8};
 use glam::DVec3;
 
+#[cfg(test)]
+use super::nearest::Boxes;
 use super::node::{Child, Kind, LEAF_SIZE, Node};
 use super::{Normal, Tree};
 
@@ -139,6 +141,14 @@ impl<'t> Leaf<'t> {
     #[inline(always)]
     pub fn lanes(&self) -> u32 {
         (1 << self.primitives.len()) - 1
+    }
+}
+
+#[cfg(test)]
+impl<'t> Leaf<'t> {
+    /// The boxes of the node that it hangs in, and which of them is its own.
+    pub fn boxes(&self) -> (Boxes<'t>, usize) {
+        (Boxes(self.node), self.lane)
     }
 }
 

@@ -1,10 +1,10 @@
 //! Branch and bound for one query.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f64x4, mask64x4};
+use fearless_simd::{Simd, f32x8, f64x4, mask64x4};
 use solid_convex::simd::{Level, dispatch, level};
 
-use super::lanes::{LANES, bits, distances_squared_to_box};
+use super::lanes::{LANES, bits, distances_squared_to_box, lanes};
 use super::metric::{Folded, PairMetric};
 use super::node::{Child, Kind, Node, WIDTH};
 use super::packed::PackedBox;
@@ -19,13 +19,22 @@ pub(crate) struct Around {
     pub radius: f64,
 }
 
+/// The boxes of a node.
+pub(crate) struct Boxes<'t>(pub(super) &'t Node);
+
+impl Boxes<'_> {
+    /// Their ends along an axis, in tree coordinates.
+    #[inline(always)]
+    pub fn axis<S: Simd>(&self, simd: S, axis: usize) -> (f32x8<S>, f32x8<S>) {
+        lanes(simd, self.0, axis)
+    }
+}
+
 /// What is done with leaves, in vectors of the level of instructions that the walk runs on.
 pub(crate) trait NearLeaves {
-    /// A lower bound of the distance to anything in a box, given in local coordinates, of which `bound` is one. Bounds of `best` and more are all the
-    /// same. It may be asked again.
-    fn raise(&self, _bounds: impl FnOnce() -> Aabb, bound: f64, _best: f64) -> f64 {
-        bound
-    }
+    /// Raises lower bounds of the distances to anything in the boxes of a node, where it knows better; of lanes that are not in use they mean nothing.
+    #[inline(always)]
+    fn raise<S: Simd>(&self, _simd: S, _boxes: &Boxes, _bounds: &mut [f64; WIDTH]) {}
 
     /// Called with the leaves that may hold something nearer than `best`; lowers it.
     fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, best: &mut f64);
@@ -126,13 +135,8 @@ impl Tree {
             if least >= *best || child == Child::EMPTY {
                 continue;
             }
-            let in_local = || self.normal.unpack(&self.box_at(place));
-            let raised = visitor.raise(in_local, least, *best);
-            if raised >= *best {
-                continue;
-            }
-            if stack.last().is_some_and(|next| next.0 < raised) {
-                defer((raised, place), stack);
+            if stack.last().is_some_and(|next| next.0 < least) {
+                defer((least, place), stack);
                 continue;
             }
             match child.kind() {
@@ -147,6 +151,7 @@ impl Tree {
                     // Empty lanes are infinitely far, or do no harm.
                     let mut of_lanes = [f64::INFINITY; WIDTH];
                     bounds(node, &mut of_lanes);
+                    visitor.raise(simd, &Boxes(node), &mut of_lanes);
                     let near = !reaching(simd, &of_lanes, *best);
                     let entry = |lane: usize| (of_lanes[lane], Place::lane(index, lane));
                     if near.is_power_of_two() {
@@ -222,7 +227,7 @@ fn bound_lanes_on<S: Simd>(
     all[1].store_slice(&mut bounds[4..]);
 }
 
-/// Puts an entry back below those that are nearer, at most as many as a node has: its bound was not known so well.
+/// Puts an entry back below those that are nearer, at most as many as a node has: nodes that were opened since may hold what is farther.
 #[inline(always)]
 fn defer<T: Copy>(entry: (f64, T), stack: &mut Vec<(f64, T)>) {
     stack.push(entry);

@@ -2,6 +2,7 @@
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use glam::DVec3;
 use solid_convex::simd::{Level, dispatch, level};
 
 use super::lanes::{distances_squared, extents};
@@ -52,6 +53,11 @@ pub fn nearest_pairs(
 
 /// What is done with pairs of leaves, in vectors of the level of instructions that the walk runs on.
 pub(crate) trait NearLeafPairs {
+    /// A direction along which what was nearest was apart, in the space in which distances count: of length one, or zero.
+    fn axis(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+
     /// Called with the pairs of leaves that may hold something nearer than `best`; lowers it.
     fn visit<S: Simd>(&mut self, simd: S, in_a: &[u32], in_b: &[u32], best: &mut f64);
 }
@@ -122,7 +128,7 @@ fn walk<S: Simd>(
                     bounds.store_slice(some);
                 }
                 if let Some(faces) = faces.filter(|_| some_below(&bounds, *best)) {
-                    faces.raise_in_a(simd, a, node, b, pair.b, &mut bounds);
+                    faces.raise_in_a(simd, a, node, b, pair.b, visitor.axis(), *best, &mut bounds);
                 }
                 let extents = extents(simd, lanes);
                 for (lane, least) in bounds.into_iter().enumerate() {
@@ -139,7 +145,7 @@ fn walk<S: Simd>(
                     bounds.store_slice(some);
                 }
                 if let Some(faces) = faces.filter(|_| some_below(&bounds, *best)) {
-                    faces.raise_in_b(simd, b, node, a, pair.a, &mut bounds);
+                    faces.raise_in_b(simd, b, node, a, pair.a, visitor.axis(), *best, &mut bounds);
                 }
                 let extents = extents(simd, lanes);
                 for (lane, least) in bounds.into_iter().enumerate() {

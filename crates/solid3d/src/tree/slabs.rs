@@ -190,7 +190,9 @@ impl<'t> Faces<'t> {
         })
     }
 
-    /// Raises lower bounds of the distances of what hangs at a place of `b` and of the lanes of a node of `a`.
+    /// Raises lower bounds of the distances of what hangs at a place of `b` and of the lanes of a node of `a`, until none is below `best`. What was
+    /// near was apart along `kept`, of length one, or zero.
+    #[expect(clippy::too_many_arguments, reason = "two sides, of which either may be the one")]
     #[inline(always)]
     pub fn raise_in_a<S: Simd>(
         &self,
@@ -199,22 +201,28 @@ impl<'t> Faces<'t> {
         node: usize,
         b: &Tree,
         in_b: Place,
+        kept: DVec3,
+        best: f64,
         bounds: &mut [f64; WIDTH],
     ) {
+        let (many, one) = (&self.a, &self.b);
         self.raise(
             simd,
-            &self.a,
+            many,
             &a.nodes[node],
-            &self.a.slabs[node],
-            &self.b,
+            &many.slabs[node],
+            one,
             b,
             in_b,
             -self.offset,
+            kept,
+            best,
             bounds,
         );
     }
 
     /// The same for what hangs at a place of `a` and the lanes of a node of `b`.
+    #[expect(clippy::too_many_arguments, reason = "two sides, of which either may be the one")]
     #[inline(always)]
     pub fn raise_in_b<S: Simd>(
         &self,
@@ -223,9 +231,24 @@ impl<'t> Faces<'t> {
         node: usize,
         a: &Tree,
         in_a: Place,
+        kept: DVec3,
+        best: f64,
         bounds: &mut [f64; WIDTH],
     ) {
-        self.raise(simd, &self.b, &b.nodes[node], &self.b.slabs[node], &self.a, a, in_a, self.offset, bounds);
+        let (many, one) = (&self.b, &self.a);
+        self.raise(
+            simd,
+            many,
+            &b.nodes[node],
+            &many.slabs[node],
+            one,
+            a,
+            in_a,
+            self.offset,
+            kept,
+            best,
+            bounds,
+        );
     }
 
     #[expect(clippy::too_many_arguments, reason = "two sides, of which either may be the one")]
@@ -240,18 +263,47 @@ impl<'t> Faces<'t> {
         tree: &Tree,
         place: Place,
         offset: DVec3,
+        kept: DVec3,
+        best: f64,
         bounds: &mut [f64; WIDTH],
     ) {
-        let gaps = part!(simd => {
-            let (lanes, single) = (Patch::lanes(simd, node, slabs), Patch::one(simd, one, tree, place));
-            gaps(simd, many, &lanes, one, &single, offset)
+        part!(simd => {
+            let gaps = Gaps::new(
+                simd,
+                many,
+                Patch::lanes(simd, node, slabs),
+                one,
+                Patch::one(simd, one, tree, place),
+                offset,
+            );
+            let zero = splat(simd, 0.0);
+            let kept = [splat(simd, kept.x as f32), splat(simd, kept.y as f32), splat(simd, kept.z as f32)];
+            if !self.take(gaps.along(simd, &kept).max(zero).to_array(), best, bounds) {
+                return;
+            }
+            let mut gap = zero;
+            for direction in &gaps.directions(simd) {
+                let squared = dot(direction, direction);
+                let per_length = splat(simd, 1.0) / squared.max(splat(simd, TINY)).sqrt();
+                let unit = [direction[0] * per_length, direction[1] * per_length, direction[2] * per_length];
+                gap = gap.max(gaps.along(simd, &unit));
+            }
+            self.take(gap.to_array(), best, bounds);
         });
+    }
+
+    /// Raises bounds by gaps; whether any is below `best` then.
+    #[inline(always)]
+    fn take(&self, gaps: [f32; WIDTH], best: f64, bounds: &mut [f64; WIDTH]) -> bool {
+        let mut some_below = false;
         for (bound, gap) in bounds.iter_mut().zip(gaps) {
             let raised = (f64::from(gap) * self.unit - self.margin) * NORM;
             if raised > *bound {
                 *bound = raised;
             }
+            some_below |= *bound < best;
         }
+        some_below
     }
 }
 
@@ -330,39 +382,58 @@ impl<S: Simd> Patch<S> {
     }
 }
 
-/// Lower bounds, up to the margin, of the distances of the lanes and the one.
-#[inline(always)]
-fn gaps<S: Simd>(
-    simd: S,
-    many: &Side,
-    lanes: &Patch<S>,
-    one: &Side,
-    single: &Patch<S>,
-    offset: DVec3,
-) -> [f32; WIDTH] {
-    let center = DVec3::from_array([0, 1, 2].map(|axis| f64::from(single.center[axis].to_array()[0])));
-    let from = (one.exact * center + offset).to_array();
-    let mut away = product(simd, &many.linear, &lanes.center);
-    for axis in 0..3 {
-        away[axis] -= splat(simd, from[axis] as f32);
+/// The lanes and the one, held against each other.
+struct Gaps<'s, S: Simd> {
+    many: &'s Side<'s>,
+    lanes: Patch<S>,
+    one: &'s Side<'s>,
+    single: Patch<S>,
+    /// From the centre of the one to those of the lanes.
+    away: Vector<S>,
+}
+
+impl<'s, S: Simd> Gaps<'s, S> {
+    #[inline(always)]
+    fn new(
+        simd: S,
+        many: &'s Side<'s>,
+        lanes: Patch<S>,
+        one: &'s Side<'s>,
+        single: Patch<S>,
+        offset: DVec3,
+    ) -> Self {
+        let [x, y, z] = &single.center;
+        let center =
+            DVec3::new(f64::from(x.to_array()[0]), f64::from(y.to_array()[0]), f64::from(z.to_array()[0]));
+        let from = (one.exact * center + offset).to_array();
+        let mut away = product(simd, &many.linear, &lanes.center);
+        for axis in 0..3 {
+            away[axis] -= splat(simd, from[axis] as f32);
+        }
+        Gaps { many, lanes, one, single, away }
     }
-    let across = product(simd, &one.cofactors, &single.normal);
-    let across_lanes = product(simd, &many.cofactors, &lanes.normal);
-    let mut best = splat(simd, 0.0);
-    let directions = [away, across, across_lanes];
-    for direction in &directions {
-        let squared = dot(direction, direction);
-        let per_length = splat(simd, 1.0) / squared.max(splat(simd, TINY)).sqrt();
+
+    /// From centre to centre, and across each of the two slabs.
+    #[inline(always)]
+    fn directions(&self, simd: S) -> [Vector<S>; 3] {
+        let across = product(simd, &self.one.cofactors, &self.single.normal);
+        let across_lanes = product(simd, &self.many.cofactors, &self.lanes.normal);
+        [self.away, across, across_lanes]
+    }
+
+    /// How far the lanes and the one are apart along unit vectors or against them, up to the margin: no more than their distances.
+    #[inline(always)]
+    fn along(&self, simd: S, unit: &Vector<S>) -> f32x8<S> {
+        let height = dot(unit, &self.away);
         // From the one to the lanes.
-        let back = dot(direction, &away).simd_lt(splat(simd, 0.0));
-        let per_length = back.select(-per_length, per_length);
-        let unit = [direction[0] * per_length, direction[1] * per_length, direction[2] * per_length];
-        let to_one = transposed_product(simd, &one.linear, &unit);
-        let to_lanes = transposed_product(simd, &many.linear, &unit);
+        let back = height.simd_lt(splat(simd, 0.0));
+        let unit =
+            [back.select(-unit[0], unit[0]), back.select(-unit[1], unit[1]), back.select(-unit[2], unit[2])];
+        let to_one = transposed_product(simd, &self.one.linear, &unit);
+        let to_lanes = transposed_product(simd, &self.many.linear, &unit);
         let to_lanes = [-to_lanes[0], -to_lanes[1], -to_lanes[2]];
-        best = best.max(dot(&unit, &away) - single.reach(&to_one) - lanes.reach(&to_lanes));
+        height.abs() - self.single.reach(&to_one) - self.lanes.reach(&to_lanes)
     }
-    best.to_array()
 }
 
 #[inline(always)]
