@@ -8,7 +8,8 @@ mod common;
 use std::collections::BTreeSet;
 
 use common::{each_pair, rescaled, try_shape_of};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
+use rand::Rng;
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
 use solid_oracle::{Convex, Verdict, contains_within, distance_bounds, verdict, verify_axis};
 use solid3d::convex::gjk::TOUCHING_ERROR;
@@ -200,5 +201,27 @@ fn powers_of_two_change_nothing() {
         for power in [-290, -60, -1, 7, 100, 290] {
             assert_eq!(answers(power), reference, "pair {i}, 2^{power}");
         }
+    }
+}
+
+/// Law: the axis that separates a tiny ball from a box separates it from all of the box, however far its corners are.
+#[test]
+fn an_axis_beside_a_tiny_ball_separates_the_whole_box() {
+    let mut rng = seeded(20_263);
+    for case in 0..1000 {
+        let radius = 10_f64.powi(rng.random_range(-10..-2));
+        let half = DVec3::from_array(std::array::from_fn(|_| rng.random_range(0.5..1.0)));
+        let turn =
+            DQuat::from_scaled_axis(DVec3::from_array(std::array::from_fn(|_| rng.random_range(-2.0..2.0))));
+        // Beyond a face.
+        let beside =
+            DVec3::new(rng.random_range(-0.5..0.5), half.y + radius * rng.random_range(1.1..3.0), 0.3);
+        let (cuboid, ball) = (Shape::cuboid(2.0 * half).unwrap(), Shape::sphere(radius).unwrap());
+        let at = [DAffine3::from_quat(turn), DAffine3::from_translation(turn * beside)];
+        let axis = query::separating_axis(&ball, &at[1], &cuboid, &at[0]).unwrap().unwrap();
+        let reach: f64 =
+            [DVec3::X, DVec3::Y, DVec3::Z].map(|e| (axis.dot(turn * e) * half.dot(e)).abs()).iter().sum();
+        let gap = axis.dot(at[1].translation) - radius - reach;
+        assert!(gap > 0.0, "case {case}: {axis} is off by {:e} radii", -gap / radius);
     }
 }

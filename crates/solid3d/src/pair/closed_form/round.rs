@@ -20,8 +20,10 @@ pub(super) struct PlacedRound {
 pub(super) struct Cores<'a> {
     on_a: DVec3,
     on_b: DVec3,
+    /// From the one on `B` to the one on `A`: known better than the points.
+    way: DVec3,
     radii: [f64; 2],
-    /// The gap of the cores, along the line from one point to the other: no more than the distance of the cores. The points'
+    /// The gap of the cores along the way: no more than the distance of the cores. The points'
     /// own distance is no less.
     gap_along: f64,
     at_a: (&'a Similarity, DVec3),
@@ -46,12 +48,13 @@ impl<'a> Cores<'a> {
         Cores {
             on_a,
             on_b,
+            way: v,
             radii: [a.radius, b.radius],
             gap_along: along,
             at_a: (&a.at, a.center),
             at_b: (&b.at, b.center),
         }
-        .with_length(v)
+        .with_length()
     }
 
     /// `None` for a capsule.
@@ -66,31 +69,32 @@ impl<'a> Cores<'a> {
         let cores = Cores {
             on_a: a.center,
             on_b: a.center - v,
+            way: v,
             radii: [a.radius, 0.0],
             gap_along: v.dot(a.center - b.center) - b.at.reach_along(v, b.half),
             at_a: (&a.at, a.center),
             at_b: (&b.at, b.center),
         };
-        Some(cores.with_length(v))
+        Some(cores.with_length())
     }
 
-    /// With the gap in units of length, where it was times the length of `v`.
-    fn with_length(mut self, v: DVec3) -> Self {
-        let length = v.length();
+    /// With the gap in units of length, where it was times the length of the way.
+    fn with_length(mut self) -> Self {
+        let length = self.way.length();
         self.gap_along = if length > 0.0 { self.gap_along / length } else { 0.0 };
         self
     }
 
     pub fn gap(&self) -> Gap {
         let radii = self.radii[0] + self.radii[1];
-        Gap { least: self.gap_along - radii, greatest: (self.on_a - self.on_b).length() - radii }
+        Gap { least: self.gap_along - radii, greatest: self.way.length() - radii }
     }
 
     pub fn relation(&self) -> Option<Relation> {
         Some(if self.gap().intersects()? {
             Relation::Common(self.common_point())
         } else {
-            Relation::Separated { axis: Some((self.on_a - self.on_b).normalize()) }
+            Relation::Separated { axis: Some(self.way.normalize()) }
         })
     }
 

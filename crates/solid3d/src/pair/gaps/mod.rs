@@ -20,11 +20,16 @@
 //! [`ROUNDING`] is 16u, and stands for what is relative to R + S: once for gaps, and once more for the distance of two points, of which each is
 //! off by less. What underflows in |n|, less than 2^-73, is below [`TINY`].
 
+mod body;
+mod triangles;
+
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, f64x4};
 use glam::{DMat3, DVec3};
 use solid_convex::Support;
 
+use self::body::{Body, POINTS_MAX, rounded, splat};
+use self::triangles::Triangles;
 use super::direct::Direct;
 use super::frame::Frame;
 use super::glance::{Points, dot};
@@ -44,9 +49,6 @@ const TINY: f32 = f32::from_bits((127 - 63) << 23);
 
 /// Sizes up to here neither overflow nor turn into what is no number; of what is farther nothing is said.
 const SIZE_MAX: f64 = (1u64 << 30) as f64;
-
-/// Of the hull of more points, a box around them is looked at: to multiply them all would take longer than what it spares.
-const POINTS_MAX: usize = 64;
 
 /// How often the points of a shape are moved.
 const ROUNDS: usize = 2;
@@ -76,22 +78,6 @@ pub(super) struct Gaps {
     from: [f32; 3],
     /// The way from there, of length one, and how far the shape reaches along it.
     kept: Option<([f32; 3], f32)>,
-}
-
-/// A convex body around its middle, in tree coordinates.
-#[expect(clippy::large_enum_variant, reason = "there is one on the stack while a distance is sought")]
-enum Body {
-    /// All sums of parts of some half edges, from -1 to 1: of a ball's core there are none, of a capsule's one.
-    Edges(Edges),
-    /// The hull of points.
-    Points { points: [[f32; 3]; POINTS_MAX], count: usize },
-}
-
-struct Edges {
-    halves: [[f32; 3]; 3],
-    /// What a point is multiplied with to know how many half edges it is from the middle.
-    duals: [[f32; 3]; 3],
-    count: usize,
 }
 
 impl Gaps {
@@ -295,164 +281,6 @@ struct Placed<S: Simd> {
     furthest: f64,
 }
 
-impl Body {
-    fn edges(to_tree: &DMat3, edges: &[DVec3]) -> Body {
-        let [mut halves, mut duals] = [[[0.0; 3]; 3]; 2];
-        for (i, edge) in edges.iter().enumerate() {
-            let edge = *to_tree * *edge;
-            (halves[i], duals[i]) = (rounded(edge), rounded(edge / edge.length_squared()));
-        }
-        Body::Edges(Edges { halves, duals, count: edges.len() })
-    }
-
-    /// At most [`POINTS_MAX`].
-    fn points(to_tree: &DMat3, local: &[DVec3], middle: DVec3) -> Body {
-        let mut points = [[0.0; 3]; POINTS_MAX];
-        for (point, local) in points.iter_mut().zip(local) {
-            *point = rounded(*to_tree * (*local - middle));
-        }
-        Body::Points { points, count: local.len() }
-    }
-
-    fn size(&self) -> f64 {
-        let sum = |v: &[f32; 3]| f64::from(v[0].abs()) + f64::from(v[1].abs()) + f64::from(v[2].abs());
-        match self {
-            Body::Edges(edges) => edges.halves.iter().map(sum).sum(),
-            Body::Points { points, count } => points[..*count].iter().map(sum).fold(0.0, f64::max),
-        }
-    }
-
-    /// Whether it is only its middle, from where all that is nearest is found at once.
-    fn is_point(&self) -> bool {
-        matches!(self, Body::Edges(Edges { count: 0, .. }))
-    }
-
-    /// How far it reaches along directions.
-    #[inline(always)]
-    fn reach<S: Simd>(&self, simd: S, way: &Points<S>) -> f32x8<S> {
-        match self {
-            Body::Edges(Edges { halves, count, .. }) => {
-                let mut reach = f32x8::splat(simd, 0.0);
-                for half in &halves[..*count] {
-                    reach += dot(way, &splat(simd, half)).abs();
-                }
-                reach
-            }
-            Body::Points { points, count } => {
-                let mut reach = f32x8::splat(simd, f32::NEG_INFINITY);
-                for point in &points[..*count] {
-                    reach = reach.max(dot(way, &splat(simd, point)));
-                }
-                reach
-            }
-        }
-    }
-
-    /// The same with the points that reach so far, where [`nearer`](Body::nearer) needs them.
-    #[inline(always)]
-    fn furthest<S: Simd>(&self, simd: S, way: &Points<S>) -> (Points<S>, f32x8<S>) {
-        let mut furthest = [f32x8::splat(simd, 0.0); 3];
-        let Body::Points { points, count } = self else { return (furthest, self.reach(simd, way)) };
-        let mut reach = f32x8::splat(simd, f32::NEG_INFINITY);
-        for point in &points[..*count] {
-            let point = splat(simd, point);
-            let height = dot(way, &point);
-            let is_higher = height.simd_gt(reach);
-            reach = is_higher.select(height, reach);
-            for axis in 0..3 {
-                furthest[axis] = is_higher.select(point[axis], furthest[axis]);
-            }
-        }
-        (furthest, reach)
-    }
-
-    /// A point of the body that is nearer to the end of a way from another, if there is any; given the support point along it.
-    #[inline(always)]
-    fn nearer<S: Simd>(&self, simd: S, from: &Points<S>, way: &Points<S>, support: &Points<S>) -> Points<S> {
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        match self {
-            Body::Edges(Edges { halves, duals, count }) => {
-                let there = [from[0] + way[0], from[1] + way[1], from[2] + way[2]];
-                let mut nearest = [zero; 3];
-                for (half, dual) in halves.iter().zip(duals).take(*count) {
-                    let part = dot(&there, &splat(simd, dual)).min(one).max(-one);
-                    for axis in 0..3 {
-                        nearest[axis] += part * f32x8::splat(simd, half[axis]);
-                    }
-                }
-                nearest
-            }
-            Body::Points { .. } => {
-                let chord = [support[0] - from[0], support[1] - from[1], support[2] - from[2]];
-                let part = dot(&chord, way) / dot(&chord, &chord).max(f32x8::splat(simd, f32::MIN_POSITIVE));
-                let part = part.min(one).max(zero);
-                [from[0] + chord[0] * part, from[1] + chord[1] * part, from[2] + chord[2] * part]
-            }
-        }
-    }
-}
-
-/// Eight triangles, and what is known of them wherever they are looked at from.
-struct Triangles<S: Simd> {
-    corners: [Points<S>; 3],
-    edges: [Points<S>; 3],
-    /// One over their squares.
-    inverse: [f32x8<S>; 3],
-    /// Of the first edge, and the reverse of the last: their product, and one over the squared area of the parallelogram.
-    product: f32x8<S>,
-    squares: [f32x8<S>; 2],
-    per_area: f32x8<S>,
-}
-
-impl<S: Simd> Triangles<S> {
-    #[inline(always)]
-    fn new(simd: S, corners: [Points<S>; 3]) -> Self {
-        let (one, tiny) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, f32::MIN_POSITIVE));
-        let [p, q, r] = &corners;
-        let edges = [minus(q, p), minus(r, q), minus(p, r)];
-        let squares = [dot(&edges[0], &edges[0]), dot(&edges[1], &edges[1]), dot(&edges[2], &edges[2])];
-        let inverse = [one / squares[0].max(tiny), one / squares[1].max(tiny), one / squares[2].max(tiny)];
-        let product = -dot(&edges[0], &edges[2]);
-        let per_area = one / (squares[0] * squares[2] - product * product).max(tiny);
-        Triangles { corners, edges, inverse, product, squares: [squares[0], squares[2]], per_area }
-    }
-
-    /// The ways from points to what is nearest to them, of the triangle, or nearly so.
-    #[inline(always)]
-    fn toward(&self, simd: S, from: &Points<S>) -> Points<S> {
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let Triangles { corners, edges, .. } = self;
-        let mut best = minus(&corners[0], from);
-        let to_first = best;
-        let mut least = f32x8::splat(simd, f32::INFINITY);
-        for j in 0..3 {
-            let to_corner = minus(&corners[j], from);
-            let t = (-dot(&edges[j], &to_corner) * self.inverse[j]).min(one).max(zero);
-            let way = [
-                to_corner[0] + edges[j][0] * t,
-                to_corner[1] + edges[j][1] * t,
-                to_corner[2] + edges[j][2] * t,
-            ];
-            let squared = dot(&way, &way);
-            let is_nearer = squared.simd_lt(least);
-            least = is_nearer.select(squared, least);
-            for axis in 0..3 {
-                best[axis] = is_nearer.select(way[axis], best[axis]);
-            }
-        }
-        // Where the foot of the perpendicular is inside, by its coordinates along the first edge and the reverse of the last.
-        let (along_first, along_last) = (-dot(&edges[0], &to_first), dot(&edges[2], &to_first));
-        let s = (self.squares[1] * along_first - self.product * along_last) * self.per_area;
-        let t = (self.squares[0] * along_last - self.product * along_first) * self.per_area;
-        let is_inside = s.simd_gt(zero) & t.simd_gt(zero) & (s + t).simd_lt(one);
-        for axis in 0..3 {
-            let way = to_first[axis] + edges[0][axis] * s - edges[2][axis] * t;
-            best[axis] = is_inside.select(way, best[axis]);
-        }
-        best
-    }
-}
-
 /// How high three points are along a direction, the lowest of them.
 #[inline(always)]
 fn lowest<S: Simd>([p, q, r]: &[Points<S>; 3], way: &Points<S>) -> f32x8<S> {
@@ -469,20 +297,6 @@ fn greater<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
 #[inline(always)]
 fn at_least<S: Simd>(simd: S, lanes: f32x8<S>, limit: f64) -> u32 {
     lanes.simd_ge(f32x8::splat(simd, limit as f32)).to_bitmask() as u32
-}
-
-#[inline(always)]
-fn minus<S: Simd>(a: &Points<S>, b: &Points<S>) -> Points<S> {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn splat<S: Simd>(simd: S, v: &[f32; 3]) -> Points<S> {
-    [f32x8::splat(simd, v[0]), f32x8::splat(simd, v[1]), f32x8::splat(simd, v[2])]
-}
-
-fn rounded(v: DVec3) -> [f32; 3] {
-    [v.x as f32, v.y as f32, v.z as f32]
 }
 
 #[cfg(test)]
