@@ -199,9 +199,13 @@ fn height<S: Simd>([p, q, r]: &[Points<S>; 3], way: &Points<S>) -> f32x8<S> {
 /// Across three points.
 #[inline(always)]
 fn normal<S: Simd>(p: &Points<S>, q: &Points<S>, r: &Points<S>) -> Points<S> {
-    let a = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
-    let b = [r[0] - p[0], r[1] - p[1], r[2] - p[2]];
+    let (a, b) = (minus(q, p), minus(r, p));
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+pub(super) fn minus<S: Simd>(a: &Points<S>, b: &Points<S>) -> Points<S> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]

@@ -100,13 +100,23 @@ impl Polytope {
 
     #[inline(always)]
     fn furthest_within<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
-        let mapped = self.map.as_ref().and_then(|map| map.furthest(&self.points, direction));
-        let furthest = match mapped {
+        let furthest = match self.furthest_mapped(direction) {
             Some(furthest) => furthest,
             None => self.rows.furthest(simd, direction),
         };
-        // Of a direction that is no number, none is the furthest.
+        self.point_at(furthest)
+    }
+
+    /// Of a direction that is no number, none is the furthest: the index is past the end.
+    #[inline(always)]
+    fn point_at(&self, furthest: usize) -> DVec3 {
         self.points[furthest.min(self.points.len() - 1)]
+    }
+
+    /// The index of the furthest point, where there are so many that they are mapped.
+    #[inline(always)]
+    fn furthest_mapped(&self, direction: DVec3) -> Option<usize> {
+        self.map.as_ref().and_then(|map| map.furthest(&self.points, direction))
     }
 
     /// The support points of two, each along a direction of its own, for kernels with vectors.
@@ -122,16 +132,15 @@ impl Polytope {
         } else {
             [a.furthest_of_many(simd, along[0]), b.furthest_of_many(simd, along[1])]
         };
-        [a.points[on_a.min(a.points.len() - 1)], b.points[on_b.min(b.points.len() - 1)]]
+        [a.point_at(on_a), b.point_at(on_b)]
     }
 
     #[inline(always)]
     fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
-        let mapped = self.map.as_ref().and_then(|map| map.furthest(&self.points, direction));
-        mapped.unwrap_or_else(
-            #[inline(always)]
-            || self.rows.furthest_of_many(simd, direction),
-        )
+        match self.furthest_mapped(direction) {
+            Some(furthest) => furthest,
+            None => self.rows.furthest_of_many(simd, direction),
+        }
     }
 
     /// The points.

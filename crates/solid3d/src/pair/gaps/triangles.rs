@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 
-use crate::pair::glance::{Points, dot};
+use crate::pair::glance::{Points, dot, minus};
 
 /// Eight triangles, and what is known of them wherever they are looked at from.
 pub struct Triangles<S: Simd> {
@@ -64,9 +64,4 @@ impl<S: Simd> Triangles<S> {
         }
         best
     }
-}
-
-#[inline(always)]
-fn minus<S: Simd>(a: &Points<S>, b: &Points<S>) -> Points<S> {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
