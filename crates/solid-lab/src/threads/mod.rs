@@ -1,7 +1,7 @@
 //! One thread against two: the same work on copies of the same data, in one process, in turns.
 //!
 //! Each round gives both a turn, and the speed-up is the median of the rounds' ratios: what slows the machine down for a while
-//! slows both. Times are of the clock on the wall, so a machine that is busy shows less than it could.
+//! slows both, and each thread keeps to a core. Times are of the clock on the wall, so a machine that is busy shows less than it could.
 //!
 //! | file | holds |
 //! |---|---|
@@ -84,7 +84,7 @@ pub fn run(
     seed: u64,
     mut progress: impl FnMut(&str),
 ) -> Result<Report, ThreadPoolBuildError> {
-    let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).start_handler(keep_to_a_core).build();
     let pools = [pool(1)?, pool(2)?];
     let bench = Bench::new(effort, seed);
     let mut rows = Vec::new();
@@ -93,6 +93,13 @@ pub fn run(
         rows.push(race(effort, &pools, name, target, [make(), make()]));
     }
     Ok(Report { seed, machine: machine(), date: date(), rows })
+}
+
+/// Has the calling thread run on a core of its own, where there are enough: else two threads may be left on one core for many frames.
+fn keep_to_a_core(thread: usize) {
+    if let Some(&core) = core_affinity::get_core_ids().unwrap_or_default().get(thread) {
+        core_affinity::set_for_current(core);
+    }
 }
 
 /// Lets both pools take turns at a work.
