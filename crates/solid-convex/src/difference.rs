@@ -72,6 +72,11 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
         Difference { a, b, linear_a, linear_b, offset: offset * scale, scale }
     }
 
+    /// The same with `B` moved by `v`, in the unit of the difference.
+    pub fn moved(&self, v: DVec3) -> Self {
+        Difference { offset: self.offset + v, ..*self }
+    }
+
     /// A support point in the direction `-v`: where `v` points from `B` to `A`, the point that is least along `v`.
     /// Theorem 4.7 for each of the two objects.
     #[inline]

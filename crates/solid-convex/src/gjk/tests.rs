@@ -174,8 +174,12 @@ fn any_map(rng: &mut StdRng) -> DMat3 {
     if rng.random() { stretched * size } else { outer * size }
 }
 
-/// Law: a gap is seen that is opened along the normal of any two objects, near or deep in each other; and the distance is no less. Of needles
-/// whose every triangle is a sliver, too.
+/// How much nearer or further than the distance the closest points of slivers may be, as a part of the size: of 360,000 gaps the worst
+/// was half of it.
+const POINTS_ERROR: f64 = 1e-10;
+
+/// Law: a gap is seen that is opened along the normal of any two objects, near or deep in each other; and the distance is no less, and that
+/// of the closest points. Of needles whose every triangle is a sliver, too.
 #[test]
 fn gaps_beyond_the_stated_error_are_seen() {
     const SEED: u64 = 51;
@@ -218,8 +222,14 @@ fn gaps_beyond_the_stated_error_are_seen() {
                 matches!(outcome, Outcome::Separated { .. }),
                 "seed {SEED}, {case}, {gap:e}: {outcome:?}"
             );
-            let distance = closest_points(&*a, &at_a, &*b, &at_b).distance;
+            let Closest { distance, points } = closest_points(&*a, &at_a, &*b, &at_b);
             assert!(distance >= gap - 1e-14 * size, "seed {SEED}, {case}: {distance:e}, not {gap:e}");
+            let between = at_a.transform_point3(points.on_a).distance(at_b.transform_point3(points.on_b));
+            let off = (between - distance).abs();
+            assert!(
+                off <= POINTS_ERROR * size,
+                "seed {SEED}, {case}: {between:e} between points, {distance:e} apart"
+            );
         }
     }
     assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
