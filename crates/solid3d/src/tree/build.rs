@@ -73,7 +73,17 @@ impl Tree {
         let order = items.iter().map(|item| item.index).collect();
         let measured = Measured { bounds, sum: sum(&nodes) };
         let root = nodes[0].union();
-        let mut tree = Tree { nodes, order, normal, root, bounds, cost: 0.0, cost_at_build: 0.0 };
+        let mut tree = Tree {
+            nodes,
+            order,
+            normal,
+            root,
+            bounds,
+            cost: 0.0,
+            cost_at_build: 0.0,
+            #[cfg(feature = "rayon")]
+            blocks: Vec::new(),
+        };
         tree.take(&measured);
         tree.cost_at_build = tree.cost;
         tree

@@ -35,12 +35,12 @@ where
     x * y + y * z + z * x + (x + y + z) * QUERY_SIDE
 }
 
-/// The sum of the measures of all lanes of some nodes, from the last.
+/// The sum of the measures of all lanes of some nodes.
 #[inline(always)]
-pub(super) fn measure_lanes<S: Simd>(simd: S, nodes: &[Node]) -> f64 {
+pub(super) fn measure_lanes<'n, S: Simd>(simd: S, nodes: impl Iterator<Item = &'n Node>) -> f64 {
     let lanes = |of: &[f32; WIDTH]| f32x8::from_slice(simd, of);
     let mut sum = 0.0;
-    for node in nodes.iter().rev() {
+    for node in nodes {
         // Empty lanes are inverted: their sides count as zero.
         let side =
             |axis: usize| (lanes(&node.max[axis]) - lanes(&node.min[axis])).max(f32x8::splat(simd, 0.0));
@@ -58,18 +58,24 @@ pub(super) const BLOCK: usize = 256;
 pub(super) struct Measured {
     /// The tight union, in local coordinates.
     pub bounds: Aabb,
-    /// Of the measures of all lanes, block by block from the last, in each from its last node.
+    /// Of the measures of all lanes.
     pub sum: f64,
 }
 
 impl Measured {
     /// Of no nodes.
     pub const NONE: Measured = Measured { bounds: Aabb::EMPTY, sum: 0.0 };
+
+    /// Takes in what was found out about other nodes.
+    pub fn add(&mut self, other: &Measured) {
+        self.bounds = self.bounds.union(&other.bounds);
+        self.sum += other.sum;
+    }
 }
 
 /// The sum of the measures of all lanes.
 pub(super) fn sum(nodes: &[Node]) -> f64 {
-    let of_block = |block: &[Node]| dispatch!(level(), simd => measure_lanes(simd, block));
+    let of_block = |block: &[Node]| dispatch!(level(), simd => measure_lanes(simd, block.iter().rev()));
     #[cfg(feature = "rayon")]
     if crate::threads::share(nodes.len(), NODES_MANY) {
         use rayon::prelude::*;

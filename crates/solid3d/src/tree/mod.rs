@@ -110,7 +110,7 @@ use packed::PackedBox;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Tree {
-    /// Root first; a child's index is greater than its parent's.
+    /// Depth first: each before all that are below it, which stand together.
     nodes: Vec<Node>,
     /// The primitives; each leaf is a range of it.
     order: Vec<u32>,
@@ -121,6 +121,9 @@ pub struct Tree {
     bounds: Aabb,
     cost: f64,
     cost_at_build: f64,
+    /// Of a refit on several threads; kept for its memory.
+    #[cfg(feature = "rayon")]
+    blocks: Vec<refit::Block>,
 }
 
 impl Tree {
@@ -165,7 +168,10 @@ impl Tree {
     /// assert!(Tree::build(&[unit; 800]).bytes() < 800 * 20);
     /// ```
     pub fn bytes(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>() + self.order.capacity() * size_of::<u32>()
+        let blocks = 0;
+        #[cfg(feature = "rayon")]
+        let blocks = blocks + self.blocks.capacity() * size_of::<refit::Block>();
+        self.nodes.capacity() * size_of::<Node>() + self.order.capacity() * size_of::<u32>() + blocks
     }
 
     /// The map to the coordinates in which its boxes are.

@@ -1,8 +1,8 @@
 //! New boxes in the same topology (thesis, 5.2.5).
 //!
-//! One backward loop gives every node its boxes: those of its leaves from what is in them, those of its children from their lanes. On
-//! several threads all leaves come first, which are nearly all of the work, and then the loop, without them. The boxes are least and
-//! greatest coordinates, and the cost is summed in blocks of nodes: so both ways give the same bits.
+//! One backward loop gives every node its boxes: those of its leaves from what is in them, those of its children from their lanes. It goes
+//! block by block: a few nodes of each wait for later blocks, all else is the same whichever block comes first. So several threads
+//! give the same bits as one, the cost included, which is summed in each block and then over the blocks.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x4};
@@ -64,7 +64,7 @@ impl Tree {
         self.refit_by(|tree, normal| {
             #[cfg(feature = "rayon")]
             if threads::share(tree.nodes.len()) {
-                return threads::pass(level, &mut tree.nodes, points, positions, normal);
+                return threads::pass(level, tree, points, positions, normal);
             }
             dispatch!(level, simd => pass(
                 simd,
@@ -99,28 +99,84 @@ fn pass<S: Simd>(
 ) -> Measured {
     let mut measured = Measured::NONE;
     for block in (0..nodes.len().div_ceil(BLOCK)).rev() {
-        let block = block * BLOCK..nodes.len().min((block + 1) * BLOCK);
-        for index in block.clone().rev() {
-            let bounds = set_leaves(index, &mut nodes[index]);
-            set_children(nodes, index);
-            measured.bounds = measured.bounds.union(&bounds);
-        }
-        // Not node by node: lanes that were just written one by one cannot be read as a vector without waiting.
-        measured.sum += measure_lanes(simd, &nodes[block]);
+        let start = block * BLOCK;
+        let end = nodes.len().min(start + BLOCK);
+        let block = Block::set(simd, &mut nodes[start..end], start, &mut set_leaves);
+        measured.add(&block.finish(simd, &mut nodes[start..], start));
     }
     measured
 }
 
-/// Gives the inner lanes of a node their boxes, from nodes after it.
+/// Nodes that stand one after the other, of which those are not done yet that wait for later ones.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block {
+    measured: Measured,
+    /// A bit for each node that waits.
+    waiting: [u64; BLOCK / 64],
+}
+
+impl Block {
+    #[cfg(feature = "rayon")]
+    const NONE: Block = Block { measured: Measured::NONE, waiting: [0; BLOCK / 64] };
+
+    /// Gives the nodes of a block their boxes, where they depend on the block alone. The first is number `start` of all.
+    #[inline(always)]
+    fn set<S: Simd>(
+        simd: S,
+        nodes: &mut [Node],
+        start: usize,
+        mut set_leaves: impl FnMut(usize, &mut Node) -> Aabb,
+    ) -> Block {
+        let (mut bounds, mut waiting) = (Aabb::EMPTY, [0; BLOCK / 64]);
+        // Nodes stand depth first: so what has nodes below it after the block are the ancestors of the first of these, each the parent of
+        // the one that was found before.
+        let mut last_waiting = nodes.len();
+        for index in (0..nodes.len()).rev() {
+            bounds = bounds.union(&set_leaves(start + index, &mut nodes[index]));
+            if !set_children(nodes, start, index, last_waiting) {
+                waiting[index / 64] |= 1 << (index % 64);
+                last_waiting = index;
+            }
+        }
+        let block = Block { measured: Measured::NONE, waiting };
+        // Not node by node: lanes that were just written one by one cannot be read as a vector without waiting.
+        let done = nodes.iter().enumerate().rev().filter(|(index, _)| !block.waits(*index));
+        let sum = measure_lanes(simd, done.map(|(_, node)| node));
+        Block { measured: Measured { bounds, sum }, ..block }
+    }
+
+    #[inline(always)]
+    fn waits(&self, index: usize) -> bool {
+        self.waiting[index / 64] >> (index % 64) & 1 != 0
+    }
+
+    /// Gives the nodes that waited their boxes, and says what was found out of all; `nodes` are those of the block and all after it.
+    #[inline(always)]
+    fn finish<S: Simd>(&self, simd: S, nodes: &mut [Node], start: usize) -> Measured {
+        let mut measured = self.measured;
+        for index in (0..BLOCK).rev().filter(|&index| self.waits(index)) {
+            set_children(nodes, start, index, usize::MAX);
+            measured.sum += measure_lanes(simd, std::iter::once(&nodes[index]));
+        }
+        measured
+    }
+}
+
+/// Gives the inner lanes of a node their boxes, from nodes after it; `false` when one of these is `unknown`. The first node is number `start`
+/// of all.
 #[inline(always)]
-fn set_children(nodes: &mut [Node], index: usize) {
+fn set_children(nodes: &mut [Node], start: usize, index: usize, unknown: usize) -> bool {
     let (before, after) = nodes.split_at_mut(index + 1);
     let node = &mut before[index];
     for lane in 0..node.child.len() {
         if let Kind::Inner(child) = node.child[lane].kind() {
-            node.set_lane(lane, &after[child - index - 1].union());
+            if child - start == unknown {
+                return false;
+            }
+            node.set_lane(lane, &after[child - start - index - 1].union());
         }
     }
+    true
 }
 
 /// Gives the leaves of a node the boxes around their points, and gives the tight union.
@@ -194,28 +250,29 @@ mod threads {
 
     pub fn pass(
         level: Level,
-        nodes: &mut [Node],
+        tree: &mut Tree,
         points: &LeafPoints,
         positions: &[DVec3],
         normal: &Normal,
     ) -> Measured {
-        let set_block = |(block, nodes): (usize, &mut [Node])| {
-            let first = block * BLOCK;
-            dispatch!(level, simd => {
-                let mut bounds = Aabb::EMPTY;
-                for (i, node) in nodes.iter_mut().enumerate() {
-                    bounds = bounds.union(&set_leaves(simd, node, points.of_node(first + i), positions, normal));
-                }
-                bounds
-            })
+        let Tree { nodes, blocks, .. } = tree;
+        blocks.clear();
+        blocks.resize(nodes.len().div_ceil(BLOCK), Block::NONE);
+        let set = |(number, (nodes, block)): (usize, (&mut [Node], &mut Block))| {
+            dispatch!(level, simd => *block = Block::set(
+                simd,
+                nodes,
+                number * BLOCK,
+                #[inline(always)]
+                |index, node| set_leaves(simd, node, points.of_node(index), positions, normal),
+            ))
         };
-        let bounds = nodes.par_chunks_mut(BLOCK).enumerate().map(set_block);
-        let bounds = bounds.reduce(|| Aabb::EMPTY, |a, b| a.union(&b));
-        dispatch!(level, _simd => {
-            for index in (0..nodes.len()).rev() {
-                set_children(nodes, index);
-            }
-        });
-        Measured { bounds, sum: super::super::cost::sum(nodes) }
+        nodes.par_chunks_mut(BLOCK).zip(&mut *blocks).enumerate().for_each(set);
+        let mut measured = Measured::NONE;
+        for (number, block) in blocks.iter().enumerate().rev() {
+            let start = number * BLOCK;
+            dispatch!(level, simd => measured.add(&block.finish(simd, &mut nodes[start..], start)));
+        }
+        measured
     }
 }
