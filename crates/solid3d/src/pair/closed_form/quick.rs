@@ -9,7 +9,7 @@ use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_squares};
 use solid_convex::{Closest, Witness};
 
 use super::GAP_MIN;
-use super::round::{DISTANCE_ERROR, closest_on_segments};
+use super::round::{DISTANCE_ERROR, Products};
 use crate::pair::Placed;
 use crate::shape::Simple;
 
@@ -90,8 +90,8 @@ impl<'a> View<'a> {
 
     /// The radii of balls around the origins that contain the shapes, together; and the size of the data. `None` of sizes that are not plain.
     #[inline(always)]
-    fn reach_and_size(&self, a: &Simple, b: &Simple) -> Option<[f64; 2]> {
-        let reach = a.radius() * self.scales[0] + b.radius() * self.scales[1];
+    fn reach_and_size(&self, [radius_a, radius_b]: [f64; 2]) -> Option<[f64; 2]> {
+        let reach = radius_a * self.scales[0] + radius_b * self.scales[1];
         let size = reach + self.offset.abs().element_sum();
         PLAIN_SIZES.contains(&size).then_some([reach, size])
     }
@@ -103,7 +103,7 @@ impl<'a> View<'a> {
             (Simple::Ball { radius }, Simple::Cuboid { half }) => self.ball_and_box_meet(radius, 1, half),
             (Simple::Cuboid { half }, Simple::Ball { radius }) => self.ball_and_box_meet(radius, 0, half),
             (Simple::Cuboid { half: a }, Simple::Cuboid { half: b }) => self.boxes_meet([a, b]),
-            (a, b) => self.rounds_meet(&a, &b),
+            (a, b) => self.rounds_meet(a.core()?, b.core()?),
         }
     }
 
@@ -117,39 +117,56 @@ impl<'a> View<'a> {
             return None;
         }
         let square = self.ball_and_box(cuboid, half).way().length_squared();
-        decide([square, square], radius * unit, ROUGH_GAP_MIN * size * unit)
+        let (radius, margin) = (radius * unit, ROUGH_GAP_MIN * size * unit);
+        decide(square, [radius - margin, radius + margin])
     }
 
     /// Whether two boxes intersect, by the balls around them and in them.
     #[inline(always)]
     fn boxes_meet(&self, [a, b]: [DVec3; 2]) -> Option<bool> {
-        let [reach, size] = self.reach_and_size(&Simple::Cuboid { half: a }, &Simple::Cuboid { half: b })?;
-        let square = self.offset.length_squared();
-        let margin = ROUGH_GAP_MIN * size;
-        let far = reach + margin;
-        let near = a.min_element() * self.scales[0] + b.min_element() * self.scales[1] - margin;
-        let meet = (near > 0.0) & (square < near * near);
-        ((square > far * far) | meet).then_some(meet)
+        let [reach, size] = self.reach_and_size([a.element_sum(), b.element_sum()])?;
+        let inner = a.min_element() * self.scales[0] + b.min_element() * self.scales[1];
+        self.balls_tell(inner, reach, ROUGH_GAP_MIN * size)
     }
 
-    /// Whether balls or capsules intersect.
+    /// Whether balls or capsules intersect, by the radii and half the heights of their cores.
     #[inline(always)]
-    fn rounds_meet(&self, a: &Simple, b: &Simple) -> Option<bool> {
-        let [reach, size] = self.reach_and_size(a, b)?;
-        let margin = ROUGH_GAP_MIN * size;
-        // Balls around them are apart.
-        if self.offset.length_squared() > (reach + margin) * (reach + margin) {
-            return Some(false);
-        }
-        let ((radius_a, height_a), (radius_b, height_b)) = (a.core()?, b.core()?);
-        let cores = self.segments(height_a, height_b);
+    fn rounds_meet(
+        &self,
+        (radius_a, height_a): (f64, f64),
+        (radius_b, height_b): (f64, f64),
+    ) -> Option<bool> {
+        let [reach, size] = self.reach_and_size([radius_a + height_a, radius_b + height_b])?;
         let radii = radius_a * self.scales[0] + radius_b * self.scales[1];
-        decide([cores.least_squared(), cores.square], radii, margin)
+        let margin = ROUGH_GAP_MIN * size;
+        match self.balls_tell(radii, reach, margin) {
+            None => self.near_segments([height_a, height_b], [radii - margin, radii + margin]),
+            told => told,
+        }
+    }
+
+    /// Whether two segments, by half their heights, are nearer than the lesser distance, or no nearer than the greater.
+    #[inline(always)]
+    fn near_segments(&self, heights: [f64; 2], [near, far]: [f64; 2]) -> Option<bool> {
+        let [a, b] = self.half_axes(heights);
+        let products = Products::new(-self.offset, a, b);
+        // The margin is far beyond the rounding of products of lengths, whose squares are beyond its square.
+        let [gap, square] = products.gap_and_square(products.closest());
+        let apart = (gap > 0.0) & (gap * gap > far * far * square);
+        let meet = (near > 0.0) & (square < near * near);
+        (apart | meet).then_some(meet)
+    }
+
+    /// Whether two shapes intersect, by the radii of balls in them and around them: of both together.
+    #[inline(always)]
+    fn balls_tell(&self, inner: f64, outer: f64, margin: f64) -> Option<bool> {
+        let square = self.offset.length_squared();
+        decide(square, [inner - margin, outer + margin])
     }
 
     #[inline(always)]
     fn closest(&self, a: Simple, b: Simple) -> Option<Closest> {
-        let [_, size] = self.reach_and_size(&a, &b)?;
+        let [_, size] = self.reach_and_size([a.radius(), b.radius()])?;
         let (margin, unit) = (GAP_MIN * size, size * size);
         let is_plain =
             |square: f64| (unit * PLAIN_PARTS.start() <= square) & (square <= unit * PLAIN_PARTS.end());
@@ -172,7 +189,7 @@ impl<'a> View<'a> {
             }
             (a, b) => {
                 let ((radius_a, height_a), (radius_b, height_b)) = (a.core()?, b.core()?);
-                let cores = self.segments(height_a, height_b);
+                let cores = self.segments([height_a, height_b]);
                 let [s, t] = cores.along;
                 self.of_cores(
                     &cores,
@@ -223,12 +240,17 @@ impl<'a> View<'a> {
         Cores { v: -self.offset, gap: square, square, along: [0.0; 2] }
     }
 
+    #[inline(always)]
+    fn half_axes(&self, [a, b]: [f64; 2]) -> [DVec3; 2] {
+        [self.at[0].matrix3.y_axis * a, self.at[1].matrix3.y_axis * b]
+    }
+
     /// Two segments, by half their heights.
     #[inline(always)]
-    fn segments(&self, height_a: f64, height_b: f64) -> Cores {
-        let (a, b) = (self.at[0].matrix3.y_axis * height_a, self.at[1].matrix3.y_axis * height_b);
+    fn segments(&self, heights: [f64; 2]) -> Cores {
+        let [a, b] = self.half_axes(heights);
         let between = -self.offset;
-        let (s, t) = closest_on_segments(between, a, b);
+        let [s, t] = Products::new(between, a, b).closest();
         let v = between + a * s - b * t;
         let gap = v.dot(between) - v.dot(a).abs() - v.dot(b).abs();
         Cores { v, gap, square: v.length_squared(), along: [s, t] }
@@ -255,14 +277,6 @@ struct Cores {
     square: f64,
     /// Where on the segments, in half heights from the middles.
     along: [f64; 2],
-}
-
-impl Cores {
-    /// The square of a lower bound of their distance.
-    #[inline(always)]
-    fn least_squared(&self) -> f64 {
-        if self.gap > 0.0 { self.gap * self.gap / self.square } else { 0.0 }
-    }
 }
 
 /// A point and a box, in the box's own space, times the square of its scale: there the way from the box is exactly along its axes where the point is
@@ -295,10 +309,9 @@ impl CenterAndBox {
     }
 }
 
-/// Whether what is within the radii of two cores intersects, by the squares of bounds of their distance. Without a branch.
+/// Whether what is within the lesser radius intersects, and what is within the greater does not, by the square of a distance. Without a branch.
 #[inline(always)]
-fn decide([least, greatest]: [f64; 2], radii: f64, margin: f64) -> Option<bool> {
-    let (near, far) = (radii - margin, radii + margin);
-    let meet = (near > 0.0) & (greatest < near * near);
-    ((least > far * far) | meet).then_some(meet)
+fn decide(square: f64, [near, far]: [f64; 2]) -> Option<bool> {
+    let meet = (near > 0.0) & (square < near * near);
+    ((square > far * far) | meet).then_some(meet)
 }

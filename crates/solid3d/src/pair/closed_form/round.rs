@@ -40,7 +40,7 @@ impl PlacedRound {
 impl<'a> Cores<'a> {
     pub fn of_rounds(a: &'a PlacedRound, b: &'a PlacedRound) -> Cores<'a> {
         let between = a.center - b.center;
-        let (s, t) = closest_on_segments(between, a.half_axis, b.half_axis);
+        let [s, t] = Products::new(between, a.half_axis, b.half_axis).closest();
         let (on_a, on_b) = (a.center + a.half_axis * s, b.center + b.half_axis * t);
         let v = on_a - on_b;
         // What A has least along v, less what B has most.
@@ -109,23 +109,55 @@ impl<'a> Cores<'a> {
 /// The error of a distance that is given out, relative to the size of the data: no more than GJK's.
 pub(super) const DISTANCE_ERROR: f64 = 0.25 * solid_convex::gjk::TOUCHING_ERROR;
 
-/// Where two segments are the closest, in half axes from their middles, from -1 to 1 (Ericson, *Real-Time Collision
-/// Detection*, section 5.1.9). Only points of the segments, however nearly parallel they are; how good these are is told
-/// by the gap along the line that joins them.
-#[inline(always)]
-pub(super) fn closest_on_segments(between: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
-    let (aa, bb, ab) = (a.length_squared(), b.length_squared(), a.dot(b));
-    let (to_a, to_b) = (a.dot(between), b.dot(between));
-    let square = aa * bb - ab * ab;
-    // The divisions do not wait for each other.
+/// The scalar products of two segments: of their half axes `a` and `b`, and of the way `between` their middles, from the second to the first.
+pub(super) struct Products {
+    aa: f64,
+    bb: f64,
+    ab: f64,
+    to_a: f64,
+    to_b: f64,
+    between: f64,
+}
+
+impl Products {
     #[inline(always)]
-    fn reciprocal(x: f64) -> f64 {
-        if x > 0.0 { 1.0 / x } else { 0.0 }
+    pub fn new(between: DVec3, a: DVec3, b: DVec3) -> Self {
+        Products {
+            aa: a.length_squared(),
+            bb: b.length_squared(),
+            ab: a.dot(b),
+            to_a: a.dot(between),
+            to_b: b.dot(between),
+            between: between.length_squared(),
+        }
     }
-    let (by_aa, by_bb, by_square) = (reciprocal(aa), reciprocal(bb), reciprocal(square));
-    // The place on the other segment's line that is closest, kept on the segment; the middle of a point.
-    let on_a = |t: f64| ((ab * t - to_a) * by_aa).clamp(-1.0, 1.0);
-    let on_b = |s: f64| ((ab * s + to_b) * by_bb).clamp(-1.0, 1.0);
-    let t = on_b(((ab * to_b - bb * to_a) * by_square).clamp(-1.0, 1.0));
-    (on_a(t), t)
+
+    /// Where the segments are the closest, in half axes from their middles, from -1 to 1 (Ericson, *Real-Time Collision
+    /// Detection*, section 5.1.9). Only points of the segments, however nearly parallel they are; how good these are is told
+    /// by the gap along the line that joins them.
+    #[inline(always)]
+    pub fn closest(&self) -> [f64; 2] {
+        let &Products { aa, bb, ab, to_a, to_b, .. } = self;
+        let square = aa * bb - ab * ab;
+        // The divisions do not wait for each other.
+        #[inline(always)]
+        fn reciprocal(x: f64) -> f64 {
+            if x > 0.0 { 1.0 / x } else { 0.0 }
+        }
+        let (by_aa, by_bb, by_square) = (reciprocal(aa), reciprocal(bb), reciprocal(square));
+        // The place on the other segment's line that is closest, kept on the segment; the middle of a point.
+        let on_a = |t: f64| ((ab * t - to_a) * by_aa).clamp(-1.0, 1.0);
+        let on_b = |s: f64| ((ab * s + to_b) * by_bb).clamp(-1.0, 1.0);
+        let t = on_b(((ab * to_b - bb * to_a) * by_square).clamp(-1.0, 1.0));
+        [on_a(t), t]
+    }
+
+    /// Of the way between two points of the segments: the gap along it times its length, and the square of its length. Off by a few roundings of
+    /// the square of the size of the data.
+    #[inline(always)]
+    pub fn gap_and_square(&self, [s, t]: [f64; 2]) -> [f64; 2] {
+        let of_between = self.between + s * self.to_a - t * self.to_b;
+        let (of_a, of_b) = (self.to_a + s * self.aa - t * self.ab, self.to_b + s * self.ab - t * self.bb);
+        [of_between - of_a.abs() - of_b.abs(), of_between + s * of_a - t * of_b]
+    }
 }

@@ -190,3 +190,40 @@ fn balls_of_any_size_are_told_as_gjk_tells_them() {
     assert!(decided > 8_000 && near > 6_000, "{decided} decided, {near} near");
     assert!((30..=70).contains(&(100 * hits / decided)), "{hits} of {decided} hit");
 }
+
+/// Capsules of any thinness, any way across each other or nearly parallel, close to where they touch: squares by scalar products of axes alone lose
+/// no more than the margin.
+#[test]
+fn thin_capsules_are_told_as_gjk_tells_them() {
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let (mut hits, mut decided, mut thin) = (0, 0, 0);
+    for i in 0..20_000 {
+        let radius = 10f64.powf(rng.random_range(-8.0..-0.5));
+        let capsule = Shape::capsule(radius, 2.0).unwrap();
+        let [at_a, mut at_b] = placements(&mut rng);
+        if i % 4 == 0 {
+            // Nearly parallel.
+            let skew = DQuat::from_rotation_x(10f64.powf(rng.random_range(-9.0..-1.0)));
+            at_b.matrix3 = at_a.matrix3 * DMat3::from_quat(skew);
+        }
+        // So that they touch, nearly, by a point of each core.
+        let [s, t] = [(); 2].map(|()| rng.random_range(-1.0..1.0));
+        let (a, b) = (at_a.matrix3.y_axis, at_b.matrix3.y_axis);
+        let normal = a.cross(b).try_normalize().unwrap_or(a.any_orthonormal_vector());
+        let radii = radius * (a.length() + b.length());
+        let gap = [0.5, 0.9, 0.999, 1.001, 1.1, 2.0][i % 6];
+        at_b.translation = at_a.translation + a * s - b * t + normal * (radii * gap);
+        let (a, b) =
+            (Placed { shape: &capsule, placement: &at_a }, Placed { shape: &capsule, placement: &at_b });
+        let seen = levels().map(|level| dispatch!(level, simd => quick::intersects(simd, a, b)));
+        assert_eq!(seen[0], seen[1]);
+        if let Glance::Sure(answer) = seen[0] {
+            let outcome = gjk::intersection(support(a.shape), &at_a, support(b.shape), &at_b);
+            assert_eq!(answer, outcome.witness().is_some(), "{i}: {radius:e}, {gap}: {at_a}, {at_b}");
+            (hits, decided) = (hits + usize::from(answer), decided + 1);
+            thin += usize::from(radius < 1e-4);
+        }
+    }
+    assert!(decided > 8_000 && thin > 300, "{decided} decided, {thin} of them thin");
+    assert!((30..=70).contains(&(100 * hits / decided)), "{hits} of {decided} hit");
+}
