@@ -149,7 +149,8 @@ fn closest_pair(a: PlacedComplex, b: PlacedComplex, bound: f64, scratch: &mut Sc
     let frame = frame(a, b);
     // The best distance so far is kept in the common frame, as the bounds are.
     let mut best = frame.beyond(bound);
-    let Frame { relative, common, scale, stretch: [of_a, of_b] } = frame;
+    let [of_a, of_b] = frame.stretch();
+    let Frame { relative, common, scale, .. } = frame;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     rows.iter_mut().for_each(Rows::clear);
     let metric = of_a.metric(&of_b);

@@ -81,7 +81,7 @@ fn meeting_primitives_in(
         _ => frame.common[0],
     };
     let around = shadow.around(&query, &frame, &direct);
-    let metric = frame.stretch[0].metric(&Stretch::NONE);
+    let metric = frame.stretch_of_a().metric(&Stretch::NONE);
     let end = ControlFlow::Continue(());
     // Where all that meet are wanted, most leaves that are visited hold some.
     let glance = if wants_any {
@@ -286,7 +286,7 @@ pub(super) fn closest_within(
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
     let row = row.get_or_insert_default();
     row.clear();
-    let metric = frame.stretch[0].metric(&Stretch::NONE);
+    let metric = frame.stretch_of_a().metric(&Stretch::NONE);
     // The best distance so far is kept in the common frame, as the bounds are.
     let mut best = frame.beyond(bound);
     // Of a box the distance has no closed form here.

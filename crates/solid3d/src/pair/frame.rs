@@ -23,8 +23,8 @@ pub(super) struct Frame {
     pub common: [DAffine3; 2],
     /// World lengths times this are lengths of the common frame.
     pub scale: f64,
-    /// Bounds on how local distances show in the common frame, for `A` and `B`.
-    pub stretch: [Stretch; 2],
+    /// Of the linear parts of the placements of `A` and `B`.
+    inverses: [DMat3; 2],
 }
 
 /// How lengths change from a local space to the common frame.
@@ -54,12 +54,17 @@ impl Frame {
             DAffine3 { matrix3: at_a.matrix3 * scale, translation: DVec3::ZERO },
             DAffine3 { matrix3: at_b.matrix3 * scale, translation: -a_to_b * scale },
         ];
-        Frame {
-            relative,
-            common,
-            scale,
-            stretch: [Stretch::new(&inverse_a, scale), Stretch::new(&inverse_b, scale)],
-        }
+        Frame { relative, common, scale, inverses: [inverse_a, inverse_b] }
+    }
+
+    /// Bounds on how distances local to `A` and `B` show in the common frame.
+    pub fn stretch(&self) -> [Stretch; 2] {
+        [self.stretch_of_a(), Stretch::new(&self.inverses[1], self.scale)]
+    }
+
+    /// The same, of `A` alone.
+    pub fn stretch_of_a(&self) -> Stretch {
+        Stretch::new(&self.inverses[0], self.scale)
     }
 
     /// A length of the common frame beyond a world length and the error of what is computed there: a search for what is below it

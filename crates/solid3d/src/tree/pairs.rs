@@ -13,6 +13,7 @@ use super::packed::PackedBox;
 use super::relative::Relative;
 use super::traversal::STACK_USUAL;
 use super::{Place, Traversal, Tree};
+use std::cell::OnceCell;
 use std::ops::ControlFlow;
 
 /// Visits the pairs of leaves of `a` and `b` whose boxes may overlap (six facet axes): all pairs of primitives whose boxes do, and
@@ -107,9 +108,9 @@ fn walk<B, S: Simd>(
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, &duel.b_to_a, b, pair.b));
+                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, duel.b_to_a(), b, pair.b));
                 let extents = extents(simd, lanes);
-                let (hits, gaps) = overlapping_probe(simd, lanes, &duel.b_to_a, probe);
+                let (hits, gaps) = overlapping_probe(simd, lanes, duel.b_to_a(), probe);
                 push(simd, stack, wants_first, hits, &gaps.to_array(), |lane| {
                     let lane = lane % WIDTH;
                     Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..pair }
@@ -117,9 +118,9 @@ fn walk<B, S: Simd>(
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, &duel.a_to_b, a, pair.a));
+                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, duel.a_to_b(), a, pair.a));
                 let extents = extents(simd, lanes);
-                let (hits, gaps) = overlapping_probe(simd, lanes, &duel.a_to_b, probe);
+                let (hits, gaps) = overlapping_probe(simd, lanes, duel.a_to_b(), probe);
                 push(simd, stack, wants_first, hits, &gaps.to_array(), |lane| {
                     let lane = lane % WIDTH;
                     Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..pair }
@@ -199,9 +200,10 @@ impl Tested {
 pub(super) struct Duel<'t> {
     pub a: &'t Tree,
     pub b: &'t Tree,
-    /// For boxes of `a` against lanes of `b`, and the reverse.
-    pub a_to_b: Crossing,
-    pub b_to_a: Crossing,
+    /// The ways of boxes of `b` to `a`, and the reverse.
+    ways: [Folded; 2],
+    /// The same for one box against eight, found when that is first asked for.
+    crossings: OnceCell<[Crossing; 2]>,
     /// For boxes of `b` taken to `a`, and the reverse, eight at once.
     images: Option<[Image; 2]>,
     /// The size of things in `a` over their size in `b`.
@@ -235,21 +237,40 @@ pub(super) enum Step<'d, 't> {
 
 impl<'t> Duel<'t> {
     pub fn new(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
-        let [of_b, of_a] = folded(a, b, relative);
-        let images = Image::new(&of_b).zip(Image::new(&of_a)).map(|(of_b, of_a)| [of_b, of_a]);
-        Duel { images, ..Self::of(a, b, &of_b, &of_a) }
+        let ways = folded(a, b, relative);
+        let images = Image::new(&ways[0]).zip(Image::new(&ways[1])).map(|(of_b, of_a)| [of_b, of_a]);
+        Self::of(a, b, ways, images)
     }
 
     /// The same, of which no two nodes are ever opened together.
     pub fn one_by_one(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
-        let [of_b, of_a] = folded(a, b, relative);
-        Self::of(a, b, &of_b, &of_a)
+        Self::of(a, b, folded(a, b, relative), None)
     }
 
-    fn of(a: &'t Tree, b: &'t Tree, of_b: &Folded, of_a: &Folded) -> Self {
-        let (b_to_a, a_to_b) = (Crossing::of(of_b, of_a), Crossing::of(of_a, of_b));
-        let magnification = b_to_a.magnification() as f32;
-        Duel { a, b, a_to_b, b_to_a, images: None, magnification }
+    #[inline]
+    fn of(a: &'t Tree, b: &'t Tree, ways: [Folded; 2], images: Option<[Image; 2]>) -> Self {
+        let magnification = ways[0].magnification() as f32;
+        Duel { a, b, ways, crossings: OnceCell::new(), images, magnification }
+    }
+
+    /// For boxes of `b` against lanes of `a`.
+    #[inline(always)]
+    pub fn b_to_a(&self) -> &Crossing {
+        &self.crossings()[0]
+    }
+
+    /// For boxes of `a` against lanes of `b`.
+    #[inline(always)]
+    pub fn a_to_b(&self) -> &Crossing {
+        &self.crossings()[1]
+    }
+
+    #[inline(always)]
+    fn crossings(&self) -> &[Crossing; 2] {
+        self.crossings.get_or_init(|| {
+            let [of_b, of_a] = &self.ways;
+            [Crossing::of(of_b, of_a), Crossing::of(of_a, of_b)]
+        })
     }
 
     /// The two trees.

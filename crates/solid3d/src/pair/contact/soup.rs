@@ -228,7 +228,7 @@ pub(super) fn whole(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
 impl Pair<'_> {
     /// The margin in the local space of one of the two.
     fn local_margin(&self, of: usize) -> f64 {
-        self.margin / self.frame.stretch[of].least
+        self.margin / self.frame.stretch()[of].least
     }
 
     /// The contacts along a normal, given from `b` to `a`, that may not be that of the deepest point.

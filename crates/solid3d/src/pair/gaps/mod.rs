@@ -83,7 +83,8 @@ pub(super) struct Gaps {
 impl Gaps {
     /// `None` where the shapes are so far apart, or so different in size, that single precision tells nothing.
     pub fn new(shape: &dyn Support, direct: &Direct, frame: &Frame, normal: &Normal) -> Option<Gaps> {
-        let Frame { relative, stretch: [of_complex, _], common: [from_complex, _], .. } = frame;
+        let Frame { relative, common: [from_complex, _], .. } = frame;
+        let of_complex = frame.stretch_of_a();
         let to_tree = relative.b_to_a.matrix3 * normal.inverse;
         let (mut middle, mut radius, mut tells_by_points) = (shape.center(), 0.0, true);
         let body = if let Direct::Round(round) = direct {
