@@ -87,22 +87,31 @@ impl LeafPairs<()> for Meeting<'_> {
         let [rows_a, rows_b] = &mut *self.rows;
         let in_a = rows_a.place(simd, self.a.0, leaf_a, &self.common[0]);
         let in_b = rows_b.place(simd, self.b.0, leaf_b, &self.common[1]);
-        for i in bits(in_a.overlapping(simd, in_b.union())) {
-            let bounds = in_a.bounds(i);
-            let near = in_b.overlapping(simd, &bounds);
+        let of_a = in_a.overlapping(simd, in_b.union());
+        let of_b = in_b.overlapping(simd, in_a.union());
+        // Those of which fewer are near are held one by one against the others, eight at a time.
+        let swapped = of_b.count_ones() < of_a.count_ones();
+        let [(ones, of_ones), (others, of_others)] =
+            if swapped { [(in_b, of_b), (in_a, of_a)] } else { [(in_a, of_a), (in_b, of_b)] };
+        if of_others == 0 {
+            return ControlFlow::Continue(());
+        }
+        for i in bits(of_ones) {
+            let near = others.overlapping(simd, &ones.bounds(i)) & of_others;
             if near == 0 {
                 continue;
             }
             *self.primitive_tests += u64::from(near.count_ones());
-            let x = in_a.triangle(i);
-            let triangles = if in_a.triangles() >> i & 1 == 1 { near & in_b.triangles() } else { 0 };
-            let sure = verdict(simd, &x, &bounds, in_b, triangles);
+            let x = ones.triangle(i);
+            let triangles = if ones.triangles() >> i & 1 == 1 { near & others.triangles() } else { 0 };
+            let sure = verdict(simd, &x, others, triangles);
             for j in bits(near & !sure.apart) {
-                let (one, other) = (in_a.primitive(i), in_b.primitive(j));
+                let (one, other) = (ones.primitive(i), others.primitive(j));
+                let (one, other) = if swapped { (other, one) } else { (one, other) };
                 let meet = if sure.meet >> j & 1 == 1 {
                     true
                 } else if triangles >> j & 1 == 1 {
-                    triangle_triangle::intersect(&x, &in_b.triangle(j))
+                    triangle_triangle::intersect(&x, &others.triangle(j))
                 } else {
                     hulls_meet(self.a, one, self.b, other)
                 };

@@ -151,7 +151,7 @@ impl LeafPairs<()> for NearPairs<'_> {
             *self.primitive_tests += u64::from(near.count_ones());
             let x = in_a.triangle(i);
             let triangles = if in_a.triangles() >> i & 1 == 1 { near & in_b.triangles() } else { 0 };
-            let sure = verdict(simd, &x, &bounds, in_b, triangles);
+            let sure = verdict(simd, &x, in_b, triangles);
             let apart = if self.margin == 0.0 { sure.apart } else { 0 };
             for j in bits(near & !apart) {
                 // Of triangles it is decided exactly, as everywhere.
