@@ -60,10 +60,10 @@ fn meeting_pairs_in(
     found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
-    let Frame { relative, common, .. } = frame;
+    let (relative, common) = (frame.relative(), &frame.common);
     rows.iter_mut().for_each(Rows::clear);
     let mut meeting = Meeting { a, b, common, wants_first, rows, primitive_tests, found };
-    pairs_on(level(), a.0.tree(), b.0.tree(), relative, traversal, &mut meeting)
+    pairs_on(level(), a.0.tree(), b.0.tree(), &relative, traversal, &mut meeting)
 }
 
 /// Looks for primitives that meet in pairs of leaves.
@@ -129,12 +129,13 @@ fn contained(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Optio
     if !a.0.is_solid() && !b.0.is_solid() {
         return None;
     }
-    let Frame { relative, common: [from_a, from_b], .. } = frame(a, b);
-    let b_in_a = PlacedSolid::new(a.0, &from_a).and_then(|a| part_inside(&a, b.0, &from_b, scratch));
+    let frame = frame(a, b);
+    let (relative, [from_a, from_b]) = (frame.relative(), &frame.common);
+    let b_in_a = PlacedSolid::new(a.0, from_a).and_then(|a| part_inside(&a, b.0, from_b, scratch));
     if let Some(on_b) = b_in_a {
         return Some(Witness { on_a: relative.b_to_a.transform_point3(on_b), on_b });
     }
-    let on_a = PlacedSolid::new(b.0, &from_b).and_then(|b| part_inside(&b, a.0, &from_a, scratch))?;
+    let on_a = PlacedSolid::new(b.0, from_b).and_then(|b| part_inside(&b, a.0, from_a, scratch))?;
     Some(Witness { on_a, on_b: relative.a_to_b.transform_point3(on_a) })
 }
 
@@ -159,7 +160,8 @@ fn closest_pair(a: PlacedComplex, b: PlacedComplex, bound: f64, scratch: &mut Sc
     // The best distance so far is kept in the common frame, as the bounds are.
     let mut best = frame.beyond(bound);
     let [of_a, of_b] = frame.stretch();
-    let Frame { relative, common, scale, .. } = frame;
+    let relative = frame.relative();
+    let Frame { common, scale, .. } = frame;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     rows.iter_mut().for_each(Rows::clear);
     let metric = of_a.metric(&of_b);

@@ -173,7 +173,7 @@ impl LeafPairs<()> for NearPairs<'_> {
 
 /// The contacts of two soups.
 pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scratch) -> Vec<Patch> {
-    let mut relative = pair.frame.relative;
+    let mut relative = pair.frame.relative();
     relative.slack_in_a += pair.local_margin(0);
     relative.slack_in_b += pair.local_margin(1);
     let [map_a, map_b] = pair.frame.common;
