@@ -206,31 +206,43 @@ impl NearLeafPairs for Approach<'_> {
         let [rows_a, rows_b] = &mut *self.rows;
         let in_a = rows_a.place(simd, self.a.0, leaf_a, &self.common[0]);
         let in_b = rows_b.place(simd, self.b.0, leaf_b, &self.common[1]);
-        let least_of_a = in_a.least_along(simd, self.axis);
-        let least_of_b = in_b.least_along(simd, -self.axis);
-        for i in bits(in_a.nearer(simd, in_b.union(), *best * *best)) {
-            let along = exceed(simd, &least_of_b, *best - least_of_a[i]);
-            let near = in_b.nearer(simd, &in_a.bounds(i), *best * *best) & !along;
+        let of_a = in_a.nearer(simd, in_b.union(), *best * *best);
+        let of_b = in_b.nearer(simd, in_a.union(), *best * *best);
+        // As where they meet: those of which fewer are near, one by one.
+        let swapped = of_b.count_ones() < of_a.count_ones();
+        let [(ones, of_ones), (others, of_others)] =
+            if swapped { [(in_b, of_b), (in_a, of_a)] } else { [(in_a, of_a), (in_b, of_b)] };
+        if of_others == 0 {
+            return;
+        }
+        // The axis points to what of A is nearest.
+        let to_ones = if swapped { -1.0 } else { 1.0 };
+        let least_of_ones = ones.least_along(simd, self.axis * to_ones);
+        let least_of_others = others.least_along(simd, self.axis * -to_ones);
+        for i in bits(of_ones) {
+            let along = exceed(simd, &least_of_others, *best - least_of_ones[i]);
+            let near = others.nearer(simd, &ones.bounds(i), *best * *best) & of_others & !along;
             if near == 0 {
                 continue;
             }
             *self.primitive_tests += u64::from(near.count_ones());
-            let x = in_a.triangle(i);
-            let is_triangle = in_a.triangles() >> i & 1 == 1;
-            let known = if is_triangle { near & in_b.triangles() } else { 0 };
-            let known_of = if known != 0 { distances(simd, &x, in_b, known) } else { Near::UNKNOWN };
+            let x = ones.triangle(i);
+            let is_triangle = ones.triangles() >> i & 1 == 1;
+            let known = if is_triangle { near & others.triangles() } else { 0 };
+            let known_of = if known != 0 { distances(simd, &x, others, known) } else { Near::UNKNOWN };
             let Near { distance, least, .. } = &known_of;
             for j in bits(near) {
                 let is_known = known >> j & 1 == 1;
                 if is_known && least[j] >= *best {
                     continue;
                 }
-                let pair = (in_a.primitive(i), in_b.primitive(j));
+                let (one, other) = (ones.primitive(i), others.primitive(j));
+                let pair = if swapped { (other, one) } else { (one, other) };
                 if is_known && distance[j] - least[j] <= CONFIRMED {
                     if distance[j] < *best {
                         *best = distance[j];
                         self.answer = Some(pair);
-                        self.axis = known_of.axis(j);
+                        self.axis = known_of.axis(j) * to_ones;
                     }
                 } else {
                     let closest = closest_of(self.a, pair.0, self.b, pair.1);
