@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use glam::{DAffine3, DMat3, DVec3};
-use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN};
+use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, unit_scale};
 
 use crate::bounds::abs;
 use crate::error::{Error, Result};
@@ -74,11 +74,11 @@ pub(crate) fn inverse_linear(linear: &DMat3) -> DMat3 {
         return DMat3::IDENTITY;
     }
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *linear;
-    // With L = U D, D the lengths of the axes: L^-1 = D^-1 U^-1.
-    let lengths = [x, y, z].map(|axis| axis.abs().max_element());
-    let unit = DMat3::from_cols(x / lengths[0], y / lengths[1], z / lengths[2]).inverse();
+    // With L = U D, D powers of two near the lengths of the axes, by which all products are exact: L^-1 = D^-1 U^-1.
+    let [a, b, c] = [x, y, z].map(|axis| unit_scale(axis.abs().max_element()));
+    let unit = DMat3::from_cols(x * a, y * b, z * c).inverse();
     let rows = unit.transpose();
-    DMat3::from_cols(rows.x_axis / lengths[0], rows.y_axis / lengths[1], rows.z_axis / lengths[2]).transpose()
+    DMat3::from_cols(rows.x_axis * a, rows.y_axis * b, rows.z_axis * c).transpose()
 }
 
 /// The largest sum of magnitudes over a row: a bound on how much the map stretches the largest coordinate.

@@ -106,7 +106,7 @@ fn complex_complex(
     let frame = Frame::new(at_a, a.reach(), at_b, b.reach());
     // In the space of `a` it is `b` that moves.
     let (direction, error) = local_motion(at_a, -motion);
-    let mut relative = frame.relative;
+    let mut relative = frame.relative();
     relative.slack_in_a += error;
     let moving = |bounds: &Aabb| TreeRay {
         origin: bounds.center(),

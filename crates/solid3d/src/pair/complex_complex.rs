@@ -60,10 +60,10 @@ fn meeting_pairs_in(
     found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
-    let Frame { relative, common, .. } = frame;
+    let (relative, common) = (frame.relative(), &frame.common);
     rows.iter_mut().for_each(Rows::clear);
     let mut meeting = Meeting { a, b, common, wants_first, rows, primitive_tests, found };
-    pairs_on(level(), a.0.tree(), b.0.tree(), relative, traversal, &mut meeting)
+    pairs_on(level(), a.0.tree(), b.0.tree(), &relative, traversal, &mut meeting)
 }
 
 /// Looks for primitives that meet in pairs of leaves.
@@ -87,22 +87,31 @@ impl LeafPairs<()> for Meeting<'_> {
         let [rows_a, rows_b] = &mut *self.rows;
         let in_a = rows_a.place(simd, self.a.0, leaf_a, &self.common[0]);
         let in_b = rows_b.place(simd, self.b.0, leaf_b, &self.common[1]);
-        for i in bits(in_a.overlapping(simd, in_b.union())) {
-            let bounds = in_a.bounds(i);
-            let near = in_b.overlapping(simd, &bounds);
+        let of_a = in_a.overlapping(simd, in_b.union());
+        let of_b = in_b.overlapping(simd, in_a.union());
+        // Those of which fewer are near are held one by one against the others, eight at a time.
+        let swapped = of_b.count_ones() < of_a.count_ones();
+        let [(ones, of_ones), (others, of_others)] =
+            if swapped { [(in_b, of_b), (in_a, of_a)] } else { [(in_a, of_a), (in_b, of_b)] };
+        if of_others == 0 {
+            return ControlFlow::Continue(());
+        }
+        for i in bits(of_ones) {
+            let near = others.overlapping(simd, &ones.bounds(i)) & of_others;
             if near == 0 {
                 continue;
             }
             *self.primitive_tests += u64::from(near.count_ones());
-            let x = in_a.triangle(i);
-            let triangles = if in_a.triangles() >> i & 1 == 1 { near & in_b.triangles() } else { 0 };
-            let sure = verdict(simd, &x, &bounds, in_b, triangles);
+            let x = ones.triangle(i);
+            let triangles = if ones.triangles() >> i & 1 == 1 { near & others.triangles() } else { 0 };
+            let sure = verdict(simd, &x, others, triangles);
             for j in bits(near & !sure.apart) {
-                let (one, other) = (in_a.primitive(i), in_b.primitive(j));
+                let (one, other) = (ones.primitive(i), others.primitive(j));
+                let (one, other) = if swapped { (other, one) } else { (one, other) };
                 let meet = if sure.meet >> j & 1 == 1 {
                     true
                 } else if triangles >> j & 1 == 1 {
-                    triangle_triangle::intersect(&x, &in_b.triangle(j))
+                    triangle_triangle::intersect(&x, &others.triangle(j))
                 } else {
                     hulls_meet(self.a, one, self.b, other)
                 };
@@ -120,12 +129,13 @@ fn contained(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Optio
     if !a.0.is_solid() && !b.0.is_solid() {
         return None;
     }
-    let Frame { relative, common: [from_a, from_b], .. } = frame(a, b);
-    let b_in_a = PlacedSolid::new(a.0, &from_a).and_then(|a| part_inside(&a, b.0, &from_b, scratch));
+    let frame = frame(a, b);
+    let (relative, [from_a, from_b]) = (frame.relative(), &frame.common);
+    let b_in_a = PlacedSolid::new(a.0, from_a).and_then(|a| part_inside(&a, b.0, from_b, scratch));
     if let Some(on_b) = b_in_a {
         return Some(Witness { on_a: relative.b_to_a.transform_point3(on_b), on_b });
     }
-    let on_a = PlacedSolid::new(b.0, &from_b).and_then(|b| part_inside(&b, a.0, &from_a, scratch))?;
+    let on_a = PlacedSolid::new(b.0, from_b).and_then(|b| part_inside(&b, a.0, from_a, scratch))?;
     Some(Witness { on_a, on_b: relative.a_to_b.transform_point3(on_a) })
 }
 
@@ -149,7 +159,9 @@ fn closest_pair(a: PlacedComplex, b: PlacedComplex, bound: f64, scratch: &mut Sc
     let frame = frame(a, b);
     // The best distance so far is kept in the common frame, as the bounds are.
     let mut best = frame.beyond(bound);
-    let Frame { relative, common, scale, stretch: [of_a, of_b] } = frame;
+    let [of_a, of_b] = frame.stretch();
+    let relative = frame.relative();
+    let Frame { common, scale, .. } = frame;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     rows.iter_mut().for_each(Rows::clear);
     let metric = of_a.metric(&of_b);
@@ -194,31 +206,43 @@ impl NearLeafPairs for Approach<'_> {
         let [rows_a, rows_b] = &mut *self.rows;
         let in_a = rows_a.place(simd, self.a.0, leaf_a, &self.common[0]);
         let in_b = rows_b.place(simd, self.b.0, leaf_b, &self.common[1]);
-        let least_of_a = in_a.least_along(simd, self.axis);
-        let least_of_b = in_b.least_along(simd, -self.axis);
-        for i in bits(in_a.nearer(simd, in_b.union(), *best * *best)) {
-            let along = exceed(simd, &least_of_b, *best - least_of_a[i]);
-            let near = in_b.nearer(simd, &in_a.bounds(i), *best * *best) & !along;
+        let of_a = in_a.nearer(simd, in_b.union(), *best * *best);
+        let of_b = in_b.nearer(simd, in_a.union(), *best * *best);
+        // As where they meet: those of which fewer are near, one by one.
+        let swapped = of_b.count_ones() < of_a.count_ones();
+        let [(ones, of_ones), (others, of_others)] =
+            if swapped { [(in_b, of_b), (in_a, of_a)] } else { [(in_a, of_a), (in_b, of_b)] };
+        if of_others == 0 {
+            return;
+        }
+        // The axis points to what of A is nearest.
+        let to_ones = if swapped { -1.0 } else { 1.0 };
+        let least_of_ones = ones.least_along(simd, self.axis * to_ones);
+        let least_of_others = others.least_along(simd, self.axis * -to_ones);
+        for i in bits(of_ones) {
+            let along = exceed(simd, &least_of_others, *best - least_of_ones[i]);
+            let near = others.nearer(simd, &ones.bounds(i), *best * *best) & of_others & !along;
             if near == 0 {
                 continue;
             }
             *self.primitive_tests += u64::from(near.count_ones());
-            let x = in_a.triangle(i);
-            let is_triangle = in_a.triangles() >> i & 1 == 1;
-            let known = if is_triangle { near & in_b.triangles() } else { 0 };
-            let known_of = if known != 0 { distances(simd, &x, in_b, known) } else { Near::UNKNOWN };
+            let x = ones.triangle(i);
+            let is_triangle = ones.triangles() >> i & 1 == 1;
+            let known = if is_triangle { near & others.triangles() } else { 0 };
+            let known_of = if known != 0 { distances(simd, &x, others, known) } else { Near::UNKNOWN };
             let Near { distance, least, .. } = &known_of;
             for j in bits(near) {
                 let is_known = known >> j & 1 == 1;
                 if is_known && least[j] >= *best {
                     continue;
                 }
-                let pair = (in_a.primitive(i), in_b.primitive(j));
+                let (one, other) = (ones.primitive(i), others.primitive(j));
+                let pair = if swapped { (other, one) } else { (one, other) };
                 if is_known && distance[j] - least[j] <= CONFIRMED {
                     if distance[j] < *best {
                         *best = distance[j];
                         self.answer = Some(pair);
-                        self.axis = known_of.axis(j);
+                        self.axis = known_of.axis(j) * to_ones;
                     }
                 } else {
                     let closest = closest_of(self.a, pair.0, self.b, pair.1);

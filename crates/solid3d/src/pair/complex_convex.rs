@@ -6,6 +6,7 @@
 //! at what remains. Where the distance is sought, [`gaps`](super::gaps) bounds that of the boxes of a node and of the images of triangles, all
 //! eight at a time, and only what may be nearest is placed and measured.
 
+use std::cell::OnceCell;
 use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
@@ -71,7 +72,7 @@ fn meeting_primitives_in(
     scratch: &mut Scratch,
     found: &mut dyn FnMut(u32, Option<Witness>) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    let (query, frame) = convex_in_complex(complex, convex);
+    let frame = frame(complex, convex);
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
     row.iter_mut().for_each(Row::clear);
     let direct = Direct::new(convex.0, &frame, CLEARLY_APART);
@@ -80,8 +81,8 @@ fn meeting_primitives_in(
         Direct::Cube(cube) => cube.map,
         _ => frame.common[0],
     };
-    let around = shadow.around(&query, &frame, &direct);
-    let metric = frame.stretch[0].metric(&Stretch::NONE);
+    let around = shadow.around(&direct);
+    let metric = frame.stretch_of_a().metric(&Stretch::NONE);
     let end = ControlFlow::Continue(());
     // Where all that meet are wanted, most leaves that are visited hold some.
     let glance = if wants_any {
@@ -91,7 +92,7 @@ fn meeting_primitives_in(
         None
     };
     let mut meeting =
-        Meeting { complex, convex, query, direct, map, shadow, glance, row, primitive_tests, found, end };
+        Meeting { complex, convex, direct, map, shadow, glance, row, primitive_tests, found, end };
     // What is clearly apart does not meet; nothing else is sought.
     let mut limit = CLEARLY_APART;
     complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut limit, traversal, &mut meeting);
@@ -101,8 +102,11 @@ fn meeting_primitives_in(
 /// The convex shape in the common frame.
 struct Shadow<'s> {
     shape: &'s dyn Support,
+    frame: &'s Frame,
     map: DAffine3,
     bounds: Aabb,
+    /// A box around it in the space of the complex one, found when first asked for.
+    in_complex: OnceCell<Aabb>,
     /// What tells the primitives looked at last from the shape, pointing to them; at first none.
     axis: DVec3,
     /// The greatest coordinate of the shape along it.
@@ -111,7 +115,7 @@ struct Shadow<'s> {
 
 impl<'s> Shadow<'s> {
     /// With bounds grown by a margin.
-    fn new(shape: &'s dyn Support, frame: &Frame, direct: &Direct, margin: f64) -> Self {
+    fn new(shape: &'s dyn Support, frame: &'s Frame, direct: &Direct, margin: f64) -> Self {
         let map = frame.common[1];
         let bounds = match direct {
             Direct::Round(round) => round.bounds(),
@@ -120,23 +124,40 @@ impl<'s> Shadow<'s> {
                 Aabb::new(min + map.translation, max + map.translation)
             }
         };
-        Shadow { shape, map, bounds: bounds.inflated(margin), axis: DVec3::ZERO, greatest: 0.0 }
+        Shadow {
+            shape,
+            frame,
+            map,
+            bounds: bounds.inflated(margin),
+            in_complex: OnceCell::new(),
+            axis: DVec3::ZERO,
+            greatest: 0.0,
+        }
     }
 
-    /// Where the shape is, in the space of the complex one; `query` is a box around it there.
-    fn around(&self, query: &Aabb, frame: &Frame, direct: &Direct) -> Places {
-        let in_complex = |point: DVec3| frame.relative.b_to_a.transform_point3(point);
+    /// A box around the shape in the space of the complex one.
+    fn in_complex(&self) -> &Aabb {
+        self.in_complex.get_or_init(|| bounds_in_complex(self.shape, self.frame))
+    }
+
+    /// Where the shape is, in the space of the complex one.
+    fn around(&self, direct: &Direct) -> Places {
+        let frame = self.frame;
+        let in_complex = |point: DVec3| frame.b_to_a.transform_point3(point);
         if let Direct::Round(round) = direct {
             let bounds = Aabb::of_points(round.local_ends.map(in_complex));
-            let bounds = bounds.inflated(frame.relative.slack_in_a);
+            let bounds = bounds.inflated(frame.slack_in_a);
             return Places::One([Around { bounds, radius: round.radius }]);
         }
         let center = self.shape.center();
         let local = in_complex(center);
-        let bounds = Aabb::new(local, local).inflated(frame.relative.slack_in_a);
+        let bounds = Aabb::new(local, local).inflated(frame.slack_in_a);
         let placed = self.map.transform_point3(center);
         let furthest = (self.bounds.max - placed).max(placed - self.bounds.min);
-        Places::Two([Around { bounds: *query, radius: 0.0 }, Around { bounds, radius: furthest.length() }])
+        Places::Two([
+            Around { bounds: *self.in_complex(), radius: 0.0 },
+            Around { bounds, radius: furthest.length() },
+        ])
     }
 
     /// Takes another axis.
@@ -183,7 +204,6 @@ impl Places {
 struct Meeting<'s> {
     complex: PlacedComplex<'s>,
     convex: PlacedConvex<'s>,
-    query: Aabb,
     direct: Direct,
     /// Where primitives are placed: in the common frame, or the space of a box.
     map: DAffine3,
@@ -253,7 +273,7 @@ impl Meeting<'_> {
         while let Some(lane) = bits(near).next() {
             near &= near - 1;
             let primitive = row.primitive(lane);
-            if !complex.primitive_bounds(primitive).overlaps(&self.query) {
+            if !complex.primitive_bounds(primitive).overlaps(self.shadow.in_complex()) {
                 continue;
             }
             let points = complex.primitive_hull(primitive);
@@ -282,17 +302,17 @@ pub(super) fn closest_within(
     if let Some(points) = contained(complex, convex, scratch) {
         return Some(Closest { distance: 0.0, points });
     }
-    let (query, frame) = convex_in_complex(complex, convex);
+    let frame = frame(complex, convex);
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
     let row = row.get_or_insert_default();
     row.clear();
-    let metric = frame.stretch[0].metric(&Stretch::NONE);
+    let metric = frame.stretch_of_a().metric(&Stretch::NONE);
     // The best distance so far is kept in the common frame, as the bounds are.
     let mut best = frame.beyond(bound);
     // Of a box the distance has no closed form here.
     let direct = Direct::round(convex.0, &frame);
     let shadow = Shadow::new(convex.0, &frame, &direct, ROUNDINGS);
-    let around = shadow.around(&query, &frame, &direct);
+    let around = shadow.around(&direct);
     let from = [convex.0.center(); 2];
     let gaps = Gaps::new(convex.0, &direct, &frame, complex.0.tree().normal());
     let images = complex.0.images();
@@ -490,7 +510,7 @@ fn contained(
     let [from_complex, from_convex] = &frame.common;
     let (solid, center) = (PlacedSolid::new(complex, from_complex)?, convex.0.center());
     let inside = solid.contains(from_convex.transform_point3(center), scratch);
-    inside.then(|| Witness { on_a: frame.relative.b_to_a.transform_point3(center), on_b: center })
+    inside.then(|| Witness { on_a: frame.b_to_a.transform_point3(center), on_b: center })
 }
 
 fn frame(complex: PlacedComplex, convex: PlacedConvex) -> Frame {
@@ -500,8 +520,11 @@ fn frame(complex: PlacedComplex, convex: PlacedConvex) -> Frame {
 /// A box around the convex shape in the space of the complex one, grown by the error of the map.
 pub(super) fn convex_in_complex(complex: PlacedComplex, convex: PlacedConvex) -> (Aabb, Frame) {
     let frame = frame(complex, convex);
-    let map = frame.relative.b_to_a;
-    let bounds = convex_bounds(convex.0, &map.matrix3);
-    let query = Aabb::new(bounds.min + map.translation, bounds.max + map.translation);
-    (query.inflated(frame.relative.slack_in_a), frame)
+    (bounds_in_complex(convex.0, &frame), frame)
+}
+
+fn bounds_in_complex(convex: &dyn Support, frame: &Frame) -> Aabb {
+    let map = frame.b_to_a;
+    let bounds = convex_bounds(convex, &map.matrix3);
+    Aabb::new(bounds.min + map.translation, bounds.max + map.translation).inflated(frame.slack_in_a)
 }

@@ -33,7 +33,7 @@ impl<'a> PlacedSolid<'a> {
             let reach = image_reach(&to_common.matrix3, mesh.reach()) + to_common.translation.abs();
             let beyond = 2.0 * reach.max_element();
             let frame = Frame::new(to_common, mesh.reach(), &DAffine3::IDENTITY, DVec3::splat(beyond));
-            PlacedSolid { mesh, to_common, relative: frame.relative, beyond }
+            PlacedSolid { mesh, to_common, relative: frame.relative(), beyond }
         })
     }
 

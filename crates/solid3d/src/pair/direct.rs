@@ -87,7 +87,8 @@ impl Round {
 /// The cube that a box is in a space of its own.
 fn cube(shape: &dyn Support, frame: &Frame, gap: f64) -> Option<Cube> {
     let [x, y, z] = shape.half_edges()?;
-    let Frame { relative, stretch: [of_complex, _], .. } = frame;
+    let relative = frame.relative();
+    let of_complex = frame.stretch_of_a();
     let to_cube = inverse_linear(&DMat3::from_cols(x, y, z));
     let linear = to_cube * relative.a_to_b.matrix3;
     let translation = to_cube * (relative.a_to_b.translation - shape.center());

@@ -16,15 +16,22 @@ const STRETCH_MAX: f64 = 1e200;
 
 /// Two placed spaces `A` and `B`, and how far the shapes in them reach from their origins.
 pub(super) struct Frame {
-    /// Takes points of either space to the other.
-    pub relative: Relative,
+    /// Takes points of `B` to `A`.
+    pub b_to_a: DAffine3,
+    /// How far, in any coordinate of `A`, the computed image of a point of `B` may be from where it truly lies.
+    pub slack_in_a: f64,
     /// Takes points of either space to one where exact predicates neither overflow nor underflow: the world's axes, the
     /// origin of `A`, and a unit of length that is a power of two near the size of the data.
     pub common: [DAffine3; 2],
     /// World lengths times this are lengths of the common frame.
     pub scale: f64,
-    /// Bounds on how local distances show in the common frame, for `A` and `B`.
-    pub stretch: [Stretch; 2],
+    /// The linear parts of the placements of `A` and `B`, and the inverse of the first.
+    linear: [DMat3; 2],
+    inverse_a: DMat3,
+    /// The origin of `A` from that of `B`, in the world.
+    offset: DVec3,
+    /// The size of the data.
+    size: f64,
 }
 
 /// How lengths change from a local space to the common frame.
@@ -38,28 +45,48 @@ pub(super) struct Stretch {
 
 impl Frame {
     pub fn new(at_a: &DAffine3, reach_a: DVec3, at_b: &DAffine3, reach_b: DVec3) -> Frame {
-        let (inverse_a, inverse_b) = (inverse_linear(&at_a.matrix3), inverse_linear(&at_b.matrix3));
-        let a_to_b = at_a.translation - at_b.translation;
+        let inverse_a = inverse_linear(&at_a.matrix3);
+        let offset = at_a.translation - at_b.translation;
         let size = image_reach(&at_a.matrix3, reach_a).max_element()
             + image_reach(&at_b.matrix3, reach_b).max_element()
-            + a_to_b.abs().max_element();
-        let relative = Relative {
-            b_to_a: DAffine3 { matrix3: inverse_a * at_b.matrix3, translation: inverse_a * -a_to_b },
-            a_to_b: DAffine3 { matrix3: inverse_b * at_a.matrix3, translation: inverse_b * a_to_b },
-            slack_in_a: slack(&at_a.matrix3, &inverse_a, size),
-            slack_in_b: slack(&at_b.matrix3, &inverse_b, size),
-        };
+            + offset.abs().max_element();
         let scale = unit_scale(size);
         let common = [
             DAffine3 { matrix3: at_a.matrix3 * scale, translation: DVec3::ZERO },
-            DAffine3 { matrix3: at_b.matrix3 * scale, translation: -a_to_b * scale },
+            DAffine3 { matrix3: at_b.matrix3 * scale, translation: -offset * scale },
         ];
         Frame {
-            relative,
+            b_to_a: DAffine3 { matrix3: inverse_a * at_b.matrix3, translation: inverse_a * -offset },
+            slack_in_a: slack(&at_a.matrix3, &inverse_a, size),
             common,
             scale,
-            stretch: [Stretch::new(&inverse_a, scale), Stretch::new(&inverse_b, scale)],
+            linear: [at_a.matrix3, at_b.matrix3],
+            inverse_a,
+            offset,
+            size,
         }
+    }
+
+    /// Takes points of either space to the other. Of what is convex, where it is in the space of a mesh is mostly enough.
+    pub fn relative(&self) -> Relative {
+        let [linear_a, linear_b] = &self.linear;
+        let inverse_b = inverse_linear(linear_b);
+        Relative {
+            b_to_a: self.b_to_a,
+            a_to_b: DAffine3 { matrix3: inverse_b * *linear_a, translation: inverse_b * self.offset },
+            slack_in_a: self.slack_in_a,
+            slack_in_b: slack(linear_b, &inverse_b, self.size),
+        }
+    }
+
+    /// Bounds on how distances local to `A` and `B` show in the common frame.
+    pub fn stretch(&self) -> [Stretch; 2] {
+        [self.stretch_of_a(), Stretch::new(&inverse_linear(&self.linear[1]), self.scale)]
+    }
+
+    /// The same, of `A` alone.
+    pub fn stretch_of_a(&self) -> Stretch {
+        Stretch::new(&self.inverse_a, self.scale)
     }
 
     /// A length of the common frame beyond a world length and the error of what is computed there: a search for what is below it

@@ -58,6 +58,11 @@ impl Folded {
             slack: (slack + ROUNDING * terms) * to.inverse + ROUNDING * sums,
         }
     }
+
+    /// The size of things where they are taken to over their size where they are, for an even comparison of boxes.
+    pub fn magnification(&self) -> f64 {
+        frobenius(&self.map.matrix3) / frobenius(&DMat3::IDENTITY)
+    }
 }
 
 /// Of a rotation times a scale, `3.sqrt()` times the scale.
@@ -98,7 +103,6 @@ pub(super) struct Crossing {
     /// G / 2, as lanes give twice the centre and the half extents; and its absolute value.
     pub half_rows: [[f32; 3]; 3],
     pub half_rows_abs: [[f32; 3]; 3],
-    magnification: f64,
 }
 
 /// A single box, prepared for tests against lanes of the other space.
@@ -147,7 +151,6 @@ impl Crossing {
             sums: quad(2.0 * row_sums(&back.abs)),
             half_rows,
             half_rows_abs: half_rows.map(|row| row.map(f32::abs)),
-            magnification: frobenius(&into.map.matrix3) / frobenius(&DMat3::IDENTITY),
         }
     }
 
@@ -177,11 +180,6 @@ impl Crossing {
             interval: simd.narrow_f64x4(lo, hi).to_array(),
             against: simd.narrow_f64x4(base, reach).to_array(),
         }
-    }
-
-    /// The size of things in L over their size in S, for an even comparison of boxes.
-    pub fn magnification(&self) -> f64 {
-        self.magnification
     }
 }
 

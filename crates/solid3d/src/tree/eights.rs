@@ -95,9 +95,10 @@ impl Image {
 pub(super) struct Overlaps {
     /// The lanes of `b` that were held against those of `a`, as bits. Others overlap none.
     pub tested: u32,
-    /// For each lane of `b`, those of `a` that it may overlap, as bits.
-    pub hits: [u32; WIDTH],
-    /// For each lane of `b`, how far those of `a` are apart from it on their own axes, below zero by how far they overlap.
+    /// The pairs that may overlap, as bits: eight for each lane of `b`, one for each of `a`.
+    pub hits: u64,
+    /// In the same order, how far those of `a` are apart from those of `b` on their own axes, below zero by how far they overlap; of
+    /// lanes that were tested.
     pub gaps: [[f32; WIDTH]; WIDTH],
 }
 
@@ -128,8 +129,11 @@ fn overlaps_on<S: Simd>(
 ) {
     let (of_a, of_b) = (Eight::new(simd, a, a_in_b), OneByOne::new(simd, b, b_in_a));
     overlaps.tested = of_b.near(simd, around_a);
+    overlaps.hits = 0;
     for lane in bits(overlaps.tested) {
-        (overlaps.hits[lane], overlaps.gaps[lane]) = of_a.overlapping(simd, &of_b, lane);
+        let (hits, gaps) = of_a.overlapping(simd, &of_b, lane);
+        overlaps.hits |= u64::from(hits) << (WIDTH * lane);
+        overlaps.gaps[lane] = gaps;
     }
 }
 
@@ -241,7 +245,7 @@ mod tests {
                 found
             });
             assert!(all[1] == all[0], "round {round}: {all:?}");
-            for (j, hit) in all[0].hits.into_iter().enumerate() {
+            for (j, hit) in all[0].hits.to_le_bytes().map(u32::from).into_iter().enumerate() {
                 assert!(all[0].tested >> j & 1 == 1 || hit == 0);
                 assert!(hit >> used[0] == 0 && (j < used[1] || hit == 0), "an empty lane is kept");
                 for i in 0..used[0] {

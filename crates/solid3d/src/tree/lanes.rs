@@ -175,7 +175,8 @@ fn weighed<S: Simd>(simd: S, gaps: [f32x8<S>; 3], weights: &Weights) -> f32x8<S>
 
 /// The set bits of a mask, from the lowest.
 #[inline]
-pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
+pub(crate) fn bits(mask: impl Into<u64>) -> impl Iterator<Item = usize> {
+    let mut mask = mask.into();
     std::iter::from_fn(move || {
         (mask != 0).then(|| {
             let lane = mask.trailing_zeros() as usize;

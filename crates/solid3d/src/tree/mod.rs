@@ -21,6 +21,7 @@
 //! | `validate` | the invariants |
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
+//! | `deepest` | the order in which pairs of subtrees are looked at where one that meets will do |
 //! | `eights` | the eight boxes of a node against the eight of another, across such a map |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
 //! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
@@ -41,6 +42,7 @@ mod cast_pairs;
 mod clusters;
 mod cost;
 mod crossing;
+mod deepest;
 mod eights;
 mod lanes;
 mod leaf_images;

@@ -121,8 +121,8 @@ fn walk<S: Simd>(
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, &duel.b_to_a, b, pair.b));
-                let squared = distances_squared(simd, lanes, &duel.b_to_a, probe, &metric.a, &metric.b);
+                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, duel.b_to_a(), b, pair.b));
+                let squared = distances_squared(simd, lanes, duel.b_to_a(), probe, &metric.a, &metric.b);
                 let mut bounds = [0.0; WIDTH];
                 for (some, bounds) in bounds.chunks_exact_mut(4).zip(metric.world(simd, squared)) {
                     bounds.store_slice(some);
@@ -138,8 +138,8 @@ fn walk<S: Simd>(
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, &duel.a_to_b, a, pair.a));
-                let squared = distances_squared(simd, lanes, &duel.a_to_b, probe, &metric.b, &metric.a);
+                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, duel.a_to_b(), a, pair.a));
+                let squared = distances_squared(simd, lanes, duel.a_to_b(), probe, &metric.b, &metric.a);
                 let mut bounds = [0.0; WIDTH];
                 for (some, bounds) in bounds.chunks_exact_mut(4).zip(metric.world(simd, squared)) {
                     bounds.store_slice(some);

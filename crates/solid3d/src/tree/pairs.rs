@@ -5,6 +5,7 @@ use fearless_simd::prelude::*;
 use solid_convex::simd::{Level, dispatch, level};
 
 use super::crossing::{Crossing, Folded, Probe};
+use super::deepest::Order;
 use super::eights::{Image, Overlaps, overlaps};
 use super::lanes::{bits, extents, overlapping_probe};
 use super::node::{Kind, WIDTH};
@@ -12,6 +13,7 @@ use super::packed::PackedBox;
 use super::relative::Relative;
 use super::traversal::STACK_USUAL;
 use super::{Place, Traversal, Tree};
+use std::cell::OnceCell;
 use std::ops::ControlFlow;
 
 /// Visits the pairs of leaves of `a` and `b` whose boxes may overlap (six facet axes): all pairs of primitives whose boxes do, and
@@ -96,8 +98,8 @@ fn walk<B, S: Simd>(
     let wants_first = visitor.wants_first();
     // Of the boxes tested last: several in a row are often the same.
     let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
-    // Of the nodes opened together last; gaps in the order of the pairs that they gave.
-    let (mut found, mut gaps) = (Overlaps::default(), [0.0; WIDTH * WIDTH]);
+    // Of the nodes opened together last.
+    let mut found = Overlaps::default();
     while let Some(pair) = stack.pop() {
         match duel.step(&pair) {
             Step::Leaves(leaf_a, leaf_b) => {
@@ -106,52 +108,38 @@ fn walk<B, S: Simd>(
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, &duel.b_to_a, b, pair.b));
+                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, duel.b_to_a(), b, pair.b));
                 let extents = extents(simd, lanes);
-                let (hits, gaps) = overlapping_probe(simd, lanes, &duel.b_to_a, probe);
-                let from = stack.len();
-                for lane in bits(hits) {
-                    stack.push(Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..pair });
-                }
-                if wants_first {
-                    deepest_last(&mut stack[from..], hits, &gaps.to_array());
-                }
+                let (hits, gaps) = overlapping_probe(simd, lanes, duel.b_to_a(), probe);
+                push(simd, stack, wants_first, hits, &gaps.to_array(), |lane| {
+                    let lane = lane % WIDTH;
+                    Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..pair }
+                });
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, &duel.a_to_b, a, pair.a));
+                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, duel.a_to_b(), a, pair.a));
                 let extents = extents(simd, lanes);
-                let (hits, gaps) = overlapping_probe(simd, lanes, &duel.a_to_b, probe);
-                let from = stack.len();
-                for lane in bits(hits) {
-                    stack.push(Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..pair });
-                }
-                if wants_first {
-                    deepest_last(&mut stack[from..], hits, &gaps.to_array());
-                }
+                let (hits, gaps) = overlapping_probe(simd, lanes, duel.a_to_b(), probe);
+                push(simd, stack, wants_first, hits, &gaps.to_array(), |lane| {
+                    let lane = lane % WIDTH;
+                    Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..pair }
+                });
             }
             Step::OpenBoth(node_a, node_b, images) => {
                 let (lanes_a, lanes_b) = (&a.nodes[node_a], &b.nodes[node_b]);
                 overlaps(simd, lanes_a, lanes_b, images, &a.box_at(pair.a), &mut found);
                 counters.box_tests += u64::from(found.tested.count_ones());
                 let (extents_a, extents_b) = (extents(simd, lanes_a), extents(simd, lanes_b));
-                let from = stack.len();
-                for lane_b in bits(found.tested) {
-                    for lane_a in bits(found.hits[lane_b]) {
-                        if wants_first {
-                            gaps[stack.len() - from] = found.gaps[lane_b][lane_a];
-                        }
-                        stack.push(Pair {
-                            a: Place::lane(node_a, lane_a),
-                            b: Place::lane(node_b, lane_b),
-                            extent_a: extents_a[lane_a],
-                            extent_b: extents_b[lane_b],
-                        });
+                push(simd, stack, wants_first, found.hits, found.gaps.as_flattened(), |place| {
+                    let (lane_a, lane_b) = (place % WIDTH, place / WIDTH % WIDTH);
+                    Pair {
+                        a: Place::lane(node_a, lane_a),
+                        b: Place::lane(node_b, lane_b),
+                        extent_a: extents_a[lane_a],
+                        extent_b: extents_b[lane_b],
                     }
-                }
-                if wants_first {
-                    sort_deepest_last(&mut stack[from..], &mut gaps);
-                }
+                });
             }
             Step::Nothing => {}
         }
@@ -159,32 +147,23 @@ fn walk<B, S: Simd>(
     ControlFlow::Continue(())
 }
 
-/// Sorts entries by how deep they overlap, the deepest last; of equal ones the one that came last.
+/// Adds the pairs that a mask says, of which the last is looked at first.
 #[inline(always)]
-fn sort_deepest_last(entries: &mut [Pair], gaps: &mut [f32; WIDTH * WIDTH]) {
-    for count in 1..entries.len() {
-        let mut at = count;
-        while at > 0 && gaps[at - 1] < gaps[at] {
-            entries.swap(at - 1, at);
-            gaps.swap(at - 1, at);
-            at -= 1;
+fn push<S: Simd>(
+    simd: S,
+    stack: &mut Vec<Pair>,
+    wants_first: bool,
+    hits: impl Into<u64>,
+    gaps: &[f32],
+    pair: impl Fn(usize) -> Pair,
+) {
+    if wants_first {
+        let order = Order::deepest_last(simd, hits.into(), gaps);
+        stack.extend(order.as_slice().iter().map(|&place| pair(usize::from(place))));
+    } else {
+        for place in bits(hits) {
+            stack.push(pair(place));
         }
-    }
-}
-
-/// Sorts the entries of some lanes by how deep they overlap, the deepest last; of equal ones the highest lane.
-#[inline(always)]
-fn deepest_last(entries: &mut [Pair], lanes: u32, gaps: &[f32; WIDTH]) {
-    let mut sorted = [f32::INFINITY; WIDTH];
-    for (count, lane) in bits(lanes).enumerate() {
-        let gap = gaps[lane];
-        let mut at = count;
-        while at > 0 && sorted[at - 1] < gap {
-            sorted[at] = sorted[at - 1];
-            entries.swap(at - 1, at);
-            at -= 1;
-        }
-        sorted[at] = gap;
     }
 }
 
@@ -221,9 +200,10 @@ impl Tested {
 pub(super) struct Duel<'t> {
     pub a: &'t Tree,
     pub b: &'t Tree,
-    /// For boxes of `a` against lanes of `b`, and the reverse.
-    pub a_to_b: Crossing,
-    pub b_to_a: Crossing,
+    /// The ways of boxes of `b` to `a`, and the reverse.
+    ways: [Folded; 2],
+    /// The same for one box against eight, found when that is first asked for.
+    crossings: OnceCell<[Crossing; 2]>,
     /// For boxes of `b` taken to `a`, and the reverse, eight at once.
     images: Option<[Image; 2]>,
     /// The size of things in `a` over their size in `b`.
@@ -257,21 +237,40 @@ pub(super) enum Step<'d, 't> {
 
 impl<'t> Duel<'t> {
     pub fn new(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
-        let [of_b, of_a] = folded(a, b, relative);
-        let images = Image::new(&of_b).zip(Image::new(&of_a)).map(|(of_b, of_a)| [of_b, of_a]);
-        Duel { images, ..Self::of(a, b, &of_b, &of_a) }
+        let ways = folded(a, b, relative);
+        let images = Image::new(&ways[0]).zip(Image::new(&ways[1])).map(|(of_b, of_a)| [of_b, of_a]);
+        Self::of(a, b, ways, images)
     }
 
     /// The same, of which no two nodes are ever opened together.
     pub fn one_by_one(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
-        let [of_b, of_a] = folded(a, b, relative);
-        Self::of(a, b, &of_b, &of_a)
+        Self::of(a, b, folded(a, b, relative), None)
     }
 
-    fn of(a: &'t Tree, b: &'t Tree, of_b: &Folded, of_a: &Folded) -> Self {
-        let (b_to_a, a_to_b) = (Crossing::of(of_b, of_a), Crossing::of(of_a, of_b));
-        let magnification = b_to_a.magnification() as f32;
-        Duel { a, b, a_to_b, b_to_a, images: None, magnification }
+    #[inline]
+    fn of(a: &'t Tree, b: &'t Tree, ways: [Folded; 2], images: Option<[Image; 2]>) -> Self {
+        let magnification = ways[0].magnification() as f32;
+        Duel { a, b, ways, crossings: OnceCell::new(), images, magnification }
+    }
+
+    /// For boxes of `b` against lanes of `a`.
+    #[inline(always)]
+    pub fn b_to_a(&self) -> &Crossing {
+        &self.crossings()[0]
+    }
+
+    /// For boxes of `a` against lanes of `b`.
+    #[inline(always)]
+    pub fn a_to_b(&self) -> &Crossing {
+        &self.crossings()[1]
+    }
+
+    #[inline(always)]
+    fn crossings(&self) -> &[Crossing; 2] {
+        self.crossings.get_or_init(|| {
+            let [of_b, of_a] = &self.ways;
+            [Crossing::of(of_b, of_a), Crossing::of(of_a, of_b)]
+        })
     }
 
     /// The two trees.

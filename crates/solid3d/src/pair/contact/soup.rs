@@ -151,7 +151,7 @@ impl LeafPairs<()> for NearPairs<'_> {
             *self.primitive_tests += u64::from(near.count_ones());
             let x = in_a.triangle(i);
             let triangles = if in_a.triangles() >> i & 1 == 1 { near & in_b.triangles() } else { 0 };
-            let sure = verdict(simd, &x, &bounds, in_b, triangles);
+            let sure = verdict(simd, &x, in_b, triangles);
             let apart = if self.margin == 0.0 { sure.apart } else { 0 };
             for j in bits(near & !apart) {
                 // Of triangles it is decided exactly, as everywhere.
@@ -173,7 +173,7 @@ impl LeafPairs<()> for NearPairs<'_> {
 
 /// The contacts of two soups.
 pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scratch) -> Vec<Patch> {
-    let mut relative = pair.frame.relative;
+    let mut relative = pair.frame.relative();
     relative.slack_in_a += pair.local_margin(0);
     relative.slack_in_b += pair.local_margin(1);
     let [map_a, map_b] = pair.frame.common;
@@ -228,7 +228,7 @@ pub(super) fn whole(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
 impl Pair<'_> {
     /// The margin in the local space of one of the two.
     fn local_margin(&self, of: usize) -> f64 {
-        self.margin / self.frame.stretch[of].least
+        self.margin / self.frame.stretch()[of].least
     }
 
     /// The contacts along a normal, given from `b` to `a`, that may not be that of the deepest point.

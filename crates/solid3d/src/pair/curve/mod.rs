@@ -69,7 +69,7 @@ fn candidates(a: &Complex, b: &Complex, frame: &Frame, scratch: &mut Scratch) ->
     let Scratch { traversal, leaves: [in_a, in_b], primitive_tests, .. } = scratch;
     let [from_a, from_b] = &frame.common;
     let mut candidates = Vec::new();
-    let _ = pairs(a.tree(), b.tree(), &frame.relative, traversal, |leaf_a, leaf_b| {
+    let _ = pairs(a.tree(), b.tree(), &frame.relative(), traversal, |leaf_a, leaf_b| {
         place(a, leaf_a, from_a, in_a);
         place(b, leaf_b, from_b, in_b);
         for x in &*in_a {

@@ -83,8 +83,9 @@ pub(super) struct Gaps {
 impl Gaps {
     /// `None` where the shapes are so far apart, or so different in size, that single precision tells nothing.
     pub fn new(shape: &dyn Support, direct: &Direct, frame: &Frame, normal: &Normal) -> Option<Gaps> {
-        let Frame { relative, stretch: [of_complex, _], common: [from_complex, _], .. } = frame;
-        let to_tree = relative.b_to_a.matrix3 * normal.inverse;
+        let Frame { b_to_a, slack_in_a, common: [from_complex, _], .. } = frame;
+        let of_complex = frame.stretch_of_a();
+        let to_tree = b_to_a.matrix3 * normal.inverse;
         let (mut middle, mut radius, mut tells_by_points) = (shape.center(), 0.0, true);
         let body = if let Direct::Round(round) = direct {
             let [p, q] = round.local_ends;
@@ -101,8 +102,8 @@ impl Gaps {
             Body::edges(&to_tree, &[DVec3::X * x, DVec3::Y * y, DVec3::Z * z])
         };
         let size = body.size();
-        let middle_in_tree = (relative.b_to_a.transform_point3(middle) - normal.origin) * normal.inverse;
-        let slack = SLACKS * relative.slack_in_a * normal.inverse;
+        let middle_in_tree = (b_to_a.transform_point3(middle) - normal.origin) * normal.inverse;
+        let slack = SLACKS * slack_in_a * normal.inverse;
         let unit = of_complex.least * normal.scale * (1.0 - ROUNDING);
         let linear = from_complex.matrix3 * normal.scale;
         let stretch = row_norm(&(linear.transpose() * linear)).sqrt() / unit * (1.0 + ROUNDING);

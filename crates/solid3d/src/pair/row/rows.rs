@@ -15,15 +15,16 @@ const STRIDE: usize = 4;
 /// The rows of one shape placed lately: where two trees meet, each leaf of one meets several of the other, soon after each other.
 #[derive(Debug)]
 pub(crate) struct Rows {
-    /// As many as were ever needed at once.
+    /// As many as were ever needed at once; those in use stand first.
     rows: Vec<Row>,
+    used: u8,
     /// By the place of a leaf: which row it has, counted from 1; 0 for none.
     row_of: [u8; SLOTS],
 }
 
 impl Default for Rows {
     fn default() -> Self {
-        Rows { rows: Vec::new(), row_of: [0; SLOTS] }
+        Rows { rows: Vec::new(), used: 0, row_of: [0; SLOTS] }
     }
 }
 
@@ -35,7 +36,7 @@ impl Rows {
 
     /// Forgets all: before another shape is placed, or the same elsewhere.
     pub fn clear(&mut self) {
-        self.rows.iter_mut().for_each(Row::clear);
+        (self.used, self.row_of) = (0, [0; SLOTS]);
     }
 
     /// The primitives of a leaf of a shape, placed now or before.
@@ -44,11 +45,13 @@ impl Rows {
         let from_first = leaf.as_ptr().addr().wrapping_sub(complex.tree().order().as_ptr().addr());
         let slot = &mut self.row_of[from_first / size_of::<u32>() / STRIDE % SLOTS];
         if *slot == 0 {
-            if self.rows.is_empty() {
-                self.rows.reserve_exact(SLOTS);
+            if usize::from(self.used) == self.rows.len() {
+                self.rows.reserve_exact(SLOTS - self.rows.len());
+                self.rows.push(Row::default());
             }
-            self.rows.push(Row::default());
-            *slot = self.rows.len() as u8;
+            self.rows[usize::from(self.used)].clear();
+            self.used += 1;
+            *slot = self.used;
         }
         let row = &mut self.rows[usize::from(*slot) - 1];
         row.place(simd, complex, leaf, map);

@@ -32,10 +32,10 @@ pub(super) fn surface_point((mesh, at): PlacedComplex, point: DVec3, scratch: &m
     let solid = PlacedSolid::new(mesh, to_common).expect("the caller saw that it is solid");
     let inside = solid.contains(p, scratch);
 
-    let local = frame.relative.b_to_a.translation;
-    let bounds = Aabb::new(local, local).inflated(frame.relative.slack_in_a);
+    let local = frame.b_to_a.translation;
+    let bounds = Aabb::new(local, local).inflated(frame.slack_in_a);
     let query = [Around { bounds, radius: 0.0 }];
-    let [of_mesh, _] = &frame.stretch;
+    let of_mesh = &frame.stretch_of_a();
     let metric = of_mesh.metric(&Stretch::NONE);
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let mut nearest = Nearest {
