@@ -15,6 +15,8 @@
 //! 2. Every pair is given once, the smaller proxy first.
 //! 3. The same calls give the same pairs in the same order and the same [`Counters`].
 
+mod bits;
+mod boxes;
 mod dynamic_tree;
 mod pair_lists;
 pub(crate) mod room;
@@ -164,7 +166,7 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
     ///
     /// # Panics
     /// If the proxy is above every one ever used.
-    fn bounds(&self, proxy: Proxy) -> &Aabb;
+    fn bounds(&self, proxy: Proxy) -> Aabb;
 
     /// Visits the proxies whose box has a `bound` of at most `until`, about in the order of their bounds; each visit gives the new
     /// `until`. Boxes that were added or moved since the last [`flush`](Self::flush) may be missing; all others are not, nor are

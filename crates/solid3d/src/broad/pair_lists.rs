@@ -1,44 +1,17 @@
 //! Pairs of proxies, with each proxy's own list of them, and what changed about them.
 
+use fearless_simd::Simd;
+use solid_convex::simd::{dispatch, level};
+
+use super::bits::{Bits, WORD, bits};
+use super::boxes::Boxes;
 use super::room::{push, resize};
-use super::{PROXY_MAX, PairChange, PairId, Proxy};
+use super::{PairChange, PairId, Proxy};
 
 const END: u32 = u32::MAX;
 
-/// Pairs whose marks stand in one word.
-const MARKS: usize = u64::BITS as usize;
-
-/// The proxies of a pair, the smaller first, and in the bits above those of the first what is known of it.
-///
-/// Of all that is kept of a pair this alone is read of each when everything moved; so it stands apart from the rest.
-#[derive(Clone, Copy, Debug)]
-struct Ends([u32; 2]);
-
-impl Ends {
-    /// The slot is not in use: the next such slot stands in the links.
-    const UNUSED: Ends = Ends([0; 2]);
-    /// The boxes overlap.
-    const OVERLAPS: u32 = 1 << 31;
-    /// They did when changes were last settled.
-    const SHOWN: u32 = 1 << 30;
-    const IN_USE: u32 = 1 << 29;
-
-    fn new(a: Proxy, b: Proxy) -> Self {
-        Ends([a.min(b) | Ends::IN_USE, a.max(b)])
-    }
-
-    fn proxies(self) -> [Proxy; 2] {
-        [self.0[0] & PROXY_MAX, self.0[1]]
-    }
-
-    fn is(self, what: u32) -> bool {
-        self.0[0] & what != 0
-    }
-
-    fn set(&mut self, what: u32, is: bool) {
-        self.0[0] = if is { self.0[0] | what } else { self.0[0] & !what };
-    }
-}
+/// The ends of a slot that is not in use: the next such slot stands in its links.
+const UNUSED: [Proxy; 2] = [0; 2];
 
 /// Where a pair hangs in the lists of its two proxies: the next and the previous link in the list of either. In a slot that is
 /// not in use `next[0]` is the next such slot.
@@ -55,31 +28,41 @@ struct Links {
 /// one pair out of the list of, say, the ground must not cost a search in that list.
 #[derive(Debug)]
 pub(super) struct PairLists {
-    ends: Vec<Ends>,
+    /// The proxies of each pair, the smaller first; of a slot that is not in use, 0 twice. Of all that is kept of a pair this alone is read
+    /// of each when everything moved: so it stands apart from the rest, and what is yes or no of a pair in bits, of 64 at a time.
+    ends: Vec<[Proxy; 2]>,
+    in_use: Bits,
+    /// Pairs whose boxes overlap.
+    overlaps: Bits,
+    /// Those that did when changes were last settled.
+    shown: Bits,
     /// By pair, as `ends`.
     links: Vec<Links>,
     /// The first slot that is not in use.
     unused: u32,
     /// By proxy: the first link of its list.
     heads: Vec<u32>,
-    /// Pairs whose `OVERLAPS` was changed since changes were last settled; some may have been taken out since.
+    /// Pairs whose `overlaps` was changed since changes were last settled; some may have been taken out since.
     touched: Vec<PairId>,
     /// What was settled since the last [`begin`](Self::begin).
     changes: Vec<PairChange>,
-    /// Working memory of `refresh_all`: a bit for each pair.
-    marks: Vec<u64>,
+    /// Working memory of `refresh_all`: by word of the pairs, those that overlap.
+    found: Vec<u64>,
 }
 
 impl Default for PairLists {
     fn default() -> Self {
         PairLists {
             ends: vec![],
+            in_use: Bits::default(),
+            overlaps: Bits::default(),
+            shown: Bits::default(),
             links: vec![],
             unused: END,
             heads: vec![],
             touched: vec![],
             changes: vec![],
-            marks: vec![],
+            found: vec![],
         }
     }
 }
@@ -98,7 +81,8 @@ impl PairLists {
     /// Adds a pair that is not there yet.
     pub fn insert(&mut self, a: Proxy, b: Proxy, overlaps: bool) -> PairId {
         let id = self.take_slot();
-        self.ends[id as usize] = Ends::new(a, b);
+        self.ends[id as usize] = [a.min(b), a.max(b)];
+        self.in_use.set(id, true);
         self.hang(id);
         self.set_overlaps(id, overlaps);
         id
@@ -107,7 +91,7 @@ impl PairLists {
     /// Puts a pair at the head of both its lists.
     fn hang(&mut self, id: PairId) {
         let mut links = Links { next: [END; 2], previous: [END; 2] };
-        for (side, &proxy) in self.ends[id as usize].proxies().iter().enumerate() {
+        for (side, proxy) in self.ends[id as usize].into_iter().enumerate() {
             let link = 2 * id + side as u32;
             let head = std::mem::replace(&mut self.heads[proxy as usize], link);
             links.next[side] = head;
@@ -126,8 +110,11 @@ impl PairLists {
                 id
             }
             None => {
-                push(&mut self.ends, Ends::UNUSED);
+                push(&mut self.ends, UNUSED);
                 push(&mut self.links, Links { next: [END; 2], previous: [END; 2] });
+                for bits in [&mut self.in_use, &mut self.overlaps, &mut self.shown] {
+                    bits.grow(self.ends.len());
+                }
                 self.ends.len() as PairId - 1
             }
         }
@@ -135,7 +122,7 @@ impl PairLists {
 
     /// Takes a pair out, without a word.
     pub fn remove(&mut self, id: PairId) {
-        let proxies = self.ends[id as usize].proxies();
+        let proxies = self.ends[id as usize];
         let Links { next, previous } = self.links[id as usize];
         for side in 0..2 {
             if previous[side] == END {
@@ -151,7 +138,10 @@ impl PairLists {
     }
 
     fn drop_slot(&mut self, id: PairId) {
-        self.ends[id as usize] = Ends::UNUSED;
+        self.ends[id as usize] = UNUSED;
+        for bits in [&mut self.in_use, &mut self.overlaps, &mut self.shown] {
+            bits.set(id, false);
+        }
         self.links[id as usize].next[0] = self.unused;
         self.unused = id;
     }
@@ -170,7 +160,7 @@ impl PairLists {
         while link != END {
             let (id, next) = (link / 2, self.next(link));
             if !stays(self.partner(link)) {
-                debug_assert!(!self.ends[id as usize].is(Ends::OVERLAPS | Ends::SHOWN));
+                debug_assert!(!self.overlaps.is(id) && !self.shown.is(id));
                 self.remove(id);
             }
             link = next;
@@ -185,7 +175,7 @@ impl PairLists {
         self.heads.fill(END);
         self.unused = END;
         for id in (0..self.ends.len() as PairId).rev() {
-            if self.ends[id as usize].is(Ends::OVERLAPS) {
+            if self.overlaps.is(id) {
                 self.hang(id);
             } else {
                 self.drop_slot(id);
@@ -195,47 +185,38 @@ impl PairLists {
 
     /// Says whether the boxes of a pair overlap.
     pub fn set_overlaps(&mut self, id: PairId, overlaps: bool) {
-        let ends = &mut self.ends[id as usize];
-        if ends.is(Ends::OVERLAPS) != overlaps {
-            ends.set(Ends::OVERLAPS, overlaps);
+        if self.overlaps.is(id) != overlaps {
+            self.overlaps.set(id, overlaps);
             push(&mut self.touched, id);
         }
     }
 
     /// Finds anew which boxes overlap, among all pairs.
     ///
-    /// Which pairs change is written down first and acted upon afterwards, because nobody can foretell it: where each was a branch,
-    /// the boxes of the pairs that follow were not fetched from memory before the branch was taken. `fetch` reads something of a
-    /// box, so that it is at hand.
-    pub fn refresh_all(
-        &mut self,
-        fetch: impl Fn(Proxy) -> u64 + Sync,
-        overlaps: impl Fn(Proxy, Proxy) -> bool + Sync,
-    ) {
-        /// Fewer boxes than this are at hand always. Of a million, a pass takes a fifth less time when they are fetched before.
-        const FETCH_MIN: usize = 1 << 16;
-        let far = self.heads.len() >= FETCH_MIN;
-        let mark = |(block, marks): (&[Ends], &mut u64)| {
-            if far {
-                // This loop does nothing but wait for memory, for as many boxes at a time as the machine can.
-                let read =
-                    |bits, ends: &Ends| ends.proxies().iter().fold(bits, |bits, &proxy| bits ^ fetch(proxy));
-                std::hint::black_box(block.iter().fold(0, read));
-            }
-            let changes = |ends: &Ends| {
-                let [a, b] = ends.proxies();
-                // In a slot that is not in use both are 0.
-                ends.is(Ends::IN_USE) & (overlaps(a, b) != ends.is(Ends::OVERLAPS))
+    /// Which pairs overlap is written down first, and what changed is acted upon afterwards, because nobody can foretell it: where each was
+    /// a branch, the boxes of the pairs that follow were not fetched from memory before the branch was taken. The processor waits for the
+    /// boxes of as many pairs at a time as it has room for the instructions of: so a pair takes few.
+    pub fn refresh_all(&mut self, boxes: &Boxes) {
+        let Self { ends, in_use, overlaps, touched, found, .. } = self;
+        /// More boxes than this are not in the caches.
+        const NEAR_MAX: usize = 1 << 19;
+        let (level, near) = (level(), boxes.len() <= NEAR_MAX);
+        found.clear();
+        resize(found, ends.len().div_ceil(WORD), 0);
+        for_each_word(ends, found, |(pairs, found): (&[[Proxy; 2]], &mut u64)| {
+            *found = if near {
+                dispatch!(level, simd => overlapping::<_, false>(simd, pairs, boxes))
+            } else {
+                dispatch!(level, simd => overlapping::<_, true>(simd, pairs, boxes))
             };
-            *marks = (0..).zip(block).fold(0, |bits, (i, ends)| bits | u64::from(changes(ends)) << i);
-        };
-        let Self { ends, touched, marks, .. } = self;
-        marks.clear();
-        resize(marks, ends.len().div_ceil(MARKS), 0);
-        for_each_block(ends, marks, mark);
-        for id in marked(marks) {
-            ends[id as usize].0[0] ^= Ends::OVERLAPS;
-            push(touched, id);
+        });
+        for (at, (was, (is, in_use))) in
+            (0..).zip(overlaps.words_mut().iter_mut().zip(found.iter().zip(in_use.words())))
+        {
+            let is = is & in_use;
+            for bit in bits(std::mem::replace(was, is) ^ is) {
+                push(touched, at * WORD as PairId + bit);
+            }
         }
     }
 
@@ -259,14 +240,13 @@ impl PairLists {
     pub fn settle(&mut self, mut stays: impl FnMut([Proxy; 2]) -> bool) {
         let mut touched = std::mem::take(&mut self.touched);
         for id in touched.drain(..) {
-            let ends = &mut self.ends[id as usize];
             // One may stand here twice, also because its slot was used anew since.
-            if !ends.is(Ends::IN_USE) {
+            if !self.in_use.is(id) {
                 continue;
             }
-            let (proxies, overlaps) = (ends.proxies(), ends.is(Ends::OVERLAPS));
-            if ends.is(Ends::SHOWN) != overlaps {
-                ends.set(Ends::SHOWN, overlaps);
+            let (proxies, overlaps) = (self.ends[id as usize], self.overlaps.is(id));
+            if self.shown.is(id) != overlaps {
+                self.shown.set(id, overlaps);
                 push(&mut self.changes, PairChange { pair: id, proxies, overlaps });
             }
             if !overlaps && !stays(proxies) {
@@ -282,34 +262,28 @@ impl PairLists {
 
     /// Visits the pairs that overlap.
     pub fn for_each(&self, mut visit: impl FnMut(PairId, [Proxy; 2])) {
-        for (id, ends) in (0..).zip(&self.ends) {
-            if ends.is(Ends::OVERLAPS) {
-                visit(id, ends.proxies());
-            }
-        }
+        self.overlaps.iter().for_each(|id| visit(id, self.ends[id as usize]));
     }
 
     /// Visits all pairs, and whether they overlap.
     pub fn for_each_known(&self, mut visit: impl FnMut([Proxy; 2], bool)) {
-        for ends in self.ends.iter().filter(|ends| ends.is(Ends::IN_USE)) {
-            visit(ends.proxies(), ends.is(Ends::OVERLAPS));
-        }
+        self.in_use.iter().for_each(|id| visit(self.ends[id as usize], self.overlaps.is(id)));
     }
 
     /// Visits the pairs of a proxy that were shown to overlap, and its partners.
     pub fn for_each_shown_of(&self, proxy: Proxy, visit: impl FnMut(PairId, Proxy)) {
-        self.for_each_of(proxy, Ends::SHOWN, visit);
+        self.for_each_of(proxy, &self.shown, visit);
     }
 
     /// Visits the partners of a proxy whose pair with it overlaps.
     pub fn for_each_overlap_of(&self, proxy: Proxy, visit: impl FnMut(PairId, Proxy)) {
-        self.for_each_of(proxy, Ends::OVERLAPS, visit);
+        self.for_each_of(proxy, &self.overlaps, visit);
     }
 
-    fn for_each_of(&self, proxy: Proxy, what: u32, mut visit: impl FnMut(PairId, Proxy)) {
+    fn for_each_of(&self, proxy: Proxy, those: &Bits, mut visit: impl FnMut(PairId, Proxy)) {
         let mut link = self.head(proxy);
         while link != END {
-            if self.ends[link as usize / 2].is(what) {
+            if those.is(link / 2) {
                 visit(link / 2, self.partner(link));
             }
             link = self.next(link);
@@ -332,7 +306,7 @@ impl PairLists {
 
     /// The same, where it was shown to overlap.
     pub fn find_shown(&self, a: Proxy, b: Proxy) -> Option<PairId> {
-        self.find(a, b).filter(|&id| self.ends[id as usize].is(Ends::SHOWN))
+        self.find(a, b).filter(|&id| self.shown.is(id))
     }
 
     fn head(&self, proxy: Proxy) -> u32 {
@@ -349,7 +323,7 @@ impl PairLists {
 
     /// The other proxy of a pair.
     fn partner(&self, link: u32) -> Proxy {
-        self.ends[link as usize / 2].proxies()[1 - link as usize % 2]
+        self.ends[link as usize / 2][1 - link as usize % 2]
     }
 
     pub fn validate(&self) {
@@ -357,8 +331,8 @@ impl PairLists {
         for (proxy, &head) in self.heads.iter().enumerate() {
             let (mut previous, mut link) = (END, head);
             while link != END {
-                let (proxies, side) = (self.ends[link as usize / 2].proxies(), link as usize % 2);
-                assert!(self.ends[link as usize / 2].is(Ends::IN_USE));
+                let (proxies, side) = (self.ends[link as usize / 2], link as usize % 2);
+                assert!(self.in_use.is(link / 2));
                 assert_eq!(proxies[side] as usize, proxy);
                 assert_eq!(self.links[link as usize / 2].previous[side], previous);
                 assert!(proxies[0] < proxies[1]);
@@ -369,7 +343,7 @@ impl PairLists {
         }
         let (mut unused, mut slot) = (0, self.unused);
         while slot != END {
-            assert!(!self.ends[slot as usize].is(Ends::IN_USE));
+            assert!(!self.in_use.is(slot) && !self.overlaps.is(slot) && !self.shown.is(slot));
             unused += 1;
             slot = self.links[slot as usize].next[0];
         }
@@ -377,31 +351,32 @@ impl PairLists {
     }
 }
 
-/// Calls `mark` with the pairs of each word of marks; with the feature `rayon` on the threads of the current pool, if there are many.
-fn for_each_block(ends: &[Ends], marks: &mut [u64], mark: impl Fn((&[Ends], &mut u64)) + Sync + Send) {
+/// Of up to as many pairs as a word has bits those that overlap.
+#[inline(always)]
+fn overlapping<S: Simd, const FAR: bool>(simd: S, pairs: &[[Proxy; 2]], boxes: &Boxes) -> u64 {
+    let mut apart = 0;
+    // A loop: what a fold is given is not always inlined, and is then called without vectors for each pair.
+    for &[a, b] in pairs.iter().rev() {
+        apart = apart << 1 | u64::from(boxes.apart_with::<S, FAR>(simd, a, b));
+    }
+    !apart
+}
+
+/// Calls `find` with the pairs of each word; with the feature `rayon` on the threads of the current pool, if there are many.
+fn for_each_word(
+    pairs: &[[Proxy; 2]],
+    words: &mut [u64],
+    find: impl Fn((&[[Proxy; 2]], &mut u64)) + Sync + Send,
+) {
     #[cfg(feature = "rayon")]
     {
         use rayon::prelude::*;
         /// Fewer words than this, of pairs that take some 5 ns each, are not worth another thread.
         const SHARE_MIN: usize = 128;
-        if crate::threads::share(marks.len(), SHARE_MIN) {
-            let blocks = ends.par_chunks(MARKS).zip(marks);
-            return blocks.with_min_len(SHARE_MIN / 2).for_each(mark);
+        if crate::threads::share(words.len(), SHARE_MIN) {
+            let blocks = pairs.par_chunks(WORD).zip(words);
+            return blocks.with_min_len(SHARE_MIN / 2).for_each(find);
         }
     }
-    ends.chunks(MARKS).zip(marks).for_each(mark);
-}
-
-/// The pairs of the bits that are set, in ascending order.
-fn marked(marks: &[u64]) -> impl Iterator<Item = PairId> {
-    (0..).step_by(MARKS).zip(marks).flat_map(|(first, &bits)| {
-        let mut bits = bits;
-        std::iter::from_fn(move || {
-            (bits != 0).then(|| {
-                let mark = bits.trailing_zeros();
-                bits &= bits - 1;
-                first + mark
-            })
-        })
-    })
+    pairs.chunks(WORD).zip(words).for_each(find);
 }

@@ -1,7 +1,8 @@
 //! The boxes of tree nodes: `f32`, rounded outward.
 
 use crate::bounds::Aabb;
-use crate::broad::Proxy;
+use crate::broad::{Proxy, is_ordered};
+use fearless_simd::{Simd, f32x8, f64x4, prelude::*};
 use glam::DVec3;
 
 /// How much a fat box exceeds its tight box on each side, as a fraction of the tight box's largest extent.
@@ -16,7 +17,7 @@ const FRAMES_AHEAD: f64 = 8.0;
 /// The look-ahead is at most this multiple of the tight box's largest extent, so that a teleport leaves no giant.
 const AHEAD_MAX: f64 = 1.0;
 
-/// A box of `f32`, never empty.
+/// A box of `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FatBox {
     pub min: [f32; 3],
@@ -24,6 +25,9 @@ pub(super) struct FatBox {
 }
 
 impl FatBox {
+    /// Holds nothing.
+    pub const EMPTY: FatBox = FatBox { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
+
     /// The smallest `f32` box around `bounds`.
     ///
     /// Coordinates beyond the range of `f32` are clamped to it. Such a box does not contain `bounds`, yet no overlap
@@ -44,13 +48,28 @@ impl FatBox {
         FatBox::around(&Aabb::new(bounds.min - margin - below, bounds.max + margin + above))
     }
 
-    /// Whether a box lies in this one. Then so does [`around`](Self::around) it: this box is one of those that it is chosen from.
+    /// Whether a box is not empty and lies in this one. Then so does [`around`](Self::around) it: this box is one of those that it is chosen
+    /// from.
     #[inline]
-    pub fn contains(&self, bounds: &Aabb) -> bool {
+    pub fn holds(&self, bounds: &Aabb) -> bool {
         // Without a branch: nearly all boxes are asked this in each frame, and nearly all lie inside.
-        (0..3).fold(true, |inside, k| {
+        (0..3).fold(is_ordered(bounds), |inside, k| {
             inside & (f64::from(self.min[k]) <= bounds.min[k]) & (bounds.max[k] <= f64::from(self.max[k]))
         })
+    }
+
+    /// The same, in vectors.
+    #[inline(always)]
+    pub fn holds_with<S: Simd>(&self, simd: S, bounds: &Aabb) -> bool {
+        // The first four numbers and the last four of each box, as they stand in memory: of one vector the last lane is of no account,
+        // of the other the first.
+        let [[a, b, c], [d, e, f]] = [self.min, self.max];
+        let (fat_min, fat_max) = f32x8::simd_from(simd, [a, b, c, d, c, d, e, f]).widen();
+        let [[a, b, c], [d, e, f]] = [bounds.min.to_array(), bounds.max.to_array()];
+        let (min, max) = (f64x4::simd_from(simd, [a, b, c, d]), f64x4::simd_from(simd, [c, d, e, f]));
+        let from = fat_min.simd_le(min) & min.simd_le(max.slide::<1>(max));
+        let until = max.simd_le(fat_max);
+        !(from.to_bitmask() & until.to_bitmask() >> 1) & 0b111 == 0
     }
 
     pub fn overlaps(&self, other: &FatBox) -> bool {
@@ -92,6 +111,10 @@ fn round_up(x: f64) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use rand::Rng;
+    use solid_convex::simd::{dispatch, levels};
+    use solid_oracle::generate::seeded;
+
     use super::*;
 
     #[test]
@@ -110,6 +133,38 @@ mod tests {
             assert!(round_down(w[0]) <= round_down(w[1]) && round_up(w[0]) <= round_up(w[1]));
             assert!(round_down(w[0]) <= round_up(w[1]));
         }
+    }
+
+    /// Law: at any level, a box is held where its numbers say so; one that is empty or not of numbers is not.
+    #[test]
+    fn vectors_hold_what_numbers_hold() {
+        let mut rng = seeded(811);
+        let (mut hits, cases) = (0, 4000);
+        for case in 0..cases {
+            // Half of the boxes lie inside, some of them with a face in that of the fat box.
+            let mut any = |most: i32| f64::from(rng.random_range(0..=most));
+            let min = DVec3::new(any(2), any(2), any(2));
+            let max = min + DVec3::new(any(4), any(4), any(4));
+            let mut numbers = [min.x, min.y, min.z, max.x, max.y, max.z];
+            let fat = FatBox { min: [0.0; 3], max: [4.0; 3] };
+            if case % 16 == 0 {
+                numbers[case / 16 % 6] = [f64::NAN, f64::INFINITY, -f64::INFINITY, 9.0, -9.0][case % 5];
+            }
+            let bounds = Aabb::new(DVec3::from_slice(&numbers[..3]), DVec3::from_slice(&numbers[3..]));
+            let expected = (0..3).all(|k| {
+                let (from, until) = (numbers[k], numbers[k + 3]);
+                0.0 <= from && from <= until && until <= 4.0
+            });
+            assert_eq!(fat.holds(&bounds), expected, "{bounds:?}");
+            for level in levels() {
+                let held = dispatch!(level, simd => fat.holds_with(simd, &bounds));
+                assert_eq!(held, expected, "{level:?}, {bounds:?}");
+                let empty = dispatch!(level, simd => FatBox::EMPTY.holds_with(simd, &bounds));
+                assert!(!empty && !FatBox::EMPTY.holds(&bounds));
+            }
+            hits += usize::from(expected);
+        }
+        assert!((cases * 3 / 10..cases * 7 / 10).contains(&hits), "{hits} of {cases} are held");
     }
 
     #[test]

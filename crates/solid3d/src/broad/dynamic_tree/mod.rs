@@ -17,7 +17,7 @@
 //! rebuild are shared among threads; pairs that were found are linked by one of them while the others seek the next.
 //!
 //! What is done for everything that moves is free of branches and reads memory in order, or many places at a time: while all move
-//! and stay inside, a frame of 10,000 boxes takes 97 us, where the same work with branches took 240 us.
+//! and stay inside, a frame of 10,000 boxes takes 71 us, where the same work with branches took 240 us.
 
 mod build;
 mod fat_box;
@@ -29,6 +29,7 @@ mod slots;
 mod status;
 mod tree;
 
+use super::boxes::Boxes;
 use super::pair_lists::PairLists;
 use super::room::{resize, resize_on_threads, room};
 use super::{BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid};
@@ -69,7 +70,7 @@ const REFRESH_ALL_AT_ONE_IN: usize = 4;
 #[derive(Debug, Default)]
 pub struct DynamicTree {
     /// By proxy: the current box where the proxy is in use.
-    tight: Vec<Aabb>,
+    tight: Boxes,
     /// By proxy: contains `FatBox::around(tight)`. The box in the tree, unless queued.
     fat: Vec<FatBox>,
     status: Vec<Status>,
@@ -100,7 +101,7 @@ impl DynamicTree {
     /// All boxes, and what is noted of them.
     fn slots(&mut self) -> (Slots<'_>, &mut Notes) {
         let Self { tight, fat, status, notes, .. } = self;
-        (Slots { first: 0, tight, fat, status }, notes)
+        (Slots { first: 0, tight: tight.rows_mut(), fat, status }, notes)
     }
 
     /// Where more boxes than this moved, one pass over all pairs is cheaper than a walk along their lists.
@@ -111,8 +112,8 @@ impl DynamicTree {
     /// Makes room for proxies below `proxies`.
     fn grow(&mut self, proxies: usize) {
         if proxies > self.tight.len() {
-            resize_on_threads(&mut self.tight, proxies, Aabb::EMPTY);
-            resize_on_threads(&mut self.fat, proxies, FatBox { min: [0.0; 3], max: [0.0; 3] });
+            self.tight.grow(proxies);
+            resize_on_threads(&mut self.fat, proxies, FatBox::EMPTY);
             resize(&mut self.status, proxies, Status::default());
             self.tree.grow(proxies);
             self.pairs.grow(proxies);
@@ -135,7 +136,7 @@ impl DynamicTree {
     /// Gives back memory for more boxes, and for building anew. The first tree is of all boxes, and is the only one where few leave
     /// their fat boxes at a time; where it is not, it is not worth while, since it is needed again.
     fn trim(&mut self) {
-        self.tight.shrink_to_fit();
+        self.tight.trim();
         self.fat.shrink_to_fit();
         self.status.shrink_to_fit();
         self.tree.nodes.shrink_to_fit();
@@ -162,14 +163,10 @@ impl DynamicTree {
     fn refresh_moved(&mut self) {
         let Self { tight, pairs, notes, .. } = self;
         if notes.all_moved {
-            let fetch = |proxy: Proxy| {
-                let Aabb { min, max } = tight[proxy as usize];
-                min.x.to_bits() ^ max.z.to_bits()
-            };
-            pairs.refresh_all(fetch, |a, b| overlap(tight, a, b));
+            pairs.refresh_all(tight);
         } else {
             for &proxy in &notes.moved {
-                pairs.refresh_of(proxy, |partner| overlap(tight, proxy, partner));
+                pairs.refresh_of(proxy, |partner| tight.overlap(proxy, partner));
             }
         }
         pairs.settle(|_| true);
@@ -212,7 +209,7 @@ impl DynamicTree {
             self.counters.node_visits += tree.query(&fat[proxy as usize], stack, |other| {
                 // Of two queued boxes the one that comes first finds the pair.
                 if other != proxy && pairs.find(proxy, other).is_none() {
-                    pairs.insert(proxy, other, overlap(tight, proxy, other));
+                    pairs.insert(proxy, other, tight.overlap(proxy, other));
                 }
             });
         }
@@ -260,11 +257,6 @@ impl DynamicTree {
             self.pair_all();
         }
     }
-}
-
-#[inline(always)]
-fn overlap(tight: &[Aabb], a: Proxy, b: Proxy) -> bool {
-    tight[a as usize].overlaps(&tight[b as usize])
 }
 
 impl BroadPhase for DynamicTree {
@@ -320,6 +312,7 @@ impl BroadPhase for DynamicTree {
         assert!(self.is_alive(proxy), "proxy {proxy} is not in use");
         let status = &mut self.status[proxy as usize];
         status.set(Status::ALIVE, false);
+        self.fat[proxy as usize] = FatBox::EMPTY;
         if status.is(Status::IN_TREE) {
             status.set(Status::IN_TREE, false);
             self.tree.remove(proxy);
@@ -379,8 +372,8 @@ impl BroadPhase for DynamicTree {
         self.pairs.find_shown(a, b)
     }
 
-    fn bounds(&self, proxy: Proxy) -> &Aabb {
-        &self.tight[proxy as usize]
+    fn bounds(&self, proxy: Proxy) -> Aabb {
+        self.tight.get(proxy)
     }
 
     fn for_each_nearest(
@@ -407,7 +400,7 @@ impl BroadPhase for DynamicTree {
             assert!(status.is(Status::ALIVE) || !status.is(Status::IN_TREE));
             if status.is(Status::ALIVE) {
                 let fat = self.fat[proxy as usize];
-                let around = FatBox::around(&self.tight[proxy as usize]);
+                let around = FatBox::around(&self.tight.get(proxy));
                 assert_eq!(fat.union(&around), fat);
                 let in_place = || status.is(Status::IN_TREE) && self.tree.leaf_box(proxy) == fat;
                 assert!(status.is(Status::QUEUED) || in_place());
@@ -415,7 +408,7 @@ impl BroadPhase for DynamicTree {
         }
         self.pairs.for_each_known(|[a, b], overlaps| {
             assert!(
-                self.notes.changed || overlaps == overlap(&self.tight, a, b),
+                self.notes.changed || overlaps == self.tight.overlap(a, b),
                 "pair ({a}, {b}): {overlaps}"
             );
             let (s, t) = (self.status[a as usize], self.status[b as usize]);

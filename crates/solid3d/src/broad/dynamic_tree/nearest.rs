@@ -19,7 +19,7 @@ impl DynamicTree {
     ) {
         // What waits for the next flush is not in the tree, or not where it is.
         for &proxy in &self.notes.queue {
-            if self.is_alive(proxy) && bound(&self.tight[proxy as usize]) <= until {
+            if self.is_alive(proxy) && bound(&self.tight.get(proxy)) <= until {
                 until = visit(proxy);
             }
         }
@@ -31,7 +31,7 @@ impl DynamicTree {
             match kind {
                 Kind::Leaf(proxy) => {
                     let here = self.is_alive(proxy) && !self.status[proxy as usize].is(Status::QUEUED);
-                    if here && bound(&self.tight[proxy as usize]) <= until {
+                    if here && bound(&self.tight.get(proxy)) <= until {
                         until = visit(proxy);
                     }
                 }

@@ -143,7 +143,7 @@ impl Node {
         let moved = self.lane_box(last);
         self.set_box(lane, &moved);
         self.children[lane] = self.children[last];
-        self.set_box(last, &FatBox { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] });
+        self.set_box(last, &FatBox::EMPTY);
         self.count -= 1;
     }
 

@@ -1,9 +1,9 @@
 //! The search for all pairs of a tree that was just built.
 
+use super::Proxy;
 use super::self_pairs::Lanes;
 use super::tree::Tree;
-use super::{Proxy, overlap};
-use crate::bounds::Aabb;
+use crate::broad::boxes::Boxes;
 use crate::threads::{both, for_each_part};
 
 /// Nodes that are searched in one piece, at least and at most: with some thousand pairs, whose boxes a core's own cache holds.
@@ -43,7 +43,7 @@ pub(super) struct Search {
 impl Search {
     /// Hands on every pair of leaves whose boxes overlap, each once, in an order that depends on the tree alone; gives the number
     /// of nodes visited.
-    pub fn run(&mut self, tree: &Tree, tight: &[Aabb], mut visit: impl FnMut(&Found) + Send) -> u64 {
+    pub fn run(&mut self, tree: &Tree, tight: &Boxes, mut visit: impl FnMut(&Found) + Send) -> u64 {
         let Self { next, done } = self;
         next.resize_with(PIECES, Piece::default);
         done.resize_with(PIECES, Piece::default);
@@ -74,7 +74,7 @@ impl Search {
 }
 
 impl Piece {
-    fn search(&mut self, tree: &Tree, tight: &[Aabb], nodes: std::ops::Range<usize>) {
+    fn search(&mut self, tree: &Tree, tight: &Boxes, nodes: std::ops::Range<usize>) {
         let Self { found, stack, visits } = self;
         found.clear();
         *visits = 0;
@@ -85,7 +85,7 @@ impl Piece {
         }
         // In a loop of its own, which waits for many boxes at a time.
         for Found { proxies: [a, b], overlaps } in found {
-            *overlaps = overlap(tight, *a, *b);
+            *overlaps = tight.overlap(*a, *b);
         }
     }
 }

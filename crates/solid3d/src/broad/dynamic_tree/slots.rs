@@ -4,24 +4,28 @@
 //! threads may work on them. What concerns all of them is noted by each part and joined in their order. So everything is as if
 //! the boxes had been told one by one.
 //!
-//! A move that stays inside waits for memory: four numbers at a time in vectors, or 64 boxes looked at before any is changed, took 1.87
-//! and 2.2 G cycles for 5,000 frames of 10,000 boxes, where this takes 1.75.
+//! A move that stays inside waits for memory, and for as many boxes at a time as the processor has room for the instructions of: many are
+//! moved in vectors of four numbers, in a loop that knows whether moves are still noted, which takes some 30 instructions in place of 58 and
+//! two thirds of the time. To copy the boxes in `f32` besides, for the pass over pairs, cost more than that pass gained.
 
 use super::fat_box::FatBox;
 use super::status::Status;
 use crate::bounds::Aabb;
+use crate::broad::boxes::{Row, of_row, row};
 #[cfg(feature = "rayon")]
 use crate::broad::room::extend;
 use crate::broad::room::push;
-use crate::broad::{Proxy, is_ordered, is_valid};
+use crate::broad::{Proxy, is_valid};
 #[cfg(feature = "rayon")]
 use crate::threads::{first_part_where, share};
+use fearless_simd::Simd;
+use solid_convex::simd::{dispatch, level};
 
 /// What is kept of the boxes of some proxies that follow one another.
 pub(super) struct Slots<'a> {
     /// The first proxy.
     pub first: usize,
-    pub tight: &'a mut [Aabb],
+    pub tight: &'a mut [Row],
     pub fat: &'a mut [FatBox],
     pub status: &'a mut [Status],
 }
@@ -29,7 +33,7 @@ pub(super) struct Slots<'a> {
 impl Slots<'_> {
     /// The slot of a proxy, if it is one of these.
     #[inline(always)]
-    fn slot(&mut self, proxy: Proxy) -> Option<(&mut Aabb, &mut FatBox, &mut Status)> {
+    fn slot(&mut self, proxy: Proxy) -> Option<(&mut Row, &mut FatBox, &mut Status)> {
         let slot = (proxy as usize).wrapping_sub(self.first);
         Some((self.tight.get_mut(slot)?, self.fat.get_mut(slot)?, self.status.get_mut(slot)?))
     }
@@ -38,16 +42,75 @@ impl Slots<'_> {
     #[inline(always)]
     pub fn update(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes, moved_max: usize) -> bool {
         if let Some((tight, fat, status)) = self.slot(proxy)
-            // Nearly all stay inside. A fat box is finite: so is what lies in it.
-            && fat.contains(bounds) & is_ordered(bounds) & status.is(Status::ALIVE)
+            // Nearly all stay inside. What is not in use has an empty fat box.
+            && fat.holds(bounds)
         {
-            if *tight != *bounds {
-                *tight = *bounds;
-                notes.note_moved(proxy, status, moved_max);
-            }
+            settle(tight, bounds, || notes.note_moved(proxy, status, moved_max));
             return true;
         }
         self.leave(proxy, bounds, notes, moved_max)
+    }
+
+    /// Moves boxes, until one is refused: which one it is, if one is.
+    #[inline(always)]
+    fn update_each<S: Simd>(
+        &mut self,
+        simd: S,
+        boxes: &[(Proxy, Aabb)],
+        notes: &mut Notes,
+        moved_max: usize,
+    ) -> Option<usize> {
+        let mut done = 0;
+        // Ends, because more boxes are done each time, but for the one time when so many moved that no more are noted.
+        while done < boxes.len() {
+            let was_all = notes.all_moved;
+            done += if was_all {
+                self.update_inside::<S, true>(simd, &boxes[done..], notes, moved_max)
+            } else {
+                self.update_inside::<S, false>(simd, &boxes[done..], notes, moved_max)
+            };
+            if let Some((proxy, bounds)) = boxes.get(done)
+                && notes.all_moved == was_all
+            {
+                if !self.update(*proxy, bounds, notes, moved_max) {
+                    return Some(done);
+                }
+                done += 1;
+            }
+        }
+        None
+    }
+
+    /// Moves boxes as long as they stay inside of their fat boxes, and as long as `ALL` says whether so many moved that no more are noted:
+    /// how many.
+    ///
+    /// All there is to a frame in which everything moves a little: it waits for memory, and the fewer instructions a box takes, the more boxes
+    /// the processor waits for at a time.
+    #[inline(always)]
+    fn update_inside<S: Simd, const ALL: bool>(
+        &mut self,
+        simd: S,
+        boxes: &[(Proxy, Aabb)],
+        notes: &mut Notes,
+        moved_max: usize,
+    ) -> usize {
+        let Slots { first, tight, fat, status } = self;
+        let count = tight.len().min(fat.len()).min(status.len());
+        let (tight, fat, status) = (&mut tight[..count], &fat[..count], &mut status[..count]);
+        let mut rest = boxes.iter();
+        while let Some((proxy, bounds)) = rest.as_slice().first() {
+            let slot = (*proxy as usize).wrapping_sub(*first);
+            if slot >= count || !fat[slot].holds_with(simd, bounds) || notes.all_moved != ALL {
+                break;
+            }
+            if ALL {
+                tight[slot] = row(bounds);
+            } else {
+                settle(&mut tight[slot], bounds, || notes.note_moved(*proxy, &mut status[slot], moved_max));
+            }
+            rest.next();
+        }
+        boxes.len() - rest.len()
     }
 
     /// Gives a box another fat box, since it left the one that it had.
@@ -57,7 +120,7 @@ impl Slots<'_> {
         if !status.is(Status::ALIVE) || !is_valid(bounds) {
             return false;
         }
-        let was = std::mem::replace(tight, *bounds);
+        let was = of_row(std::mem::replace(tight, row(bounds)));
         *fat = FatBox::with_room(proxy, &was, bounds);
         notes.note_moved(proxy, status, moved_max);
         if status.put(Status::QUEUED) {
@@ -72,13 +135,21 @@ impl Slots<'_> {
         if !is_valid(bounds) || !status.put(Status::ALIVE) {
             return false;
         }
-        *tight = *bounds;
+        *tight = row(bounds);
         *fat = FatBox::with_room(proxy, bounds, bounds);
         notes.changed = true;
         if status.put(Status::QUEUED) {
             push(&mut notes.queue, proxy);
         }
         true
+    }
+}
+
+/// Sets a box; if that is another, `moved` hears of it.
+#[inline(always)]
+fn settle(tight: &mut Row, bounds: &Aabb, moved: impl FnOnce()) {
+    if std::mem::replace(tight, row(bounds)) != row(bounds) {
+        moved();
     }
 }
 
@@ -152,7 +223,7 @@ impl Slots<'_> {
         let refused = match work {
             Work::Insert => boxes.iter().position(|(proxy, bounds)| !self.insert(*proxy, bounds, notes)),
             Work::Update => {
-                boxes.iter().position(|(proxy, bounds)| !self.update(*proxy, bounds, notes, moved_max))
+                dispatch!(level(), simd => self.update_each(simd, boxes, notes, moved_max))
             }
         };
         (refused.unwrap_or(boxes.len()), refused)

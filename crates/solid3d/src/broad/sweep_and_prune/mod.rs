@@ -292,8 +292,8 @@ impl BroadPhase for SweepAndPrune {
         self.pairs.lists.find_shown(a, b)
     }
 
-    fn bounds(&self, proxy: Proxy) -> &Aabb {
-        &self.boxes[proxy as usize]
+    fn bounds(&self, proxy: Proxy) -> Aabb {
+        self.boxes[proxy as usize]
     }
 
     fn for_each_nearest(

@@ -1,0 +1,87 @@
+//! A bit for each of many things.
+
+use super::room::resize;
+
+/// Bits of a word.
+pub(super) const WORD: usize = u64::BITS as usize;
+
+/// Bits that are named by dense integers; those that were never set are not.
+#[derive(Debug, Default)]
+pub(super) struct Bits(Vec<u64>);
+
+impl Bits {
+    /// Makes room for bits below `len`, which are not set.
+    pub fn grow(&mut self, len: usize) {
+        if len > self.0.len() * WORD {
+            resize(&mut self.0, len.div_ceil(WORD), 0);
+        }
+    }
+
+    #[inline]
+    pub fn is(&self, bit: u32) -> bool {
+        self.0[bit as usize / WORD] >> (bit as usize % WORD) & 1 != 0
+    }
+
+    #[inline]
+    pub fn set(&mut self, bit: u32, is: bool) {
+        let (word, mask) = (&mut self.0[bit as usize / WORD], 1 << (bit as usize % WORD));
+        *word = if is { *word | mask } else { *word & !mask };
+    }
+
+    pub fn words(&self) -> &[u64] {
+        &self.0
+    }
+
+    pub fn words_mut(&mut self) -> &mut [u64] {
+        &mut self.0
+    }
+
+    /// Those that are set, in ascending order.
+    pub fn iter(&self) -> impl Iterator<Item = u32> {
+        (0..).step_by(WORD).zip(&self.0).flat_map(|(first, &word)| bits(word).map(move |bit| first + bit))
+    }
+}
+
+/// The bits of a word that are set, in ascending order.
+#[inline]
+pub(super) fn bits(mut word: u64) -> impl Iterator<Item = u32> {
+    std::iter::from_fn(move || {
+        (word != 0).then(|| {
+            let bit = word.trailing_zeros();
+            word &= word - 1;
+            bit
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
+    use super::*;
+
+    /// Law: they are a set of integers.
+    #[test]
+    fn they_say_what_a_tree_set_says() {
+        let mut rng = seeded(813);
+        let (mut those, mut truth, mut hits) = (Bits::default(), BTreeSet::new(), 0);
+        for len in 1..1000 {
+            those.grow(len);
+            let bit = rng.random_range(0..len as u32);
+            assert_eq!(those.is(bit), truth.contains(&bit));
+            hits += usize::from(truth.contains(&bit));
+            if rng.random_bool(0.7) {
+                truth.insert(bit);
+                those.set(bit, true);
+            } else {
+                truth.remove(&bit);
+                those.set(bit, false);
+            }
+            assert!(those.iter().eq(truth.iter().copied()), "{len}");
+        }
+        assert!((300..700).contains(&hits), "{hits} bits were set");
+    }
+}
