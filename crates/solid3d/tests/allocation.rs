@@ -7,8 +7,9 @@ use std::alloc::System;
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use solid_oracle::generate::seeded;
+use solid3d::broad::{BroadPhase, DynamicTree, Proxy};
 use solid3d::{
-    Boxes, BroadPhaseKind, Collision, Motion, Response, Shape, TestProgress, World, WorldOptions, glam,
+    Aabb, Boxes, BroadPhaseKind, Collision, Motion, Response, Shape, TestProgress, World, WorldOptions, glam,
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -43,6 +44,7 @@ fn memory() {
         an_object_takes_little_beyond_its_shape();
         a_frame_like_those_before_allocates_nothing();
         nor_does_one_that_threads_share();
+        nor_do_boxes_that_threads_share();
     };
     // A pool's own queue of work from outside it allocates now and then.
     #[cfg(feature = "rayon")]
@@ -182,5 +184,37 @@ fn nor_does_one_that_threads_share() {
     let found = run(10 * PERIOD..11 * PERIOD);
     let change = region.change();
     assert!(found > OBJECTS / 10, "{found} collisions");
+    assert_eq!((change.allocations, change.reallocations), (0, 0), "{change:?}");
+}
+
+/// Nor does a broad phase of so many boxes that threads share the telling of them, and the pass over pairs.
+fn nor_do_boxes_that_threads_share() {
+    const BOXES: u32 = 40_000;
+    let mut rng = seeded(832);
+    let mut anywhere = |reach: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(0.0..reach)));
+    let ways: Vec<[DVec3; 2]> = (0..BOXES).map(|_| [anywhere(60.0), anywhere(0.1)]).collect();
+    // There and back.
+    let frames: Vec<Vec<(Proxy, Aabb)>> = (0..PERIOD)
+        .map(|frame| {
+            let place = |[home, step]: &[DVec3; 2]| *home + *step * frame.abs_diff(PERIOD / 2) as f64;
+            (0..).zip(ways.iter().map(|way| Aabb::new(place(way), place(way) + 1.0))).collect()
+        })
+        .collect();
+    let mut broad = DynamicTree::default();
+    broad.insert_many(&frames[0]);
+    let mut run = |times: usize| {
+        let mut changes = 0;
+        for boxes in frames.iter().cycle().take(times * PERIOD) {
+            broad.update_many(boxes);
+            broad.flush();
+            changes += broad.changes().len();
+        }
+        changes
+    };
+    run(10);
+    let region = Region::new(ALLOCATOR);
+    let changes = run(1);
+    let change = region.change();
+    assert!(changes > 1000, "{changes} changes");
     assert_eq!((change.allocations, change.reallocations), (0, 0), "{change:?}");
 }

@@ -371,8 +371,8 @@ fn for_each_word(
     #[cfg(feature = "rayon")]
     {
         use rayon::prelude::*;
-        /// Fewer words than this, of pairs that take some 5 ns each, are not worth another thread.
-        const SHARE_MIN: usize = 128;
+        /// Fewer words than this, of pairs that take some 3 ns each, are not worth another thread.
+        const SHARE_MIN: usize = 512;
         if crate::threads::share(words.len(), SHARE_MIN) {
             let blocks = pairs.par_chunks(WORD).zip(words);
             return blocks.with_min_len(SHARE_MIN / 2).for_each(find);

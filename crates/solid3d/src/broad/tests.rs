@@ -254,7 +254,7 @@ fn the_same_calls_give_the_same_order() {
 #[test]
 fn the_number_of_threads_changes_nothing() {
     /// Enough for several threads to have something to do.
-    const BOXES: u32 = 20_000;
+    const BOXES: u32 = 60_000;
     let run = || {
         let mut rng = StdRng::seed_from_u64(5);
         let mut anywhere =
@@ -289,7 +289,7 @@ fn the_number_of_threads_changes_nothing() {
 #[test]
 fn many_at_once_are_as_one_by_one() {
     /// Enough for several threads to have something to do.
-    const BOXES: u32 = 10_000;
+    const BOXES: u32 = 40_000;
     let mut rng = StdRng::seed_from_u64(11);
     let mut anywhere = |scale: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(0.0..scale)));
     let side = (8.0 * f64::from(BOXES)).cbrt();
@@ -345,7 +345,7 @@ fn many_at_once_are_as_one_by_one() {
 /// Law: of many boxes the first that is refused is named, on any number of threads, and what was told before stands.
 #[test]
 fn many_boxes_with_a_bad_one_are_refused() {
-    const BOXES: u32 = 10_000;
+    const BOXES: u32 = 40_000;
     let good: Vec<(Proxy, Aabb)> = (0..BOXES)
         .map(|proxy| {
             let min = DVec3::new(2.0 * f64::from(proxy), 0.0, 0.0);
@@ -353,8 +353,8 @@ fn many_boxes_with_a_bad_one_are_refused() {
         })
         .collect();
     let mut bad = good.clone();
-    bad[7000].1.max.y = f64::NAN;
-    bad[7003].1.max.y = f64::INFINITY;
+    bad[27_000].1.max.y = f64::NAN;
+    bad[27_003].1.max.y = f64::INFINITY;
     let run = || {
         for insert in [true, false] {
             let mut broad = BroadPhaseKind::DynamicTree.build();
@@ -367,7 +367,7 @@ fn many_boxes_with_a_bad_one_are_refused() {
             });
             let refused = std::panic::catch_unwind(told).unwrap_err();
             let message = refused.downcast_ref::<String>().unwrap();
-            assert!(message.contains("the box of proxy 7000 is empty or not finite"), "{message}");
+            assert!(message.contains("the box of proxy 27000 is empty or not finite"), "{message}");
             broad.flush();
             broad.validate();
         }
