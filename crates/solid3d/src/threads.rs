@@ -47,76 +47,6 @@ pub(crate) fn both(worth: bool, one: impl FnOnce() + Send, other: impl FnOnce() 
     other();
 }
 
-/// Does work that is shared out again and again: where it is worth it, on a thread of the pool, while others of it stay awake. To wake a
-/// thread takes longer than many a share; and one that sleeps between them may be woken on the core of the thread that wakes it, frame for
-/// frame.
-pub(crate) fn with_others_awake<R: Send>(worth: bool, work: impl FnOnce() -> R + Send) -> R {
-    #[cfg(feature = "rayon")]
-    if share(usize::from(worth), 1) && !awake::AT_WORK.get() {
-        return awake::with_others(work);
-    }
-    let _ = worth;
-    work()
-}
-
-/// Threads that stay awake while another works.
-#[cfg(feature = "rayon")]
-mod awake {
-    use std::cell::Cell;
-    use std::sync::atomic::{AtomicBool, Ordering};
-    use std::time::{Duration, Instant};
-
-    use rayon::Yield;
-
-    /// More do not stay awake.
-    const OTHERS_MAX: usize = 7;
-
-    /// A thread goes when it has had nothing to do for so long. It may be one that waits, and that another waits for in turn: so it must
-    /// not stay for what is never done.
-    const PATIENCE: Duration = Duration::from_micros(200);
-
-    thread_local! {
-        /// Whether this thread does work for which others stay awake.
-        pub static AT_WORK: Cell<bool> = const { Cell::new(false) };
-    }
-
-    pub fn with_others<R: Send>(work: impl FnOnce() -> R + Send) -> R {
-        let done = AtomicBool::new(false);
-        let work = || {
-            /// Also when the work panics.
-            struct Guard<'d>(&'d AtomicBool);
-            impl Drop for Guard<'_> {
-                fn drop(&mut self) {
-                    AT_WORK.set(false);
-                    self.0.store(true, Ordering::Release);
-                }
-            }
-            AT_WORK.set(true);
-            let _guard = Guard(&done);
-            work()
-        };
-        share_out((rayon::current_num_threads() - 1).min(OTHERS_MAX), work, &done)
-    }
-
-    fn share_out<R: Send>(others: usize, work: impl FnOnce() -> R + Send, done: &AtomicBool) -> R {
-        if others == 0 {
-            return work();
-        }
-        rayon::join(|| share_out(others - 1, work, done), || stay(done)).0
-    }
-
-    /// Does what there is to do in the pool until it is done.
-    fn stay(done: &AtomicBool) {
-        let mut since = Instant::now();
-        while !done.load(Ordering::Acquire) && !AT_WORK.get() && since.elapsed() < PATIENCE {
-            match rayon::yield_now() {
-                Some(Yield::Executed) => since = Instant::now(),
-                _ => std::thread::yield_now(),
-            }
-        }
-    }
-}
-
 /// Whether so many elements are worth another thread, there is one, and it may be asked.
 #[cfg(feature = "rayon")]
 pub(crate) fn share(elements: usize, enough: usize) -> bool {
@@ -166,48 +96,6 @@ mod tests {
         alone(run);
         #[cfg(feature = "rayon")]
         rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap().install(run);
-    }
-
-    /// Also when it is not worth it, when others stay awake for the same work already, and from outside of a pool; and then from a
-    /// thread that found it among other work.
-    #[test]
-    fn what_others_stay_awake_for_is_done_once() {
-        use std::sync::atomic::{AtomicUsize, Ordering};
-        let run = || {
-            let times = AtomicUsize::new(0);
-            for worth in [true, false] {
-                let answer = with_others_awake(worth, || {
-                    let mut parts = [0; 100];
-                    for_each_part(&mut parts, 10, 1, |i, part| {
-                        times.fetch_add(1, Ordering::Relaxed);
-                        part.fill(with_others_awake(worth, || i));
-                    });
-                    parts[99]
-                });
-                assert_eq!(answer, 9);
-            }
-            assert_eq!(times.into_inner(), 20);
-        };
-        run();
-        #[cfg(feature = "rayon")]
-        for threads in [1, 2, 20] {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(run);
-            pool.install(|| for_each_part(&mut [0; 50], 1, 1, |_, _| run()));
-        }
-    }
-
-    /// A panic is passed on, and the threads are then as they were.
-    #[cfg(feature = "rayon")]
-    #[test]
-    fn nobody_stays_awake_for_what_panicked() {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-        for _ in 0..10 {
-            let panics = || pool.install(|| with_others_awake(true, || panic!("no")));
-            let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(panics));
-            assert!(caught.is_err());
-            assert!(pool.broadcast(|_| !awake::AT_WORK.get()).into_iter().all(|idle| idle));
-        }
     }
 
     #[cfg(feature = "rayon")]

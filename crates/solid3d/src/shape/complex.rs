@@ -11,7 +11,7 @@ use super::topology::Topology;
 use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
-use crate::threads::{for_each_part, with_others_awake};
+use crate::threads::for_each_part;
 use crate::tree::{LeafImages, LeafPoints, Slabs, Tree};
 
 /// A soup of convex primitives. Clones share what a deformation leaves alone.
@@ -271,11 +271,6 @@ impl Complex {
 
     /// Takes new positions, which were checked.
     pub fn deform(&mut self, positions: &[DVec3]) {
-        let worth = positions.len() >= validate::VERTICES_MANY;
-        with_others_awake(worth, || self.take_positions(positions));
-    }
-
-    fn take_positions(&mut self, positions: &[DVec3]) {
         let part = validate::VERTICES_PART;
         for_each_part(&mut self.vertices, part, validate::VERTICES_MANY, |i, vertices| {
             vertices.copy_from_slice(&positions[i * part..][..vertices.len()]);

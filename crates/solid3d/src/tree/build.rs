@@ -15,7 +15,6 @@ use super::normal::{COORDINATE_MAX, Normal};
 use super::split::{Item, Set, Spare};
 use super::{Place, Tree};
 use crate::Aabb;
-use crate::threads::with_others_awake;
 use glam::DVec3;
 
 /// From this depth on, sets are split evenly: a heuristic that peels off one primitive at a time ends here.
@@ -55,7 +54,7 @@ impl Tree {
     /// Builds over primitives `0..count`, of which `box_of` gives the boxes; it is called three times for each. With the feature `rayon` on
     /// the threads of the current pool, if there are many; the tree is the same for any number of threads.
     pub(crate) fn build_of(count: usize, box_of: impl Fn(u32) -> Aabb + Sync + Send) -> Self {
-        with_others_awake(count >= PARALLEL_MIN, || Tree::build_of_with(count, HEURISTIC_DEPTH_MAX, box_of))
+        Tree::build_of_with(count, HEURISTIC_DEPTH_MAX, box_of)
     }
 
     fn build_of_with(count: usize, heuristic_depth: u32, box_of: impl Fn(u32) -> Aabb + Sync + Send) -> Self {
@@ -134,6 +133,7 @@ pub(super) fn proper(bounds: &Aabb) -> &Aabb {
 }
 
 /// Sets of at least so many primitives are worth another thread.
+#[cfg(feature = "rayon")]
 const PARALLEL_MIN: usize = 1 << 13;
 
 /// A set that may be a joint of clusters.

@@ -205,11 +205,6 @@ impl Candidates {
 }
 
 impl World {
-    /// Whether so many objects changed that other threads are asked many times to bring all up to date.
-    pub(super) fn moves_many(&self) -> bool {
-        self.stirred.slots().len() >= BOXES_MANY
-    }
-
     /// Brings the candidates up to date, and queues those about which something changed.
     pub(super) fn refresh(&mut self) {
         if !std::mem::replace(&mut self.stale, false) {

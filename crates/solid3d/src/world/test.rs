@@ -12,7 +12,6 @@ use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
 use crate::error::Result;
 use crate::pair::swept::{self, Encounter, Moving};
 use crate::pair::{self, Relation, Scratch, Separation};
-use crate::threads::with_others_awake;
 
 /// How far a test has come that is made collision by collision: see [`World::test_next`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -204,14 +203,12 @@ impl World {
 
     /// Examines the candidates about which something changed; gives how many.
     fn examine_changed(&mut self) -> u64 {
+        self.refresh();
         let before = self.statistics.examined;
-        with_others_awake(self.moves_many(), || {
-            self.refresh();
-            let mut places = std::mem::take(&mut self.to_examine);
-            self.candidates.take_queue(&mut places);
-            self.examine_all(&places);
-            self.to_examine = places;
-        });
+        let mut places = std::mem::take(&mut self.to_examine);
+        self.candidates.take_queue(&mut places);
+        self.examine_all(&places);
+        self.to_examine = places;
         self.statistics.examined - before
     }
 
