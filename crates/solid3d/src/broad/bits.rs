@@ -1,6 +1,7 @@
 //! A bit for each of many things.
 
 use super::room::resize;
+use crate::tree::bits;
 
 /// Bits of a word.
 pub(super) const WORD: usize = u64::BITS as usize;
@@ -38,20 +39,11 @@ impl Bits {
 
     /// Those that are set, in ascending order.
     pub fn iter(&self) -> impl Iterator<Item = u32> {
-        (0..).step_by(WORD).zip(&self.0).flat_map(|(first, &word)| bits(word).map(move |bit| first + bit))
+        (0..)
+            .step_by(WORD)
+            .zip(&self.0)
+            .flat_map(|(first, &word)| bits(word).map(move |bit| first + bit as u32))
     }
-}
-
-/// The bits of a word that are set, in ascending order.
-#[inline]
-pub(super) fn bits(mut word: u64) -> impl Iterator<Item = u32> {
-    std::iter::from_fn(move || {
-        (word != 0).then(|| {
-            let bit = word.trailing_zeros();
-            word &= word - 1;
-            bit
-        })
-    })
 }
 
 #[cfg(test)]

@@ -3,10 +3,11 @@
 use fearless_simd::Simd;
 use solid_convex::simd::{dispatch, level};
 
-use super::bits::{Bits, WORD, bits};
+use super::bits::{Bits, WORD};
 use super::boxes::Boxes;
 use super::room::{push, resize};
 use super::{PairChange, PairId, Proxy};
+use crate::tree::bits;
 
 const END: u32 = u32::MAX;
 
@@ -215,7 +216,7 @@ impl PairLists {
         {
             let is = is & in_use;
             for bit in bits(std::mem::replace(was, is) ^ is) {
-                push(touched, at * WORD as PairId + bit);
+                push(touched, (at * WORD + bit) as PairId);
             }
         }
     }
