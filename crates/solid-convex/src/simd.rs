@@ -41,16 +41,26 @@ pub enum Level {
     Wide(Wide),
 }
 
-/// Runs a kernel, a call of an `#[inline(always)]` function generic over `fearless_simd::Simd`, on a level.
+/// Runs a kernel, a call of an `#[inline(always)]` function generic over `fearless_simd::Simd`: on the [`level`] that everything runs on, or on a level
+/// that is given.
 #[macro_export]
 #[doc(hidden)]
 macro_rules! dispatch {
-    ($level:expr, $simd:ident => $kernel:expr) => {
-        $crate::dispatch!(@ $level, $simd, #[inline(always)] || $kernel)
+    ($simd:ident => $kernel:expr) => {
+        $crate::simd::on_level(
+            #[inline(always)]
+            |level| $crate::dispatch!(level, $simd => $kernel),
+        )
     };
     // With copies of what the kernel takes from its surroundings, which is few words.
-    ($level:expr, move $simd:ident => $kernel:expr) => {
-        $crate::dispatch!(@ $level, $simd, #[inline(always)] move || $kernel)
+    (move $simd:ident => $kernel:expr) => {
+        $crate::simd::on_level(
+            #[inline(always)]
+            move |level| $crate::dispatch!(@ level, $simd, #[inline(always)] move || $kernel),
+        )
+    };
+    ($level:expr, $simd:ident => $kernel:expr) => {
+        $crate::dispatch!(@ $level, $simd, #[inline(always)] || $kernel)
     };
     (@ $level:expr, $simd:ident, $kernel:expr) => {
         match $level {
@@ -103,12 +113,28 @@ pub fn vectorize<R>(wide: Wide, kernel: impl FnOnce() -> R) -> R {
     fearless_simd::Simd::vectorize(wide, kernel)
 }
 
+static LEVEL: OnceLock<Level> = OnceLock::new();
+
 /// The level that everything runs on: wide, if this machine can, unless the environment variable `SOLID_SIMD` is `scalar` when
 /// the process first asks.
 #[inline]
 pub fn level() -> Level {
-    static LEVEL: OnceLock<Level> = OnceLock::new();
     *LEVEL.get_or_init(chosen)
+}
+
+/// Runs something on [`level`]. That it asks for the first time is out of the way: what is short would else save registers for it.
+#[inline(always)]
+#[doc(hidden)]
+pub fn on_level<R>(run: impl FnOnce(Level) -> R) -> R {
+    #[cold]
+    #[inline(never)]
+    fn at_first<R>(run: impl FnOnce(Level) -> R) -> R {
+        run(level())
+    }
+    match LEVEL.get() {
+        Some(&level) => run(level),
+        None => at_first(run),
+    }
 }
 
 #[cold]

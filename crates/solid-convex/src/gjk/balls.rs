@@ -10,7 +10,7 @@ use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::difference::SUPPORT_ERROR;
-use crate::simd::{self, dispatch};
+use crate::simd::dispatch;
 use crate::similarity::{STRETCH_ERROR, rough_squares};
 use crate::{Polytope, Support};
 
@@ -89,7 +89,7 @@ pub enum Glance {
 /// ```
 #[inline]
 pub fn glance(a: &Polytope, placement_a: &DAffine3, b: &Polytope, placement_b: &DAffine3) -> Glance {
-    dispatch!(simd::level(), simd => glance_by(simd, (a, placement_a), (b, placement_b)))
+    dispatch!(simd => glance_by(simd, (a, placement_a), (b, placement_b)))
 }
 
 /// A [`glance`], for kernels that it is a part of.

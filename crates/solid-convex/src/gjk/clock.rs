@@ -11,7 +11,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::coherent::Pair;
 use super::intersection::CACHED_GAP_MIN;
 use crate::Support;
-use crate::simd::{self, dispatch};
+use crate::simd::dispatch;
 use crate::simplex::VOLUME_ERROR;
 
 /// What was last sure of two objects, and how far that goes.
@@ -80,11 +80,10 @@ impl Clock {
         match &self.evidence {
             Evidence::None => None,
             Evidence::Apart { axis, gap } => {
-                dispatch!(simd::level(), simd => self.still_apart(simd, at_a, at_b, *axis, *gap))
-                    .then_some(false)
+                dispatch!(simd => self.still_apart(simd, at_a, at_b, *axis, *gap)).then_some(false)
             }
             Evidence::Common { a, b } => {
-                dispatch!(simd::level(), simd => self.still_common(simd, at_a, at_b, a, b)).then_some(true)
+                dispatch!(simd => self.still_common(simd, at_a, at_b, a, b)).then_some(true)
             }
         }
     }

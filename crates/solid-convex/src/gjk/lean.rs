@@ -242,7 +242,7 @@ fn run_on_polytopes<T: Task>(
     placement_b: &DAffine3,
     task: T,
 ) -> T::Found {
-    dispatch!(simd::level(), simd => run_in_kernel(simd, (a, placement_a), (b, placement_b), task))
+    dispatch!(simd => run_in_kernel(simd, (a, placement_a), (b, placement_b), task))
 }
 
 #[inline(always)]
@@ -270,7 +270,7 @@ pub(super) fn run_in_world<T: Task<Found = Option<Closest>>>(
     placement_b: &DAffine3,
     task: T,
 ) -> Option<ClosestInWorld> {
-    dispatch!(simd::level(), simd => {
+    dispatch!(simd => {
         if !(is_plain(simd, placement_a) & is_plain(simd, placement_b)) {
             return None;
         }

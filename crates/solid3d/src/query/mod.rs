@@ -25,7 +25,7 @@ use std::ops::ControlFlow;
 use glam::{DAffine3, DVec3};
 use solid_convex::Closest;
 use solid_convex::gjk::{self, ClosestInWorld, Glance};
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 
 use crate::bounds::Aabb;
 use crate::error::Result;
@@ -70,7 +70,7 @@ pub struct Distance {
 /// ```
 pub fn intersects(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<bool> {
     let pair = [Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b }];
-    dispatch!(level(), move simd => match pair::glance(simd, pair[0], pair[1]) {
+    dispatch!(move simd => match pair::glance(simd, pair[0], pair[1]) {
         Glance::Sure(answer) => Ok(answer),
         seen => intersects_at_length(&pair, seen),
     })

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 use solid_convex::gjk::{Glance, Memory};
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 
 use super::{Distance, Penetration, placed};
 use crate::error::Result;
@@ -54,7 +54,7 @@ impl PairCache {
         }
         let (a, b) =
             (Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b });
-        match dispatch!(level(), simd => pair::glance(simd, a, b)) {
+        match dispatch!(simd => pair::glance(simd, a, b)) {
             Glance::Sure(answer) => {
                 memory.rest();
                 return Ok(answer);

@@ -152,14 +152,14 @@ impl Polytope {
 impl Support for Polytope {
     #[inline]
     fn support(&self, direction: DVec3) -> DVec3 {
-        dispatch!(simd::level(), simd => self.furthest(simd, direction))
+        dispatch!(simd => self.furthest(simd, direction))
     }
 
     fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
         if self.points.len() > IMAGE_MAX && self.map.is_some() {
             return bounds_by_supports(self, linear);
         }
-        dispatch!(simd::level(), simd => self.rows.image_bounds(simd, linear))
+        dispatch!(simd => self.rows.image_bounds(simd, linear))
     }
 
     fn as_polytope(&self) -> Option<&Polytope> {

@@ -148,7 +148,7 @@ fn a_rough_look_says_what_gjk_says() {
                 });
                 let placed = [Placed { shape: a, placement: &at_a }, Placed { shape: b, placement: &at_b }];
                 let [a, b] = placed;
-                if let Glance::Sure(answer) = dispatch!(level(), simd => quick::intersects(simd, a, b)) {
+                if let Glance::Sure(answer) = dispatch!(simd => quick::intersects(simd, a, b)) {
                     let outcome = gjk::intersection(support(a.shape), &at_a, support(b.shape), &at_b);
                     assert_eq!(answer, outcome.witness().is_some(), "{at_a}, {at_b}");
                     (hits, decided) = (hits + usize::from(answer), decided + 1);
@@ -181,7 +181,7 @@ fn balls_of_any_size_are_told_as_gjk_tells_them() {
         }
         let [a, b] = radii.map(|radius| Shape::sphere(radius).unwrap());
         let (a, b) = (Placed { shape: &a, placement: &at_a }, Placed { shape: &b, placement: &at_b });
-        if let Glance::Sure(answer) = dispatch!(level(), simd => quick::intersects(simd, a, b)) {
+        if let Glance::Sure(answer) = dispatch!(simd => quick::intersects(simd, a, b)) {
             let outcome = gjk::intersection(support(a.shape), &at_a, support(b.shape), &at_b);
             assert_eq!(answer, outcome.witness().is_some(), "{radii:?}, {at_a}, {at_b}");
             (hits, decided) = (hits + usize::from(answer), decided + 1);

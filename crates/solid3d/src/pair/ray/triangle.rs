@@ -7,7 +7,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8};
 use glam::{DVec2, DVec3};
-use solid_convex::simd::{self, dispatch};
+use solid_convex::simd::dispatch;
 
 use crate::exact::orient2d;
 use crate::triangle_triangle::Triangle;
@@ -68,7 +68,7 @@ impl Shear {
     /// The triangles that may be hit, as bits: of the others two edges surely pass the ray on different sides.
     #[inline]
     pub fn candidates(&self, corners: &Corners) -> u32 {
-        dispatch!(simd::level(), simd => self.candidates_on(simd, corners))
+        dispatch!(simd => self.candidates_on(simd, corners))
     }
 
     #[inline(always)]
@@ -181,6 +181,7 @@ impl Shear {
 mod tests {
     use super::*;
     use rand::Rng;
+    use solid_convex::simd::levels;
     use solid_oracle::generate::seeded;
     use solid_oracle::triangles_intersect;
 
@@ -249,8 +250,7 @@ mod tests {
             for (lane, triangle) in triangles.iter().enumerate() {
                 put(&mut corners, lane, triangle.each_ref());
             }
-            let found =
-                simd::levels().map(|level| dispatch!(level, simd => shear.candidates_on(simd, &corners)));
+            let found = levels().map(|level| dispatch!(level, simd => shear.candidates_on(simd, &corners)));
             assert!(found.iter().all(|mask| *mask == found[0]));
             for (lane, triangle) in triangles.iter().enumerate() {
                 let hit = shear.hit(triangle).is_some();
