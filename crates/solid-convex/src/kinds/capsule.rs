@@ -31,6 +31,11 @@ impl Capsule {
     pub fn height(&self) -> f64 {
         2.0 * self.half_height
     }
+
+    /// Half of that.
+    pub fn half_height(&self) -> f64 {
+        self.half_height
+    }
 }
 
 impl Support for Capsule {

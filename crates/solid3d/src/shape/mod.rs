@@ -25,7 +25,7 @@ pub(crate) use complex::Complex;
 pub(crate) use facets::Facets;
 pub(crate) use hulled::Hulled;
 pub use kind::ShapeKind;
-pub(crate) use simple::Simple;
+pub(crate) use simple::{Round, Simple};
 pub use solid::OpenEdge;
 pub(crate) use surface::{Surface, boundary};
 

@@ -14,7 +14,7 @@ impl Shape {
             Geometry::Cuboid(cuboid) => furthest([cuboid.reach()]),
             Geometry::Cone(cone) => rim(cone.radius(), cone.height()),
             Geometry::Cylinder(cylinder) => rim(cylinder.radius(), cylinder.height()),
-            Geometry::Capsule(capsule) => capsule.radius() + 0.5 * capsule.height(),
+            Geometry::Capsule(capsule) => capsule.radius() + capsule.half_height(),
             Geometry::Polytope(polytope) => furthest(polytope.points().iter().copied()),
             Geometry::Complex(complex) => {
                 let indices = (0..complex.primitive_count() as u32).flat_map(|i| complex.primitive(i));

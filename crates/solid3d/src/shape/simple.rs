@@ -7,12 +7,18 @@ use super::{Geometry, Shape};
 /// A shape that a few numbers describe.
 #[derive(Clone, Copy)]
 pub(crate) enum Simple {
-    /// All points within a radius of the origin.
-    Ball { radius: f64 },
-    /// All points within a radius of a segment on the axis y, centred at the origin.
-    Capsule { radius: f64, half_height: f64 },
+    Round(Round),
     /// A box along the axes, centred at the origin.
-    Cuboid { half: DVec3 },
+    Cuboid {
+        half: DVec3,
+    },
+}
+
+/// All points within a radius of a segment on the axis y, centred at the origin: a capsule, or a ball, of which the segment is a point.
+#[derive(Clone, Copy)]
+pub(crate) struct Round {
+    pub radius: f64,
+    pub half_height: f64,
 }
 
 impl Shape {
@@ -26,9 +32,9 @@ impl Shape {
     #[inline(always)]
     pub(crate) fn simple(&self) -> Option<Simple> {
         Some(match &self.geometry {
-            Geometry::Sphere(sphere) => Simple::Ball { radius: sphere.radius() },
+            Geometry::Sphere(sphere) => Simple::Round(Round { radius: sphere.radius(), half_height: 0.0 }),
             Geometry::Capsule(capsule) => {
-                Simple::Capsule { radius: capsule.radius(), half_height: 0.5 * capsule.height() }
+                Simple::Round(Round { radius: capsule.radius(), half_height: capsule.half_height() })
             }
             Geometry::Cuboid(cuboid) => Simple::Cuboid { half: 0.5 * cuboid.size() },
             _ => return None,
@@ -41,19 +47,21 @@ impl Simple {
     #[inline(always)]
     pub(crate) fn radius(&self) -> f64 {
         match self {
-            Simple::Ball { radius } => *radius,
-            Simple::Capsule { radius, half_height } => radius + half_height,
+            Simple::Round(round) => round.reach(),
             Simple::Cuboid { half } => half.element_sum(),
         }
     }
+}
 
-    /// Of what is all points within a radius of a segment on the axis y: the radius, and half the segment's length.
+impl Round {
     #[inline(always)]
-    pub(crate) fn core(&self) -> Option<(f64, f64)> {
-        match *self {
-            Simple::Ball { radius } => Some((radius, 0.0)),
-            Simple::Capsule { radius, half_height } => Some((radius, half_height)),
-            Simple::Cuboid { .. } => None,
-        }
+    pub(crate) fn is_ball(&self) -> bool {
+        self.half_height == 0.0
+    }
+
+    /// The radius of a ball around the local origin that contains the shape.
+    #[inline(always)]
+    pub(crate) fn reach(&self) -> f64 {
+        self.radius + self.half_height
     }
 }

@@ -15,7 +15,7 @@ mod tests;
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::gjk::Glance;
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 use solid_convex::{Closest, Witness, unit_scale};
 
 use super::{Mirror, Placed, Relation};
@@ -48,7 +48,7 @@ pub(super) fn glance<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
 
 /// Whether they intersect; `None` where GJK has to say, and where placements have yet to be checked: those of an answer are good.
 pub(super) fn intersects(a: Placed, b: Placed) -> Option<bool> {
-    match dispatch!(level(), simd => glance(simd, a, b)) {
+    match dispatch!(simd => glance(simd, a, b)) {
         Glance::Sure(answer) => Some(answer),
         Glance::Open => closely_intersects(a, b),
         Glance::Unusual => None,
@@ -89,7 +89,7 @@ pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
 /// What [`closest`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.
 pub(crate) fn quickly_closest(a: Placed, b: Placed) -> Option<Closest> {
     let (Some(_), Some(_)) = (a.shape.simple(), b.shape.simple()) else { return None };
-    dispatch!(level(), simd => quick::closest(simd, a, b))
+    dispatch!(simd => quick::closest(simd, a, b))
 }
 
 /// The same in a unit of length near the size of the data, so that answers do not depend on the unit.
@@ -122,21 +122,22 @@ impl Pair {
         let scale = unit_scale(size([of_a, of_b], [&at_a, &at_b], offset));
         let (at_a, at_b) = (at_a.scaled(scale), at_b.scaled(scale));
         let offset = offset * scale;
-        let round = |of: Simple, at: Similarity, center: DVec3| {
-            of.core().map(|(radius, half_height)| PlacedRound::new(radius, half_height, at, center))
-        };
         Some(match (of_a, of_b) {
             (Simple::Cuboid { half: half_a }, Simple::Cuboid { half: half_b }) => Pair::Boxes(
                 PlacedBox { half: half_a, at: at_a, center: DVec3::ZERO },
                 PlacedBox { half: half_b, at: at_b, center: offset },
             ),
-            (a, Simple::Cuboid { half }) => {
-                Pair::RoundBox(round(a, at_a, DVec3::ZERO)?, PlacedBox { half, at: at_b, center: offset })
+            (Simple::Round(a), Simple::Cuboid { half }) => Pair::RoundBox(
+                PlacedRound::new(a, at_a, DVec3::ZERO),
+                PlacedBox { half, at: at_b, center: offset },
+            ),
+            (Simple::Cuboid { half }, Simple::Round(b)) => Pair::BoxRound(
+                PlacedBox { half, at: at_a, center: DVec3::ZERO },
+                PlacedRound::new(b, at_b, offset),
+            ),
+            (Simple::Round(a), Simple::Round(b)) => {
+                Pair::Rounds(PlacedRound::new(a, at_a, DVec3::ZERO), PlacedRound::new(b, at_b, offset))
             }
-            (Simple::Cuboid { half }, b) => {
-                Pair::BoxRound(PlacedBox { half, at: at_a, center: DVec3::ZERO }, round(b, at_b, offset)?)
-            }
-            (a, b) => Pair::Rounds(round(a, at_a, DVec3::ZERO)?, round(b, at_b, offset)?),
         })
     }
 }

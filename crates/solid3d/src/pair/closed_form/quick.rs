@@ -11,7 +11,7 @@ use solid_convex::{Closest, Witness};
 use super::GAP_MIN;
 use super::round::{DISTANCE_ERROR, Products};
 use crate::pair::Placed;
-use crate::shape::Simple;
+use crate::shape::{Round, Simple};
 
 /// Sizes of the data whose squares and the products of these neither overflow nor vanish.
 const PLAIN_SIZES: RangeInclusive<f64> = 1e-30..=1e30;
@@ -34,11 +34,10 @@ const MARGIN_TO_ERROR: f64 = DISTANCE_ERROR / GAP_MIN;
 #[inline(always)]
 pub(super) fn intersects<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
     let at = [a.placement, b.placement];
-    let (of_a, of_b) = (a.shape.simple(), b.shape.simple());
     let Some(squares) = rough_squares(simd, at) else { return Glance::Unusual };
-    let meet = match (of_a, of_b) {
-        (Some(Simple::Ball { radius: a }), Some(Simple::Ball { radius: b })) => {
-            balls_meet([a, b], squares, at[1].translation - at[0].translation)
+    let meet = match (a.shape.simple(), b.shape.simple()) {
+        (Some(Simple::Round(a)), Some(Simple::Round(b))) if a.is_ball() & b.is_ball() => {
+            balls_meet([a.radius, b.radius], squares, at[1].translation - at[0].translation)
         }
         (Some(a), Some(b)) => View::with_squares(at, squares).meet(a, b),
         _ => return Glance::Unusual,
@@ -88,30 +87,31 @@ impl<'a> View<'a> {
         View { at, scales, squares, offset: at[1].translation - at[0].translation }
     }
 
-    /// The radii of balls around the origins that contain the shapes, together; and the size of the data. `None` of sizes that are not plain.
+    /// Lengths of the two shapes, together.
     #[inline(always)]
-    fn reach_and_size(&self, [radius_a, radius_b]: [f64; 2]) -> Option<[f64; 2]> {
-        let reach = radius_a * self.scales[0] + radius_b * self.scales[1];
-        let size = reach + self.offset.abs().element_sum();
-        PLAIN_SIZES.contains(&size).then_some([reach, size])
+    fn both(&self, [a, b]: [f64; 2]) -> f64 {
+        a * self.scales[0] + b * self.scales[1]
     }
 
     /// Whether two shapes intersect.
     #[inline(always)]
     fn meet(&self, a: Simple, b: Simple) -> Option<bool> {
         match (a, b) {
-            (Simple::Ball { radius }, Simple::Cuboid { half }) => self.ball_and_box_meet(radius, 1, half),
-            (Simple::Cuboid { half }, Simple::Ball { radius }) => self.ball_and_box_meet(radius, 0, half),
+            (Simple::Round(a), Simple::Round(b)) => self.rounds_meet([a, b]),
+            (Simple::Round(a), Simple::Cuboid { half }) => self.round_and_box_meet(a, 1, half),
+            (Simple::Cuboid { half }, Simple::Round(b)) => self.round_and_box_meet(b, 0, half),
             (Simple::Cuboid { half: a }, Simple::Cuboid { half: b }) => self.boxes_meet([a, b]),
-            (a, b) => self.rounds_meet(a.core()?, b.core()?),
         }
     }
 
-    /// Whether a ball and a box, the `cuboid`th of the two, intersect: in the box's own space, times the square of its scale.
+    /// Whether a ball, of which alone is told, and a box, the `cuboid`th of the two, intersect: in the box's own space, times the square of its scale.
     #[inline(always)]
-    fn ball_and_box_meet(&self, radius: f64, cuboid: usize, half: DVec3) -> Option<bool> {
+    fn round_and_box_meet(&self, round: Round, cuboid: usize, half: DVec3) -> Option<bool> {
+        if !round.is_ball() {
+            return None;
+        }
         let unit = self.scales[cuboid];
-        let radius = radius * self.scales[1 - cuboid];
+        let radius = round.radius * self.scales[1 - cuboid];
         let size = radius + half.element_sum() * unit + self.offset.abs().element_sum();
         if !PLAIN_SIZES.contains(&size) {
             return None;
@@ -124,49 +124,36 @@ impl<'a> View<'a> {
     /// Whether two boxes intersect, by the balls around them and in them.
     #[inline(always)]
     fn boxes_meet(&self, [a, b]: [DVec3; 2]) -> Option<bool> {
-        let [reach, size] = self.reach_and_size([a.element_sum(), b.element_sum()])?;
-        let inner = a.min_element() * self.scales[0] + b.min_element() * self.scales[1];
-        self.balls_tell(inner, reach, ROUGH_GAP_MIN * size)
-    }
-
-    /// Whether balls or capsules intersect, by the radii and half the heights of their cores.
-    #[inline(always)]
-    fn rounds_meet(
-        &self,
-        (radius_a, height_a): (f64, f64),
-        (radius_b, height_b): (f64, f64),
-    ) -> Option<bool> {
-        let [reach, size] = self.reach_and_size([radius_a + height_a, radius_b + height_b])?;
-        let radii = radius_a * self.scales[0] + radius_b * self.scales[1];
-        let margin = ROUGH_GAP_MIN * size;
-        match self.balls_tell(radii, reach, margin) {
-            None => self.near_segments([height_a, height_b], [radii - margin, radii + margin]),
-            told => told,
+        let inner = self.both([a.min_element(), b.min_element()]);
+        let reach = self.both([a.element_sum(), b.element_sum()]);
+        if reach < *PLAIN_SIZES.start() {
+            return None;
         }
+        let ([near, _], [_, far]) = (around(inner, reach), around(reach, reach));
+        decide(self.offset.length_squared(), [near, far])
     }
 
-    /// Whether two segments, by half their heights, are nearer than the lesser distance, or no nearer than the greater.
+    /// Whether balls or capsules intersect. Without a branch: to ask balls around them and in them first took 40 ns in place of 32, since nobody can
+    /// foretell what those say.
     #[inline(always)]
-    fn near_segments(&self, heights: [f64; 2], [near, far]: [f64; 2]) -> Option<bool> {
-        let [a, b] = self.half_axes(heights);
-        let products = Products::new(-self.offset, a, b);
+    fn rounds_meet(&self, [a, b]: [Round; 2]) -> Option<bool> {
+        let (reach, radii) = (self.both([a.reach(), b.reach()]), self.both([a.radius, b.radius]));
+        let [near, far] = around(radii, reach);
+        let [axis_a, axis_b] = self.half_axes([a.half_height, b.half_height]);
+        let products = Products::new(-self.offset, axis_a, axis_b);
         // The margin is far beyond the rounding of products of lengths, whose squares are beyond its square.
         let [gap, square] = products.gap_and_square(products.closest());
         let apart = (gap > 0.0) & (gap * gap > far * far * square);
         let meet = (near > 0.0) & (square < near * near);
-        (apart | meet).then_some(meet)
-    }
-
-    /// Whether two shapes intersect, by the radii of balls in them and around them: of both together.
-    #[inline(always)]
-    fn balls_tell(&self, inner: f64, outer: f64, margin: f64) -> Option<bool> {
-        let square = self.offset.length_squared();
-        decide(square, [inner - margin, outer + margin])
+        ((reach >= *PLAIN_SIZES.start()) & (apart | meet)).then_some(meet)
     }
 
     #[inline(always)]
     fn closest(&self, a: Simple, b: Simple) -> Option<Closest> {
-        let [_, size] = self.reach_and_size([a.radius(), b.radius()])?;
+        let size = self.both([a.radius(), b.radius()]) + self.offset.abs().element_sum();
+        if !PLAIN_SIZES.contains(&size) {
+            return None;
+        }
         let (margin, unit) = (GAP_MIN * size, size * size);
         let is_plain =
             |square: f64| (unit * PLAIN_PARTS.start() <= square) & (square <= unit * PLAIN_PARTS.end());
@@ -174,30 +161,26 @@ impl<'a> View<'a> {
             return None;
         }
         match (a, b) {
-            (Simple::Ball { radius: a }, Simple::Ball { radius: b }) => {
-                self.of_cores(&self.centers(), [DVec3::ZERO; 2], [a, b], margin)
+            (Simple::Round(a), Simple::Round(b)) if a.is_ball() & b.is_ball() => {
+                self.of_cores(&self.centers(), [DVec3::ZERO; 2], [a.radius, b.radius], margin)
             }
-            (Simple::Ball { radius }, Simple::Cuboid { half }) => {
+            (Simple::Round(ball), Simple::Cuboid { half }) if ball.is_ball() => {
                 let cores = self.ball_and_box(1, half);
                 let on_cores = [DVec3::ZERO, cores.on_box()];
-                self.of_cores(&cores.placed(self.at[1], 1.0), on_cores, [radius, 0.0], margin)
+                self.of_cores(&cores.placed(self.at[1], 1.0), on_cores, [ball.radius, 0.0], margin)
             }
-            (Simple::Cuboid { half }, Simple::Ball { radius }) => {
+            (Simple::Cuboid { half }, Simple::Round(ball)) if ball.is_ball() => {
                 let cores = self.ball_and_box(0, half);
                 let on_cores = [cores.on_box(), DVec3::ZERO];
-                self.of_cores(&cores.placed(self.at[0], -1.0), on_cores, [0.0, radius], margin)
+                self.of_cores(&cores.placed(self.at[0], -1.0), on_cores, [0.0, ball.radius], margin)
             }
-            (a, b) => {
-                let ((radius_a, height_a), (radius_b, height_b)) = (a.core()?, b.core()?);
-                let cores = self.segments([height_a, height_b]);
-                let [s, t] = cores.along;
-                self.of_cores(
-                    &cores,
-                    [DVec3::Y * (height_a * s), DVec3::Y * (height_b * t)],
-                    [radius_a, radius_b],
-                    margin,
-                )
+            (Simple::Round(a), Simple::Round(b)) => {
+                let heights = [a.half_height, b.half_height];
+                let cores = self.segments(heights);
+                let [on_a, on_b] = [0, 1].map(|k| DVec3::Y * (heights[k] * cores.along[k]));
+                self.of_cores(&cores, [on_a, on_b], [a.radius, b.radius], margin)
             }
+            _ => None,
         }
     }
 
@@ -307,6 +290,14 @@ impl CenterAndBox {
         let square = self.way().length_squared() / self.stretch_squared;
         Cores { v, gap: square, square, along: [0.0; 2] }
     }
+}
+
+/// A length, less and more by the least gap or overlap that is decided: of the size of the data, which is less than three times the reach of both shapes
+/// where their reach does not part them.
+#[inline(always)]
+fn around(length: f64, reach: f64) -> [f64; 2] {
+    let margin = 3.0 * ROUGH_GAP_MIN * reach;
+    [length - margin, length + margin]
 }
 
 /// Whether what is within the lesser radius intersects, and what is within the greater does not, by the square of a distance. Without a branch.

@@ -6,6 +6,7 @@ use solid_convex::Witness;
 use super::boxes::PlacedBox;
 use super::similarity::Similarity;
 use super::{Gap, Relation, witness};
+use crate::shape::Round;
 
 /// A ball or a capsule, in the space of the pair.
 pub(super) struct PlacedRound {
@@ -31,7 +32,7 @@ pub(super) struct Cores<'a> {
 }
 
 impl PlacedRound {
-    pub fn new(radius: f64, half_height: f64, at: Similarity, center: DVec3) -> PlacedRound {
+    pub fn new(Round { radius, half_height }: Round, at: Similarity, center: DVec3) -> PlacedRound {
         let half_axis = if half_height == 0.0 { DVec3::ZERO } else { at.y_axis() * half_height };
         PlacedRound { radius: radius * at.stretch, center, half_axis, at }
     }
@@ -156,8 +157,8 @@ impl Products {
     /// the square of the size of the data.
     #[inline(always)]
     pub fn gap_and_square(&self, [s, t]: [f64; 2]) -> [f64; 2] {
-        let of_between = self.between + s * self.to_a - t * self.to_b;
-        let (of_a, of_b) = (self.to_a + s * self.aa - t * self.ab, self.to_b + s * self.ab - t * self.bb);
+        let of_between = (self.between - t * self.to_b) + s * self.to_a;
+        let (of_a, of_b) = (s * self.aa - (self.ab * t - self.to_a), (self.to_b - t * self.bb) + s * self.ab);
         [of_between - of_a.abs() - of_b.abs(), of_between + s * of_a - t * of_b]
     }
 }

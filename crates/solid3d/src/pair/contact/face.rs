@@ -243,7 +243,7 @@ impl<'a> Placed<'a> {
     }
 
     fn capsule(&self, capsule: &Capsule, direction: DVec3, local: DVec3) -> Face {
-        let (radius, half) = (capsule.radius(), 0.5 * capsule.height());
+        let (radius, half) = (capsule.radius(), capsule.half_height());
         let (x, z) = azimuth(local);
         let side = self.normal(DVec3::new(x, 0.0, z));
         let cosine = side.dot(direction);
