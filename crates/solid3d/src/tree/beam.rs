@@ -50,13 +50,13 @@ pub(super) fn seek<S: Simd>(simd: S, duel: &Duel, counters: &mut Counters) -> Op
             let lanes = if is_a { &duel.a.nodes[node] } else { &duel.b.nodes[node] };
             let extents = extents(simd, lanes);
             let of_lanes = distances_squared(simd, lanes, center, unit);
-            for lane in 0..WIDTH {
-                if lanes.child[lane] == Child::EMPTY {
+            for (lane, (distance, child)) in of_lanes.into_iter().zip(lanes.child).enumerate() {
+                if child == Child::EMPTY {
                     break;
                 }
                 children[opened] =
                     if is_a { pair.with_a(node, lane, &extents) } else { pair.with_b(node, lane, &extents) };
-                distances[opened] = of_lanes[lane];
+                distances[opened] = distance;
                 opened += 1;
             }
         }
