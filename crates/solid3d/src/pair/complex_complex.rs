@@ -95,15 +95,15 @@ impl LeafPairs<()> for Meeting<'_> {
         in_a.measure(simd);
         in_b.measure(simd);
         let (in_a, in_b) = (&*in_a, &*in_b);
-        let of_a = of_a & in_a.level_with(simd, in_b);
-        let of_b = of_b & in_b.level_with(simd, in_a);
         // Those of which fewer are near are held one by one against the others, eight at a time.
         let swapped = of_b.count_ones() < of_a.count_ones();
         let [(ones, of_ones), (others, of_others)] =
             if swapped { [(in_b, of_b), (in_a, of_a)] } else { [(in_a, of_a), (in_b, of_b)] };
+        let of_others = of_others & others.level_with(simd, ones);
         if of_others == 0 {
             return ControlFlow::Continue(());
         }
+        let of_ones = of_ones & ones.level_with(simd, others);
         for i in bits(of_ones) {
             let near = others.overlapping(simd, &ones.bounds(i)) & of_others;
             if near == 0 {
