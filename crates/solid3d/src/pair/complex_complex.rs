@@ -89,13 +89,21 @@ impl LeafPairs<()> for Meeting<'_> {
         let in_b = rows_b.place(simd, self.b.0, leaf_b, &self.common[1]);
         let of_a = in_a.overlapping(simd, in_b.union());
         let of_b = in_b.overlapping(simd, in_a.union());
+        if of_a == 0 || of_b == 0 {
+            return ControlFlow::Continue(());
+        }
+        in_a.measure(simd);
+        in_b.measure(simd);
+        let (in_a, in_b) = (&*in_a, &*in_b);
         // Those of which fewer are near are held one by one against the others, eight at a time.
         let swapped = of_b.count_ones() < of_a.count_ones();
         let [(ones, of_ones), (others, of_others)] =
             if swapped { [(in_b, of_b), (in_a, of_a)] } else { [(in_a, of_a), (in_b, of_b)] };
+        let of_others = of_others & others.level_with(simd, ones);
         if of_others == 0 {
             return ControlFlow::Continue(());
         }
+        let of_ones = of_ones & ones.level_with(simd, others);
         for i in bits(of_ones) {
             let near = others.overlapping(simd, &ones.bounds(i)) & of_others;
             if near == 0 {
@@ -204,8 +212,8 @@ impl NearLeafPairs for Approach<'_> {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32], best: &mut f64) {
         let [rows_a, rows_b] = &mut *self.rows;
-        let in_a = rows_a.place(simd, self.a.0, leaf_a, &self.common[0]);
-        let in_b = rows_b.place(simd, self.b.0, leaf_b, &self.common[1]);
+        let in_a = &*rows_a.place(simd, self.a.0, leaf_a, &self.common[0]);
+        let in_b = &*rows_b.place(simd, self.b.0, leaf_b, &self.common[1]);
         let of_a = in_a.nearer(simd, in_b.union(), *best * *best);
         let of_b = in_b.nearer(simd, in_a.union(), *best * *best);
         // As where they meet: those of which fewer are near, one by one.

@@ -21,7 +21,8 @@
 //! | `validate` | the invariants |
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
-//! | `deepest` | the order in which pairs of subtrees are looked at where one that meets will do |
+//! | `order` | the order in which pairs of subtrees are looked at where one that meets will do |
+//! | `beam` | pairs of leaves that are likely near to each other, for a first distance |
 //! | `eights` | the eight boxes of a node against the eight of another, across such a map |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
 //! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
@@ -37,12 +38,12 @@
 //! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but a build on several threads.
 //! 5. Every order is a function of the input alone, not of the number of threads.
 
+mod beam;
 mod build;
 mod cast_pairs;
 mod clusters;
 mod cost;
 mod crossing;
-mod deepest;
 mod eights;
 mod lanes;
 mod leaf_images;
@@ -52,6 +53,7 @@ mod nearest;
 mod nearest_pairs;
 mod node;
 mod normal;
+mod order;
 mod overlap;
 mod packed;
 mod pairs;

@@ -5,15 +5,16 @@ use fearless_simd::prelude::*;
 use glam::DVec3;
 use solid_convex::simd::{Level, dispatch, level};
 
+use super::beam::seek;
 use super::lanes::{distances_squared, extents};
 use super::metric::{Folded, PairMetric};
 use super::nearest::push_unless_far;
 use super::node::WIDTH;
-use super::pairs::{Duel, Pair, Step, Tested};
+use super::pairs::{Duel, Step, Tested};
 use super::relative::Relative;
 use super::slabs::{Faces, Facing};
 use super::traversal::STACK_USUAL;
-use super::{Place, Traversal, Tree};
+use super::{Traversal, Tree};
 
 /// Visits the pairs of leaves that may hold primitives nearer to each other, in the world, than `best`; nearest children first.
 ///
@@ -108,6 +109,9 @@ fn walk<S: Simd>(
     stack.clear();
     stack.reserve(STACK_USUAL);
     stack.push((0.0, duel.roots()));
+    if *best == f64::INFINITY {
+        stack.extend(seek(simd, duel, counters).map(|pair| (0.0, pair)));
+    }
     let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
     while let Some((least, pair)) = stack.pop() {
         if least >= *best {
@@ -132,8 +136,7 @@ fn walk<S: Simd>(
                 }
                 let extents = extents(simd, lanes);
                 for (lane, least) in bounds.into_iter().enumerate() {
-                    let pair = Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..pair };
-                    push_unless_far((least, pair), *best, stack, from);
+                    push_unless_far((least, pair.with_a(node, lane, &extents)), *best, stack, from);
                 }
             }
             Step::OpenB(node) => {
@@ -149,8 +152,7 @@ fn walk<S: Simd>(
                 }
                 let extents = extents(simd, lanes);
                 for (lane, least) in bounds.into_iter().enumerate() {
-                    let pair = Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..pair };
-                    push_unless_far((least, pair), *best, stack, from);
+                    push_unless_far((least, pair.with_b(node, lane, &extents)), *best, stack, from);
                 }
             }
             Step::OpenBoth(..) => unreachable!("nodes are opened one by one"),

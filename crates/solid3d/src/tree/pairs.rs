@@ -2,13 +2,14 @@
 
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use glam::DVec3;
 use solid_convex::simd::{Level, dispatch, level};
 
 use super::crossing::{Crossing, Folded, Probe};
-use super::deepest::Order;
 use super::eights::{Image, Overlaps, overlaps};
 use super::lanes::{bits, extents, overlapping_probe};
 use super::node::{Kind, WIDTH};
+use super::order::Order;
 use super::packed::PackedBox;
 use super::relative::Relative;
 use super::traversal::STACK_USUAL;
@@ -112,8 +113,7 @@ fn walk<B, S: Simd>(
                 let extents = extents(simd, lanes);
                 let (hits, gaps) = overlapping_probe(simd, lanes, duel.b_to_a(), probe);
                 push(simd, stack, wants_first, hits, &gaps.to_array(), |lane| {
-                    let lane = lane % WIDTH;
-                    Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..pair }
+                    pair.with_a(node, lane % WIDTH, &extents)
                 });
             }
             Step::OpenB(node) => {
@@ -122,8 +122,7 @@ fn walk<B, S: Simd>(
                 let extents = extents(simd, lanes);
                 let (hits, gaps) = overlapping_probe(simd, lanes, duel.a_to_b(), probe);
                 push(simd, stack, wants_first, hits, &gaps.to_array(), |lane| {
-                    let lane = lane % WIDTH;
-                    Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..pair }
+                    pair.with_b(node, lane % WIDTH, &extents)
                 });
             }
             Step::OpenBoth(node_a, node_b, images) => {
@@ -158,7 +157,7 @@ fn push<S: Simd>(
     pair: impl Fn(usize) -> Pair,
 ) {
     if wants_first {
-        let order = Order::deepest_last(simd, hits.into(), gaps);
+        let order = Order::ascending(simd, hits.into(), gaps);
         stack.extend(order.as_slice().iter().map(|&place| pair(usize::from(place))));
     } else {
         for place in bits(hits) {
@@ -175,6 +174,20 @@ pub(super) struct Pair {
     /// The sizes of their boxes.
     pub extent_a: f32,
     pub extent_b: f32,
+}
+
+impl Pair {
+    /// With a lane of a node of `a`, of which the sizes are known.
+    #[inline(always)]
+    pub fn with_a(self, node: usize, lane: usize, extents: &[f32; WIDTH]) -> Self {
+        Pair { a: Place::lane(node, lane), extent_a: extents[lane], ..self }
+    }
+
+    /// The same with a lane of a node of `b`.
+    #[inline(always)]
+    pub fn with_b(self, node: usize, lane: usize, extents: &[f32; WIDTH]) -> Self {
+        Pair { b: Place::lane(node, lane), extent_b: extents[lane], ..self }
+    }
 }
 
 /// The box of a tree that was prepared last for tests against lanes of the other.
@@ -273,6 +286,16 @@ impl<'t> Duel<'t> {
         })
     }
 
+    /// Where the centre of the box of `b` is in the coordinates of `a`, and the length of their unit.
+    pub fn center_of_b(&self, pair: &Pair) -> (DVec3, f32) {
+        (self.ways[0].map.transform_point3(center(&self.b.box_at(pair.b))), 1.0)
+    }
+
+    /// Where the centre of the box of `a` is in the coordinates of `b`, and the length of their unit in that of `a`.
+    pub fn center_of_a(&self, pair: &Pair) -> (DVec3, f32) {
+        (self.ways[1].map.transform_point3(center(&self.a.box_at(pair.a))), self.magnification)
+    }
+
     /// The two trees.
     pub fn roots(&self) -> Pair {
         Pair {
@@ -309,6 +332,11 @@ impl<'t> Duel<'t> {
             }
         }
     }
+}
+
+fn center(bounds: &PackedBox) -> DVec3 {
+    let doubled = [0, 1, 2].map(|axis| f64::from(bounds.center_doubled(axis)));
+    0.5 * DVec3::from_array(doubled)
 }
 
 /// The size by which nodes compare: the volume, as in the thesis, gives 1 to 4 % fewer box tests on tori, but flat boxes have none.

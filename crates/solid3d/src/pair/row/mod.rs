@@ -40,6 +40,11 @@ pub(crate) struct Row {
     max: [Lanes; 3],
     /// The box around them all.
     union: Aabb,
+    /// The layer in which they lie, if it is measured: a direction across them, zero if not all are triangles, and their least and greatest
+    /// heights along it, widened by [`HEIGHT_ERROR`].
+    across: DVec3,
+    heights: [f64; 2],
+    is_measured: bool,
     primitives: [u32; LEAF_SIZE],
     /// The lanes in use, and those of them that are triangles, as bits.
     used: u32,
@@ -55,6 +60,9 @@ impl Default for Row {
             min: Default::default(),
             max: Default::default(),
             union: Aabb::EMPTY,
+            across: DVec3::ZERO,
+            heights: [0.0; 2],
+            is_measured: false,
             primitives: [0; LEAF_SIZE],
             used: 0,
             triangles: 0,
@@ -93,6 +101,7 @@ impl Row {
             None => self.place_mixed(simd, complex, map),
         }
         self.union = self.union_of_lanes(simd);
+        self.is_measured = false;
     }
 
     #[inline(never)] // see `distances`
@@ -216,6 +225,55 @@ impl Row {
         bounds
     }
 
+    /// Finds the layer in which the triangles lie, if that is not yet known: before [`level_with`](Row::level_with).
+    #[inline(always)]
+    pub fn measure<S: Simd>(&mut self, simd: S) {
+        if self.is_measured {
+            return;
+        }
+        self.is_measured = true;
+        self.across = DVec3::ZERO;
+        if self.triangles == self.used {
+            // Of a smooth surface two normals are nearly the mean of all.
+            for lane in [0, self.used.count_ones() as usize / 2] {
+                let [p, q, r] = self.triangle(lane);
+                self.across += (q - p).cross(r - p);
+            }
+        }
+        let along = splat(simd, self.across);
+        let mut least = one(simd, f64::INFINITY);
+        let mut greatest = one(simd, f64::NEG_INFINITY);
+        for from in steps::<S>() {
+            let [low, high] = self.heights(simd, along, from);
+            least = least.min(low);
+            greatest = greatest.max(high);
+        }
+        let error = HEIGHT_ERROR * self.across.abs().element_sum() + f64::MIN_POSITIVE;
+        self.heights = [least.reduce_min() - error, greatest.reduce_max() + error];
+    }
+
+    /// The least and the greatest of the corners of some triangles along a direction.
+    #[inline(always)]
+    fn heights<S: Simd>(&self, simd: S, along: Vector<S>, from: usize) -> [Wide<S>; 2] {
+        let [p, q, r] = self.corners(simd, from);
+        let (p, q, r) = (dot(p, along), dot(q, along), dot(r, along));
+        [p.min(q).min(r), p.max(q).max(r)]
+    }
+
+    /// The lanes in use but for the triangles that are certainly above or below the layer of others, which is measured; as bits.
+    #[inline(always)]
+    pub fn level_with<S: Simd>(&self, simd: S, others: &Row) -> u32 {
+        let along = splat(simd, others.across);
+        let mut lanes = 0;
+        for from in steps::<S>() {
+            let [least, greatest] = self.heights(simd, along, from);
+            let on =
+                least.simd_le(one(simd, others.heights[1])) & greatest.simd_ge(one(simd, others.heights[0]));
+            lanes |= (on.to_bitmask() as u32) << from;
+        }
+        (lanes | !self.triangles) & self.used
+    }
+
     /// The lanes in use whose box overlaps another, as bits: exactly.
     #[inline(always)]
     pub fn overlapping<S: Simd>(&self, simd: S, other: &Aabb) -> u32 {
@@ -279,6 +337,11 @@ impl Row {
         Vector([load(simd, x, from), load(simd, y, from), load(simd, z, from)])
     }
 }
+
+/// The error of the difference of two heights along a direction, relative to the sum of its coordinates. Points of the common frame have
+/// coordinates below 2, and a product takes part in three roundings by 2^-53: each height is off by 3 epsilons, and a widened one is
+/// rounded once more, by one.
+const HEIGHT_ERROR: f64 = 8.0 * f64::EPSILON;
 
 /// The point in a lane.
 #[inline(always)]
@@ -403,6 +466,52 @@ mod tests {
         let leaf = [0, 1, 2, 3, 4, 5, 6, 7];
         dispatch!(levels()[0], simd => row.place(simd, &complex, &leaf, &DAffine3::IDENTITY));
         row
+    }
+
+    /// Law: what is not level with the layer of others meets none of them; many are told, every level of instructions says the same, and
+    /// what touches the layer is kept.
+    #[test]
+    fn what_is_not_level_meets_nothing() {
+        let mut rng = seeded(61);
+        let (mut told, mut lanes, mut meet) = (0, 0, 0);
+        for round in 0..3000 {
+            // Two patches, flat but for a thickness.
+            let thickness = [0.0, 1e-12, 0.1][round % 3];
+            let mut patch = |normal: DVec3, offset: DVec3| -> [Triangle; 8] {
+                std::array::from_fn(|_| {
+                    [(); 3].map(|()| {
+                        let p = point(&mut rng);
+                        offset + p - normal * p.dot(normal) * (1.0 - thickness)
+                    })
+                })
+            };
+            let of_a = patch(DVec3::Z, DVec3::ZERO);
+            let mut of_b = patch(DVec3::X, DVec3::new(0.2, 0.0, 0.8));
+            of_b[0] = [DVec3::ZERO, DVec3::new(0.1, 0.3, 0.5), DVec3::Z]; // stands on the layer
+            let all = levels().map(|level| {
+                let (mut a, mut b) = (row_of(&of_a), row_of(&of_b));
+                dispatch!(level, simd => {
+                    a.measure(simd);
+                    b.measure(simd);
+                    [a.level_with(simd, &b), b.level_with(simd, &a)]
+                })
+            });
+            assert_eq!(all[0], all[1]);
+            let [level_a, level_b] = all[0];
+            assert!(thickness > 0.0 || level_b & 1 == 1);
+            for (i, x) in of_a.iter().enumerate() {
+                for (j, y) in of_b.iter().enumerate() {
+                    let is_told = level_a >> i & 1 == 0 || level_b >> j & 1 == 0;
+                    let meets = super::super::triangle_triangle::intersect(x, y);
+                    assert!(!(is_told && meets), "{x:?} {y:?}");
+                    told += usize::from(is_told);
+                    meet += usize::from(meets);
+                    lanes += 1;
+                }
+            }
+        }
+        println!("of {lanes} pairs {told} are told apart, {meet} meet");
+        assert!((3 * lanes / 10..7 * lanes / 10).contains(&told) && 100 * meet > lanes);
     }
 
     /// Corners, boxes and the lanes that are near: as each primitive placed by itself.

@@ -41,7 +41,7 @@ impl Rows {
 
     /// The primitives of a leaf of a shape, placed now or before.
     #[inline(always)]
-    pub fn place<S: Simd>(&mut self, simd: S, complex: &Complex, leaf: &[u32], map: &DAffine3) -> &Row {
+    pub fn place<S: Simd>(&mut self, simd: S, complex: &Complex, leaf: &[u32], map: &DAffine3) -> &mut Row {
         let from_first = leaf.as_ptr().addr().wrapping_sub(complex.tree().order().as_ptr().addr());
         let slot = &mut self.row_of[from_first / size_of::<u32>() / STRIDE % SLOTS];
         if *slot == 0 {

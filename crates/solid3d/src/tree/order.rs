@@ -1,4 +1,5 @@
-//! The order in which pairs of subtrees are looked at where the first that meets is all that is wanted: what overlaps deepest first.
+//! The order of pairs of subtrees: what overlaps deepest is looked at first where the first that meets is all that is wanted, and what is
+//! likely nearest goes on where a first distance is sought.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x8};
@@ -8,9 +9,9 @@ use super::lanes::bits;
 use super::node::WIDTH;
 
 /// As many as two nodes have pairs of children.
-const PAIRS_MAX: usize = WIDTH * WIDTH;
+pub(super) const PAIRS_MAX: usize = WIDTH * WIDTH;
 
-/// The bits of a key that tell apart what is as deep.
+/// The bits of a key that tell apart equal ones.
 const TIE_BITS: i32 = PAIRS_MAX as i32 - 1;
 
 /// Some of up to 64, in an order.
@@ -20,26 +21,26 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// The set bits of a mask, the one with the least gap last; gaps are not above zero, and are compared to within 2^-17 of them. Of equal
-    /// ones the highest comes last.
+    /// The set bits of a mask by the magnitudes of their numbers, the greatest last; these are compared to within 2^-17 of them. Of equal ones
+    /// the highest comes last.
     ///
     /// Each is told its place by how many come before it, eight at a time and without a branch: of the ten or so that two nodes have as a
     /// rule, an insertion takes seven times as long.
     #[inline(always)]
-    pub fn deepest_last<S: Simd>(simd: S, mask: u64, gaps: &[f32]) -> Self {
-        part!(simd => Self::deepest_last_on(simd, mask, gaps))
+    pub fn ascending<S: Simd>(simd: S, mask: u64, numbers: &[f32]) -> Self {
+        part!(simd => Self::ascending_on(simd, mask, numbers))
     }
 
     #[inline(always)]
-    fn deepest_last_on<S: Simd>(simd: S, mask: u64, gaps: &[f32]) -> Self {
+    fn ascending_on<S: Simd>(simd: S, mask: u64, numbers: &[f32]) -> Self {
         let mut places = [[0; WIDTH]; WIDTH];
         let mut keys = [[i32::MAX; WIDTH]; WIDTH];
         let mut count = 0;
         for place in bits(mask) {
             places.as_flattened_mut()[count] = place as u8;
             // The bits of numbers that are not negative are in their order.
-            let depth = gaps[place].abs().to_bits() as i32;
-            keys.as_flattened_mut()[count] = depth & !TIE_BITS | count as i32;
+            let magnitude = numbers[place].abs().to_bits() as i32;
+            keys.as_flattened_mut()[count] = magnitude & !TIE_BITS | count as i32;
             count += 1;
         }
         let mut order = Order { places: [0; PAIRS_MAX], count };
@@ -89,7 +90,7 @@ mod tests {
             let mut mask = rng.random::<u64>();
             (0..case % 5).for_each(|_| mask &= rng.random::<u64>());
             let all = levels().map(|level| {
-                dispatch!(level, simd => Order::deepest_last(simd, mask, &gaps)).as_slice().to_vec()
+                dispatch!(level, simd => Order::ascending(simd, mask, &gaps)).as_slice().to_vec()
             });
             assert_eq!(all[0], all[1], "case {case}");
             let mut expected: Vec<u8> = (0..PAIRS_MAX as u8).filter(|&i| mask >> i & 1 == 1).collect();
