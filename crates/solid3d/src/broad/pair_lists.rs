@@ -5,7 +5,7 @@ use solid_convex::simd::{dispatch, level};
 
 use super::bits::{Bits, WORD};
 use super::boxes::Boxes;
-use super::room::{push, resize};
+use super::room::{push, resize, resize_on_threads};
 use super::{PairChange, PairId, Proxy};
 use crate::tree::bits;
 
@@ -71,7 +71,7 @@ impl Default for PairLists {
 impl PairLists {
     /// Makes room for proxies below `proxies`.
     pub fn grow(&mut self, proxies: usize) {
-        resize(&mut self.heads, proxies, END);
+        resize_on_threads(&mut self.heads, proxies, END);
     }
 
     /// Gives back what room there is for more proxies.

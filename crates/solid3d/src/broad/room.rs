@@ -6,12 +6,14 @@
 /// A full vector grows by one in this many of its elements.
 const GROWTH_ONE_IN: usize = 8;
 
-/// Makes room for `len` elements in all, and some more.
+/// Makes room for `len` elements in all, and some more; but no more than that where it becomes more than twice as long, as one does that is
+/// filled at once.
 pub(crate) fn room<T>(vector: &mut Vec<T>, len: usize) {
     /// A small vector grows by as much as this.
     const GROWTH_MIN: usize = 8;
     if len > vector.capacity() {
-        vector.reserve_exact(len + (len / GROWTH_ONE_IN).max(GROWTH_MIN) - vector.len());
+        let more = if len / 2 > vector.capacity() { 0 } else { (len / GROWTH_ONE_IN).max(GROWTH_MIN) };
+        vector.reserve_exact(len + more - vector.len());
     }
 }
 

@@ -109,9 +109,7 @@ impl Complex {
     pub fn mesh(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
         validate::vertex_count("vertices", vertices.len())?;
         validate::primitive_count("triangles", triangles.len())?;
-        for (primitive, triangle) in triangles.iter().enumerate() {
-            validate::indices(primitive, triangle, vertices.len())?;
-        }
+        validate::triangles(&triangles, vertices.len())?;
         Self::new(vertices, Primitives::Triangles(triangles))
     }
 

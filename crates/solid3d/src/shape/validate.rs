@@ -61,6 +61,18 @@ pub(super) fn indices(primitive: usize, indices: &[u32], vertices: usize) -> Res
     }
 }
 
+/// Every index of every triangle names a vertex.
+pub(super) fn triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<()> {
+    let is_named =
+        |triangle: &[u32; 3]| triangle.iter().fold(true, |all, &index| all & ((index as usize) < vertices));
+    let fails = |part: &[[u32; 3]]| !part.iter().fold(true, |all, triangle| all & is_named(triangle));
+    match first_part_where(triangles, VERTICES_PART, VERTICES_MANY, fails) {
+        Some(part) => (part * VERTICES_PART..triangles.len())
+            .try_for_each(|primitive| indices(primitive, &triangles[primitive], vertices)),
+        None => Ok(()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,5 +84,17 @@ mod tests {
         let error = primitive_count("triangles", PRIMITIVES_MAX + 1).unwrap_err();
         assert_eq!(error.to_string(), "triangles has 268435456 elements; the limit is 268435455");
         assert!(vertex_count("vertices", NAMEABLE_MAX + 1).is_err());
+    }
+
+    /// Law: of many triangles the first that names no vertex is told of.
+    #[test]
+    fn the_first_wrong_triangle_is_told_of() {
+        let mut many = vec![[0, 1, 2]; VERTICES_MANY + 100];
+        assert!(triangles(&many, 3).is_ok());
+        for wrong in [VERTICES_MANY + 99, VERTICES_PART + 7, 0] {
+            many[wrong][1] = 3;
+            let error = triangles(&many, 3).unwrap_err().to_string();
+            assert_eq!(error, format!("primitive {wrong} names vertex 3, but there are 3 vertices"));
+        }
     }
 }

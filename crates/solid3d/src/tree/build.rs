@@ -1,17 +1,21 @@
 //! The eight-wide build: the set with the greatest measure is split until there are eight.
 //!
-//! Of many primitives the upper splits are those of `clusters`. On several threads the sets of large nodes are built apart, and their nodes
-//! put together in the order that one thread would have made them in.
+//! Of many primitives the upper splits are those of `clusters`: only what is below a few of these is gathered, and split while it is at hand.
+//! On several threads the sets of large nodes are built apart, and their nodes put together in the order that one thread would have made
+//! them in.
+
+use std::sync::Mutex;
 
 use fearless_simd::Simd;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 use solid_convex::simd::{dispatch, level};
 
-use super::clusters::{Clusters, JointIndex, arrange};
+use super::clusters::{Clusters, JointIndex};
 use super::cost::{Measured, measure, sum};
 use super::node::{Child, LEAF_SIZE, Node, PRIMITIVES_MAX, WIDTH};
 use super::normal::{COORDINATE_MAX, Normal};
+use super::packed::PackedBox;
 use super::split::{Item, Set, Spare};
 use super::{Place, Tree};
 use crate::Aabb;
@@ -62,15 +66,15 @@ impl Tree {
         assert!(count <= PRIMITIVES_MAX, "{count} primitives, at most {PRIMITIVES_MAX}");
         let bounds = bounds_of(count, &box_of);
         let normal = Normal::of(&bounds);
-        let (mut items, clusters) = arrange(
+        let builder = Builder::new(
             count,
+            heuristic_depth,
             &normal.pack(&bounds),
             #[inline(always)]
             |i| normal.pack(&box_of(i)),
         );
-        let mut nodes = Builder { clusters, heuristic_depth }.build(&mut items);
+        let (mut nodes, order) = builder.build(count);
         nodes.shrink_to_fit();
-        let order = items.iter().map(|item| item.index).collect();
         let measured = Measured { bounds, sum: sum(&nodes) };
         let root = nodes[0].union();
         let mut tree = Tree {
@@ -136,6 +140,12 @@ pub(super) fn proper(bounds: &Aabb) -> &Aabb {
 #[cfg(feature = "rayon")]
 const PARALLEL_MIN: usize = 1 << 13;
 
+/// Fewer than a node has below it, on average: some 23 of a torus.
+const PRIMITIVES_PER_NODE: usize = 20;
+
+/// Joints of fewer primitives are gathered, which are then at hand for what is below: some 300 kB.
+const GATHERED_MAX: usize = 1 << 13;
+
 /// A set that may be a joint of clusters.
 #[derive(Clone, Copy)]
 struct Part {
@@ -151,28 +161,101 @@ struct Task {
     depth: u32,
 }
 
-/// Makes nodes.
-struct Builder {
+/// Makes nodes of primitives of which `pack` gives the boxes.
+struct Builder<F> {
     clusters: Clusters,
+    pack: F,
     heuristic_depth: u32,
+    /// Working memory that nobody uses just now: to get it anew from the system for each joint takes longer than to build what is below.
+    rooms: Mutex<Vec<Room>>,
 }
 
-impl Builder {
-    fn build(&self, items: &mut [Item]) -> Vec<Node> {
-        let root = match self.clusters.root() {
-            Some((joint, set)) => Part { set, joint: Some(joint) },
-            None => Part { set: dispatch!(level(), simd => Set::new(simd, 0, items)), joint: None },
-        };
-        self.subtree(items, 0, root, 0)
+/// Working memory for what is below a joint.
+#[derive(Default)]
+struct Room {
+    items: Vec<Item>,
+    spare: Spare,
+}
+
+/// The parts of a node, and how many they are.
+type Eight = ([Part; WIDTH], usize);
+
+impl<F: Fn(u32) -> PackedBox + Sync> Builder<F> {
+    /// For primitives `0..count`, in a box `root`.
+    fn new(count: usize, heuristic_depth: u32, root: &PackedBox, pack: F) -> Self {
+        Builder {
+            clusters: Clusters::new(count, root, &pack),
+            pack,
+            heuristic_depth,
+            rooms: Mutex::default(),
+        }
     }
 
-    /// The nodes of a set, numbered from 0; `items` are those of the set, of which the first is `base` of all.
-    fn subtree(&self, items: &mut [Item], base: usize, part: Part, depth: u32) -> Vec<Node> {
-        #[cfg(feature = "rayon")]
-        if crate::threads::share(part.set.len, PARALLEL_MIN) {
-            return self.subtree_on_threads(items, base, part, depth);
+    /// The nodes of all, and the order of the primitives.
+    fn build(&self, count: usize) -> (Vec<Node>, Vec<u32>) {
+        let (joint, set) = self.clusters.root();
+        let (mut nodes, mut order) = (Vec::new(), vec![0; count]);
+        self.joint(&mut nodes, &mut order, &Part { set, joint: Some(joint) }, 0);
+        (nodes, order)
+    }
+
+    /// Adds the nodes of a joint, and gives its primitives their order. It goes as deep as there are large sets: [`DEPTH_MAX`] bounds it.
+    fn joint(&self, nodes: &mut Vec<Node>, order: &mut [u32], part: &Part, depth: u32) {
+        if part.set.len >= GATHERED_MAX
+            && let Some(parts) = self.eight(part, depth, |part| self.below(part, depth))
+        {
+            let below = |nodes: &mut Vec<Node>, order: &mut [u32], part: &Part| {
+                self.joint(nodes, order, part, depth + 1);
+            };
+            return share_out(nodes, order, parts, below);
         }
-        dispatch!(level(), simd => self.subtree_on_one(simd, items, base, part, depth))
+        let rooms = || self.rooms.lock().expect("nobody panics who holds it");
+        let mut room = rooms().pop().unwrap_or_default();
+        let Room { items, spare } = &mut room;
+        let items = self.gather(&part.set, items);
+        if is_inner(part) || depth == 0 {
+            self.subtree(nodes, items, part, depth, spare);
+        }
+        for (to, item) in order.iter_mut().zip(items) {
+            *to = item.index;
+        }
+        rooms().push(room);
+    }
+
+    /// The items of a joint's set.
+    fn gather<'i>(&self, set: &Set, items: &'i mut Vec<Item>) -> &'i mut [Item] {
+        if items.len() < set.len {
+            items.resize(set.len, Item::NONE);
+        }
+        let items = &mut items[..set.len];
+        dispatch!(level(), _simd => {
+            let mut rest = &mut *items;
+            for cluster in self.clusters.primitives(set) {
+                let (of_cluster, after) = rest.split_at_mut(cluster.len());
+                for (to, &index) in of_cluster.iter_mut().zip(cluster) {
+                    *to = Item { bounds: (self.pack)(index), index };
+                }
+                rest = after;
+            }
+        });
+        items
+    }
+
+    /// Adds the nodes of a set, of which these are the items.
+    fn subtree(&self, nodes: &mut Vec<Node>, items: &mut [Item], part: &Part, depth: u32, spare: &mut Spare) {
+        #[cfg(feature = "rayon")]
+        if crate::threads::share(items.len(), PARALLEL_MIN) {
+            let parts =
+                dispatch!(level(), simd => self.eight_of(simd, part, items, part.set.start, depth, spare));
+            let below = |nodes: &mut Vec<Node>, items: &mut [Item], part: &Part| {
+                if is_inner(part) {
+                    self.subtree(nodes, items, part, depth + 1, &mut Spare::default());
+                }
+            };
+            return share_out(nodes, items, parts, below);
+        }
+        nodes.reserve(items.len() / PRIMITIVES_PER_NODE);
+        dispatch!(level(), simd => self.subtree_on_one(simd, nodes, items, part, depth, spare))
     }
 
     /// Depth first, each node after its parent.
@@ -180,62 +263,30 @@ impl Builder {
     fn subtree_on_one<S: Simd>(
         &self,
         simd: S,
+        nodes: &mut Vec<Node>,
         items: &mut [Item],
-        base: usize,
-        part: Part,
+        part: &Part,
         depth: u32,
-    ) -> Vec<Node> {
-        let mut nodes: Vec<Node> = Vec::with_capacity(items.len().div_ceil(4 * LEAF_SIZE));
-        let mut spare = Spare::default();
-        let mut tasks = vec![Task { part, place: Place::ROOT, depth }];
+        spare: &mut Spare,
+    ) {
+        let base = part.set.start;
+        let mut tasks = vec![Task { part: *part, place: Place::ROOT, depth }];
         while let Some(task) = tasks.pop() {
             let index = nodes.len();
             if let Some((parent, lane)) = task.place.split() {
                 nodes[parent].child[lane] = Child::inner(index);
             }
-            let (parts, count) = self.eight(simd, &task.part, items, base, task.depth, &mut spare);
+            let (parts, count) = self.eight_of(simd, &task.part, items, base, task.depth, spare);
             nodes.push(node_of(&parts[..count]));
             for (lane, part) in parts[..count].iter().enumerate().rev().filter(|(_, part)| is_inner(part)) {
                 tasks.push(Task { part: *part, place: Place::lane(index, lane), depth: task.depth + 1 });
             }
         }
-        nodes
     }
 
-    /// One node, and what hangs below it on several threads. It goes as deep as there are large sets: [`DEPTH_MAX`] bounds it.
-    #[cfg(feature = "rayon")]
-    fn subtree_on_threads(&self, items: &mut [Item], base: usize, part: Part, depth: u32) -> Vec<Node> {
-        let (parts, count) =
-            dispatch!(level(), simd => self.eight(simd, &part, items, base, depth, &mut Spare::default()));
-        let mut below: Vec<usize> = (0..count).filter(|&lane| is_inner(&parts[lane])).collect();
-        below.sort_unstable_by_key(|&lane| parts[lane].set.start);
-        let (mut rest, mut end) = (items, base);
-        let mut shares = Vec::with_capacity(below.len());
-        for lane in below {
-            let Set { start, len, .. } = parts[lane].set;
-            let (items, after) = rest[start - end..].split_at_mut(len);
-            shares.push((lane, start, items));
-            (rest, end) = (after, start + len);
-        }
-        let subtree = |(lane, start, items)| (lane, self.subtree(items, start, parts[lane], depth + 1));
-        let mut subtrees: Vec<(usize, Vec<Node>)> = shares.into_par_iter().map(subtree).collect();
-        subtrees.sort_unstable_by_key(|(lane, _)| *lane);
-        let mut nodes = Vec::with_capacity(1 + subtrees.iter().map(|(_, nodes)| nodes.len()).sum::<usize>());
-        nodes.push(node_of(&parts[..count]));
-        for (lane, subtree) in subtrees {
-            let first = nodes.len();
-            nodes[0].child[lane] = Child::inner(first);
-            nodes.extend(subtree.into_iter().map(|mut node| {
-                node.child = node.child.map(|child| child.after(first));
-                node
-            }));
-        }
-        nodes
-    }
-
-    /// Splits a set into up to eight, and says how many.
+    /// Splits a set into up to eight; `items` begin at `base` in the array of all.
     #[inline(always)]
-    fn eight<S: Simd>(
+    fn eight_of<S: Simd>(
         &self,
         simd: S,
         part: &Part,
@@ -243,10 +294,34 @@ impl Builder {
         base: usize,
         depth: u32,
         spare: &mut Spare,
-    ) -> ([Part; WIDTH], usize) {
-        let evenly = depth >= self.heuristic_depth;
+    ) -> Eight {
+        let parts = self.eight(
+            part,
+            depth,
+            #[inline(always)]
+            |part| {
+                let items = &mut items[part.set.start - base..][..part.set.len];
+                Some(self.split(simd, part, items, depth, spare))
+            },
+        );
+        parts.expect("each is split")
+    }
+
+    fn evenly(&self, depth: u32) -> bool {
+        depth >= self.heuristic_depth
+    }
+
+    /// Splits a set into up to eight; nothing where one is not split that should be.
+    #[inline(always)]
+    fn eight(
+        &self,
+        part: &Part,
+        depth: u32,
+        mut split: impl FnMut(&Part) -> Option<[Part; 2]>,
+    ) -> Option<Eight> {
         // Sets of one measure, as of identical boxes, are split by number.
-        let key = |part: &Part| (if evenly { 0.0 } else { measure(&part.set.bounds) }, part.set.len);
+        let key =
+            |part: &Part| (if self.evenly(depth) { 0.0 } else { measure(&part.set.bounds) }, part.set.len);
         let mut parts = [*part; WIDTH];
         let mut count = 1;
         while count < WIDTH {
@@ -254,14 +329,10 @@ impl Builder {
             let Some(i) = large.reduce(|a, b| if key(&parts[b]) > key(&parts[a]) { b } else { a }) else {
                 break;
             };
-            let Set { start, len, .. } = parts[i].set;
-            let [below, above] =
-                self.split(simd, &parts[i], &mut items[start - base..][..len], evenly, spare);
-            parts[i] = below;
-            parts[count] = above;
+            [parts[i], parts[count]] = split(&parts[i])?;
             count += 1;
         }
-        (parts, count)
+        Some((parts, count))
     }
 
     #[inline(always)]
@@ -270,20 +341,77 @@ impl Builder {
         simd: S,
         part: &Part,
         items: &mut [Item],
-        evenly: bool,
+        depth: u32,
         spare: &mut Spare,
     ) -> [Part; 2] {
-        if let Some(joint) = part.joint
-            && !evenly
-            && let Some(below) = self.clusters.below(joint)
-        {
-            return below.map(|(joint, set)| Part { set, joint: Some(joint) });
+        if let Some(below) = self.below(part, depth) {
+            return below;
         }
         // What a joint knows is of its clusters.
         let set = if part.joint.is_some() { Set::new(simd, part.set.start, items) } else { part.set };
-        let halves =
-            if evenly { set.split_evenly(simd, items) } else { set.split(simd, items, spare, |_| 1) };
+        let halves = if self.evenly(depth) {
+            set.split_evenly(simd, items)
+        } else {
+            set.split(simd, items, spare, |_| 1)
+        };
         halves.map(|set| Part { set, joint: None })
+    }
+
+    /// What a joint is cut into; nothing if it is one cluster, or no joint, or is to be split evenly.
+    fn below(&self, part: &Part, depth: u32) -> Option<[Part; 2]> {
+        let below = self.clusters.below(part.joint.filter(|_| !self.evenly(depth))?)?;
+        Some(below.map(|(joint, set)| Part { set, joint: Some(joint) }))
+    }
+}
+
+/// Adds the node of some parts, and what `below` adds for each of them, given those of `items` that are its own: the node has them all. With
+/// the feature `rayon` on the threads of the current pool, if there are many.
+fn share_out<T: Send>(
+    nodes: &mut Vec<Node>,
+    items: &mut [T],
+    (parts, count): Eight,
+    below: impl Fn(&mut Vec<Node>, &mut [T], &Part) + Sync,
+) {
+    #[cfg(feature = "rayon")]
+    let share = crate::threads::share(items.len(), PARALLEL_MIN);
+    let mut lanes: Vec<usize> = (0..count).collect();
+    lanes.sort_unstable_by_key(|&lane| parts[lane].set.start);
+    let mut shares: [&mut [T]; WIDTH] = Default::default();
+    let mut rest = items;
+    for lane in lanes {
+        (shares[lane], rest) = rest.split_at_mut(parts[lane].set.len);
+    }
+    #[cfg(feature = "rayon")]
+    if share {
+        let subtree = |(part, items): (&Part, &mut &mut [T])| {
+            let mut nodes = Vec::new();
+            below(&mut nodes, items, part);
+            nodes
+        };
+        let subtrees: Vec<Vec<Node>> = parts[..count].par_iter().zip(&mut shares).map(subtree).collect();
+        let (mut node, mut index) = (node_of(&parts[..count]), 1);
+        for (lane, subtree) in subtrees.iter().enumerate().filter(|(_, nodes)| !nodes.is_empty()) {
+            node.child[lane] = Child::inner(index);
+            index += subtree.len();
+        }
+        nodes.reserve_exact(index);
+        nodes.push(node);
+        for subtree in subtrees {
+            let first = nodes.len();
+            nodes.extend(subtree.into_iter().map(|mut node| {
+                node.child = node.child.map(|child| child.after(first));
+                node
+            }));
+        }
+        return;
+    }
+    let index = nodes.len();
+    nodes.push(node_of(&parts[..count]));
+    for (lane, items) in shares[..count].iter_mut().enumerate() {
+        if is_inner(&parts[lane]) {
+            nodes[index].child[lane] = Child::inner(nodes.len());
+        }
+        below(nodes, items, &parts[lane]);
     }
 }
 

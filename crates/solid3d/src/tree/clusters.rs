@@ -11,7 +11,7 @@ use solid_convex::simd::{dispatch, level};
 
 use super::packed::PackedBox;
 use super::split::{Item, Set, Spare};
-use crate::threads::for_each_part;
+use crate::threads::both;
 #[cfg(feature = "rayon")]
 use crate::threads::share;
 
@@ -21,9 +21,6 @@ const PRIMITIVES_MIN: usize = 1 << 13;
 
 /// Primitives for each cell of the grid. A surface goes through some of the cells only, and has several times as many in each.
 const PRIMITIVES_PER_CELL: usize = 32;
-
-/// Items that are gathered in one piece.
-const GATHERED: usize = 1 << 11;
 
 /// So many primitives are worth another thread.
 const PRIMITIVES_MANY: usize = 1 << 13;
@@ -75,79 +72,93 @@ impl Grid {
 /// A union of clusters in the tree that is cut along cells.
 #[derive(Clone, Copy, Debug)]
 struct Joint {
-    /// Of primitives.
+    /// Of primitives; of clusters while these are cut.
     set: Set,
-    kind: Kind,
+    /// What it is cut into, unless it is one cluster: the first of two joints, which the second follows.
+    below: Option<JointIndex>,
 }
 
+/// Where the primitives of a cluster are. They end where those of the next begin.
 #[derive(Clone, Copy, Debug)]
-enum Kind {
-    /// One cluster: that of a cell.
-    Cell(u32),
-    /// Cut into two joints: the first of them, which the second follows.
-    Cut(JointIndex),
+struct Cluster {
+    /// In the order of the tree.
+    start: u32,
+    /// Among those in the order of cells.
+    by_cell: u32,
 }
 
-/// The tree above the clusters: binary, cut by the surface-area heuristic.
-#[derive(Debug, Default)]
+/// The clusters, and the tree above them: binary, cut by the surface-area heuristic.
+#[derive(Debug)]
 pub(super) struct Clusters {
-    /// The root first, if there are clusters; children after their parent.
+    /// The root first; children after their parent.
     joints: Vec<Joint>,
+    /// In the order of the tree, and then where the last ends.
+    clusters: Vec<Cluster>,
+    /// Cell by cell; those of a cell ascend.
+    by_cell: Vec<u32>,
 }
 
 /// The number of a joint.
 pub(super) type JointIndex = u32;
 
 impl Clusters {
-    /// The root, if there are clusters.
-    pub fn root(&self) -> Option<(JointIndex, Set)> {
-        self.joints.first().map(|joint| (0, joint.set))
+    /// The clusters of primitives `0..count`: `pack` gives the box of each, and `root` that of all. A few are one cluster.
+    pub fn new(count: usize, root: &PackedBox, pack: &(impl Fn(u32) -> PackedBox + Sync)) -> Self {
+        if count < PRIMITIVES_MIN {
+            return Clusters {
+                joints: vec![Joint { set: Set::of_bounds(*root, count), below: None }],
+                clusters: [0, count as u32].map(|start| Cluster { start, by_cell: 0 }).to_vec(),
+                by_cell: (0..count as u32).collect(),
+            };
+        }
+        let grid = Grid::new(root, count / PRIMITIVES_PER_CELL);
+        let mut cells = vec![0; count];
+        let (mut items, mut counts) = (Vec::new(), vec![0; grid.len()]);
+        for (cell, Cell { bounds, count }) in (0..).zip(fill(&grid, &mut cells, pack)) {
+            if count > 0 {
+                items.push(Item { bounds, index: cell });
+                counts[cell as usize] = count;
+            }
+        }
+        let (mut joints, mut by_cell, mut ends) = (Vec::new(), Vec::new(), Vec::new());
+        let (cut, sort) = (|| joints = cut(&mut items, &counts), || (by_cell, ends) = sort(&cells, &counts));
+        both(count >= PRIMITIVES_MANY, cut, sort);
+        let mut start = 0;
+        let mut clusters = Vec::with_capacity(items.len() + 1);
+        for cell in items.iter().map(|item| item.index as usize) {
+            clusters.push(Cluster { start, by_cell: ends[cell] - counts[cell] });
+            start += counts[cell];
+        }
+        clusters.push(Cluster { start, by_cell: 0 });
+        for Joint { set, .. } in &mut joints {
+            let [start, end] =
+                [set.start, set.start + set.len].map(|cluster| clusters[cluster].start as usize);
+            (set.start, set.len) = (start, end - start);
+        }
+        Clusters { joints, clusters, by_cell }
+    }
+
+    /// The joint of all.
+    pub fn root(&self) -> (JointIndex, Set) {
+        (0, self.joints[0].set)
     }
 
     /// What a joint is cut into; nothing if it is one cluster.
     pub fn below(&self, joint: JointIndex) -> Option<[(JointIndex, Set); 2]> {
-        match self.joints[joint as usize].kind {
-            Kind::Cell(_) => None,
-            Kind::Cut(first) => {
-                Some([first, first + 1].map(|index| (index, self.joints[index as usize].set)))
-            }
-        }
+        let first = self.joints[joint as usize].below?;
+        Some([first, first + 1].map(|index| (index, self.joints[index as usize].set)))
     }
-}
 
-/// The items of primitives `0..count` in an order in which each joint is consecutive, and the joints.
-///
-/// `pack` gives the box of a primitive, and `root` that of all.
-pub(super) fn arrange(
-    count: usize,
-    root: &PackedBox,
-    pack: impl Fn(u32) -> PackedBox + Sync + Send,
-) -> (Vec<Item>, Clusters) {
-    let item = |index: u32| Item { bounds: pack(index), index };
-    if count < PRIMITIVES_MIN {
-        let order: Vec<u32> = (0..count as u32).collect();
-        return (gather(&order, item), Clusters::default());
+    /// The primitives of a joint's set, in the order of the tree, cluster by cluster.
+    pub fn primitives(&self, set: &Set) -> impl Iterator<Item = &[u32]> {
+        let (start, end) = (set.start as u32, (set.start + set.len) as u32);
+        let first = self.clusters.partition_point(|cluster| cluster.start < start);
+        let clusters = self.clusters[first..].windows(2).take_while(move |cluster| cluster[0].start < end);
+        clusters.map(|cluster| {
+            let count = cluster[1].start - cluster[0].start;
+            &self.by_cell[cluster[0].by_cell as usize..][..count as usize]
+        })
     }
-    let grid = Grid::new(root, count / PRIMITIVES_PER_CELL);
-    let mut cells = vec![0; count];
-    let (mut clusters, mut weights) = (Vec::new(), vec![0; grid.len()]);
-    for (cell, Cell { bounds, count }) in (0..).zip(fill(&grid, &mut cells, &pack)) {
-        if count > 0 {
-            clusters.push(Item { bounds, index: cell });
-            weights[cell as usize] = count;
-        }
-    }
-    let mut joints = cut(&mut clusters, &weights);
-    // Where the next primitive of each cell goes.
-    let mut next = weights;
-    place(&mut joints, &mut next);
-    let mut order = vec![0; count];
-    for (primitive, &cell) in (0..).zip(&cells) {
-        let place = &mut next[cell as usize];
-        order[*place as usize] = primitive;
-        *place += 1;
-    }
-    (gather(&order, item), Clusters { joints })
 }
 
 /// What is in a cell.
@@ -191,21 +202,20 @@ fn fill(grid: &Grid, cells: &mut [u32], pack: &(impl Fn(u32) -> PackedBox + Sync
 }
 
 /// Cuts clusters, of cells with so many primitives, by the surface-area heuristic until each is alone. Sets are of clusters.
-fn cut(clusters: &mut [Item], weights: &[u32]) -> Vec<Joint> {
+fn cut(clusters: &mut [Item], counts: &[u32]) -> Vec<Joint> {
     let mut joints = Vec::with_capacity(2 * clusters.len());
     let mut spare = Spare::default();
     dispatch!(level(), simd => {
-        let joint = |set: Set, clusters: &[Item]| Joint { set, kind: Kind::Cell(clusters[set.start].index) };
-        joints.push(joint(Set::new(simd, 0, clusters), clusters));
+        joints.push(Joint { set: Set::new(simd, 0, clusters), below: None });
         let mut index = 0;
         // Ends, because a cut makes two of fewer clusters.
         while index < joints.len() {
             let set = joints[index].set;
             if set.len > 1 {
-                joints[index].kind = Kind::Cut(joints.len() as JointIndex);
+                joints[index].below = Some(joints.len() as JointIndex);
                 let items = &mut clusters[set.start..set.start + set.len];
-                for half in set.split(simd, items, &mut spare, |item| weights[item.index as usize]) {
-                    joints.push(joint(half, clusters));
+                for half in set.split(simd, items, &mut spare, |item| counts[item.index as usize]) {
+                    joints.push(Joint { set: half, below: None });
                 }
             }
             index += 1;
@@ -214,38 +224,19 @@ fn cut(clusters: &mut [Item], weights: &[u32]) -> Vec<Joint> {
     joints
 }
 
-/// Makes the sets of joints sets of primitives; of each cell it takes how many there are, and gives where the first goes.
-fn place(joints: &mut [Joint], cells: &mut [u32]) {
-    for index in (0..joints.len()).rev() {
-        joints[index].set.len = match joints[index].kind {
-            Kind::Cell(cell) => cells[cell as usize] as usize,
-            Kind::Cut(first) => joints[first as usize].set.len + joints[first as usize + 1].set.len,
-        };
+/// The primitives cell by cell, given the cell of each and how many are in each cell; and where those of each cell end.
+fn sort(cells: &[u32], counts: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let mut next = Vec::with_capacity(counts.len());
+    let mut start = 0;
+    for &count in counts {
+        next.push(start);
+        start += count;
     }
-    joints[0].set.start = 0;
-    for index in 0..joints.len() {
-        let Joint { set: Set { start, .. }, kind } = joints[index];
-        match kind {
-            Kind::Cell(cell) => cells[cell as usize] = start as u32,
-            Kind::Cut(first) => {
-                let first = first as usize;
-                joints[first].set.start = start;
-                joints[first + 1].set.start = start + joints[first].set.len;
-            }
-        }
+    let mut by_cell = vec![0; cells.len()];
+    for (primitive, &cell) in (0..).zip(cells) {
+        let place = &mut next[cell as usize];
+        by_cell[*place as usize] = primitive;
+        *place += 1;
     }
-}
-
-/// The items of primitives in an order.
-fn gather(order: &[u32], item: impl Fn(u32) -> Item + Sync + Send) -> Vec<Item> {
-    let mut items = vec![Item::NONE; order.len()];
-    for_each_part(&mut items, GATHERED, PRIMITIVES_MANY, |i, items| {
-        let order = &order[i * GATHERED..][..items.len()];
-        dispatch!(level(), _simd => {
-            for (to, &index) in items.iter_mut().zip(order) {
-                *to = item(index);
-            }
-        });
-    });
-    items
+    (by_cell, next)
 }

@@ -35,7 +35,7 @@
 //! 2. No overlapping pair is lost, whatever the affine map, the sizes and the distance from the origin; none nearer than the
 //!    reported distance either.
 //! 3. A build of boxes scaled by a power of two gives the same bits; so does a refit of unchanged boxes.
-//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but a build on several threads.
+//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but the upper nodes of a build.
 //! 5. Every order is a function of the input alone, not of the number of threads.
 
 mod beam;

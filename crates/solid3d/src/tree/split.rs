@@ -46,6 +46,11 @@ impl Default for Spare {
 }
 
 impl Set {
+    /// A set of which nothing is known but its box: to be made anew before it is split.
+    pub fn of_bounds(bounds: PackedBox, len: usize) -> Self {
+        Set { start: 0, len, bounds, centers: PackedBox::EMPTY }
+    }
+
     /// The set of `items`, which begin at `start` in the array of all.
     #[inline(always)]
     pub fn new<S: Simd>(simd: S, start: usize, items: &[Item]) -> Self {

@@ -19,7 +19,7 @@ use super::fat_box::FatBox;
 use super::node::{Child, Node, Place, PlaceCell, WIDTH};
 use super::tree::{ROOT, Tree};
 use crate::broad::Proxy;
-use crate::broad::room::{push, resize_on_threads, room};
+use crate::broad::room::{push, resize, resize_on_threads, room};
 #[cfg(feature = "rayon")]
 use crate::threads::share;
 use crate::threads::{both, for_each_part};
@@ -48,6 +48,8 @@ const NODES_MANY: usize = 1 << 10;
 pub(super) struct Builder {
     /// The leaves: code in the high half, proxy in the low half. So sorting is a sort of plain integers.
     order: Vec<u64>,
+    /// Where they are sorted to.
+    sorted: Vec<u64>,
     /// The upper levels, each node before those below it; leaves hang in them, what else is below does not yet.
     upper: Vec<Node>,
     /// Leaves in the upper levels.
@@ -84,7 +86,9 @@ impl Builder {
             tree.nodes.push(Node::empty(Place::NONE));
             return;
         }
-        encode(&mut self.order, boxes);
+        if encode(&mut self.order, boxes) {
+            sort_ascending(&mut self.order, &mut self.sorted);
+        }
         self.upper.clear();
         self.leaves.clear();
         self.subtrees = 0;
@@ -129,7 +133,7 @@ impl Builder {
 
     /// Makes the nodes of the subtrees and hangs them below the upper levels.
     fn hang(&mut self, tree: &mut Tree, boxes: &[FatBox]) {
-        let Self { order, upper, leaves, below, subtrees } = self;
+        let Self { order, upper, leaves, below, subtrees, .. } = self;
         let below = &mut below[..*subtrees];
         let mut count = upper.len();
         for subtree in below.iter_mut() {
@@ -297,7 +301,7 @@ fn code(entry: u64) -> u32 {
     (entry >> 32) as u32
 }
 
-/// Gives the entries codes relative to their own bounds, and sorts them. False if all centres are one.
+/// Gives the entries codes relative to their own bounds. False if all centres are one.
 fn encode(order: &mut [u64], boxes: &[FatBox]) -> bool {
     let FatBox { min, max } = bounds_of_centers(order, boxes);
     // In `f64`: the extent of finite `f32` boxes may overflow, and the inverse of a tiny one too.
@@ -319,7 +323,6 @@ fn encode(order: &mut [u64], boxes: &[FatBox]) -> bool {
             *entry = u64::from(code) << 32 | u64::from(proxy(*entry));
         }
     });
-    sort(order);
     true
 }
 
@@ -347,6 +350,34 @@ fn sort(order: &mut [u64]) {
     order.sort_unstable();
 }
 
+/// Sorts entries that ascend by proxy: by digits of their codes, the lowest first, in half the time of a sort by comparison.
+fn sort_ascending(order: &mut Vec<u64>, sorted: &mut Vec<u64>) {
+    /// Fewer are not worth the buckets.
+    const ENTRIES_MIN: usize = 1 << 10;
+    const BUCKETS: usize = 1 << BITS;
+    if order.len() < ENTRIES_MIN {
+        return order.sort_unstable();
+    }
+    sorted.clear();
+    resize(sorted, order.len(), 0);
+    // As many digits as axes.
+    for digit in 0..3 {
+        let bucket = |entry: u64| (code(entry) >> (digit * BITS)) as usize % BUCKETS;
+        let mut next = [0_u32; BUCKETS];
+        order.iter().for_each(|&entry| next[bucket(entry)] += 1);
+        let mut start = 0;
+        for next in &mut next {
+            start += std::mem::replace(next, start);
+        }
+        for &entry in order.iter() {
+            let place = &mut next[bucket(entry)];
+            sorted[*place as usize] = entry;
+            *place += 1;
+        }
+        std::mem::swap(order, sorted);
+    }
+}
+
 /// Puts two zero bits between the ten low bits.
 fn spread(x: u32) -> u32 {
     let x = (x | x << 16) & 0x0300_00FF;
@@ -371,8 +402,9 @@ fn split(range: &mut [u64], boxes: &[FatBox], depth: usize, ends: &mut [usize; W
     if range.len() <= CUT_BY_CODE_MIN {
         return split_few(range.len(), ends);
     }
-    if depth < DEPTH_BY_CODE && code(range[0]) == code(range[range.len() - 1]) {
-        encode(range, boxes);
+    let is_one_cell = code(range[0]) == code(range[range.len() - 1]);
+    if depth < DEPTH_BY_CODE && is_one_cell && encode(range, boxes) {
+        sort(range);
     }
     ends[0] = range.len();
     for pieces in 1..WIDTH {

@@ -31,9 +31,10 @@ mod tree;
 
 use super::boxes::Boxes;
 use super::pair_lists::PairLists;
-use super::room::{resize, resize_on_threads, room};
+use super::room::{resize_on_threads, room};
 use super::{BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid};
 use crate::bounds::Aabb;
+use crate::threads::both;
 use build::Builder;
 use fat_box::FatBox;
 use search::{Found, Search};
@@ -47,6 +48,9 @@ const REBUILD_AT_ONE_IN: usize = 10;
 
 /// Fewer boxes than this are placed one by one whatever their share: a small tree is changed faster than built.
 const REBUILD_MIN: usize = 32;
+
+/// Pairs of so many boxes, while the tree is built anew, are worth another thread.
+const REBUILD_MANY: usize = 1 << 12;
 
 /// Where more than one in this many boxes moved, one pass over all pairs is cheaper than a walk along their lists.
 const REFRESH_ALL_AT_ONE_IN: usize = 4;
@@ -114,7 +118,7 @@ impl DynamicTree {
         if proxies > self.tight.len() {
             self.tight.grow(proxies);
             resize_on_threads(&mut self.fat, proxies, FatBox::EMPTY);
-            resize(&mut self.status, proxies, Status::default());
+            resize_on_threads(&mut self.status, proxies, Status::default());
             self.tree.grow(proxies);
             self.pairs.grow(proxies);
         }
@@ -147,14 +151,14 @@ impl DynamicTree {
         self.search = Search::default();
     }
 
-    /// Builds the tree anew from all living boxes.
+    /// Builds the tree anew from all living boxes, and meanwhile forgets the pairs that do not overlap.
     fn rebuild(&mut self) {
-        let Self { status, fat, tree, builder, .. } = self;
+        let Self { status, fat, tree, pairs, builder, .. } = self;
         for s in status.iter_mut() {
             s.set(Status::IN_TREE, s.is(Status::ALIVE));
         }
         let living = (0..).zip(status.iter()).filter_map(|(proxy, s)| s.is(Status::ALIVE).then_some(proxy));
-        builder.build(tree, living, fat);
+        both(fat.len() >= REBUILD_MANY, || builder.build(tree, living, fat), || pairs.forget_apart());
         self.changes = 0;
         self.counters.rebuilds += 1;
     }
@@ -220,7 +224,6 @@ impl DynamicTree {
     /// that are found in them.
     fn pair_all(&mut self) {
         let Self { tight, tree, pairs, search, .. } = self;
-        pairs.forget_apart();
         self.counters.node_visits += search.run(tree, tight, |&Found { proxies: [a, b], overlaps }| {
             // Those that do not overlap are not known any more.
             if !overlaps || pairs.find(a, b).is_none() {

@@ -14,7 +14,7 @@ use crate::bounds::Aabb;
 use crate::broad::boxes::{Row, of_row, row};
 #[cfg(feature = "rayon")]
 use crate::broad::room::extend;
-use crate::broad::room::push;
+use crate::broad::room::{push, room};
 use crate::broad::{Proxy, is_valid};
 #[cfg(feature = "rayon")]
 use crate::threads::{first_part_where, share};
@@ -221,7 +221,11 @@ impl Slots<'_> {
         moved_max: usize,
     ) -> (usize, Option<usize>) {
         let refused = match work {
-            Work::Insert => boxes.iter().position(|(proxy, bounds)| !self.insert(*proxy, bounds, notes)),
+            Work::Insert => {
+                let queued = notes.queue.len() + boxes.len();
+                room(&mut notes.queue, queued);
+                boxes.iter().position(|(proxy, bounds)| !self.insert(*proxy, bounds, notes))
+            }
             Work::Update => {
                 dispatch!(level(), simd => self.update_each(simd, boxes, notes, moved_max))
             }
