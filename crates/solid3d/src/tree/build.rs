@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use fearless_simd::Simd;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 
 use super::clusters::{Clusters, JointIndex};
 use super::cost::{Measured, measure, sum};
@@ -97,7 +97,7 @@ impl Tree {
 /// The box around all, each of which must be a box.
 fn bounds_of(count: usize, box_of: &(impl Fn(u32) -> Aabb + Sync)) -> Aabb {
     let part = |indices: std::ops::Range<u32>| -> Aabb {
-        dispatch!(level(), _simd => {
+        dispatch!(_simd => {
             let mut sum = Aabb::EMPTY;
             for index in indices {
                 let bounds = box_of(index);
@@ -228,7 +228,7 @@ impl<F: Fn(u32) -> PackedBox + Sync> Builder<F> {
             items.resize(set.len, Item::NONE);
         }
         let items = &mut items[..set.len];
-        dispatch!(level(), _simd => {
+        dispatch!(_simd => {
             let mut rest = &mut *items;
             for cluster in self.clusters.primitives(set) {
                 let (of_cluster, after) = rest.split_at_mut(cluster.len());
@@ -245,8 +245,7 @@ impl<F: Fn(u32) -> PackedBox + Sync> Builder<F> {
     fn subtree(&self, nodes: &mut Vec<Node>, items: &mut [Item], part: &Part, depth: u32, spare: &mut Spare) {
         #[cfg(feature = "rayon")]
         if crate::threads::share(items.len(), PARALLEL_MIN) {
-            let parts =
-                dispatch!(level(), simd => self.eight_of(simd, part, items, part.set.start, depth, spare));
+            let parts = dispatch!(simd => self.eight_of(simd, part, items, part.set.start, depth, spare));
             let below = |nodes: &mut Vec<Node>, items: &mut [Item], part: &Part| {
                 if is_inner(part) {
                     self.subtree(nodes, items, part, depth + 1, &mut Spare::default());
@@ -255,7 +254,7 @@ impl<F: Fn(u32) -> PackedBox + Sync> Builder<F> {
             return share_out(nodes, items, parts, below);
         }
         nodes.reserve(items.len() / PRIMITIVES_PER_NODE);
-        dispatch!(level(), simd => self.subtree_on_one(simd, nodes, items, part, depth, spare))
+        dispatch!(simd => self.subtree_on_one(simd, nodes, items, part, depth, spare))
     }
 
     /// Depth first, each node after its parent.

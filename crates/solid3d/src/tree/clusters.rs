@@ -7,7 +7,7 @@
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 
 use super::packed::PackedBox;
 use super::split::{Item, Set, Spare};
@@ -172,7 +172,7 @@ struct Cell {
 fn fill(grid: &Grid, cells: &mut [u32], pack: &(impl Fn(u32) -> PackedBox + Sync)) -> Vec<Cell> {
     let fill_part = |first: usize, cells: &mut [u32]| {
         let mut table = vec![Cell { bounds: PackedBox::EMPTY, count: 0 }; grid.len()];
-        dispatch!(level(), simd => {
+        dispatch!(simd => {
             for (index, cell) in (first as u32..).zip(cells) {
                 let bounds = pack(index);
                 let at = grid.cell(&bounds);
@@ -205,7 +205,7 @@ fn fill(grid: &Grid, cells: &mut [u32], pack: &(impl Fn(u32) -> PackedBox + Sync
 fn cut(clusters: &mut [Item], counts: &[u32]) -> Vec<Joint> {
     let mut joints = Vec::with_capacity(2 * clusters.len());
     let mut spare = Spare::default();
-    dispatch!(level(), simd => {
+    dispatch!(simd => {
         joints.push(Joint { set: Set::new(simd, 0, clusters), below: None });
         let mut index = 0;
         // Ends, because a cut makes two of fewer clusters.

@@ -9,7 +9,7 @@ use super::Tree;
 use super::node::{Node, WIDTH, halves};
 use super::packed::PackedBox;
 use crate::Aabb;
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 
 /// A tree whose cost has grown by this factor since it was built is no longer worth refitting.
 ///
@@ -75,7 +75,7 @@ impl Measured {
 
 /// The sum of the measures of all lanes.
 pub(super) fn sum(nodes: &[Node]) -> f64 {
-    let of_block = |block: &[Node]| dispatch!(level(), simd => measure_lanes(simd, block.iter().rev()));
+    let of_block = |block: &[Node]| dispatch!(simd => measure_lanes(simd, block.iter().rev()));
     #[cfg(feature = "rayon")]
     if crate::threads::share(nodes.len(), NODES_MANY) {
         use rayon::prelude::*;

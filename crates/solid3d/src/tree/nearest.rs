@@ -2,7 +2,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, f64x4, mask64x4};
-use solid_convex::simd::{Level, dispatch, level};
+use solid_convex::simd::{Level, dispatch};
 
 use super::lanes::{LANES, bits, distances_squared_to_box, lanes};
 use super::metric::{Folded, PairMetric};
@@ -79,7 +79,7 @@ impl Tree {
             }
         };
         let mut visitor = Plain(&mut visit);
-        dispatch!(level(), simd => self.walk_near(simd, &mut visitor, bounds, best, traversal));
+        dispatch!(simd => self.walk_near(simd, &mut visitor, bounds, best, traversal));
     }
 
     /// As [`nearest`](Tree::nearest), on a level of instructions, for a query that all of `around` hold, of which there is at

@@ -1,6 +1,6 @@
 //! The leaves whose box overlaps one box.
 
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 
 use super::crossing::Crossing;
 use super::lanes::{bits, overlapping_box, overlapping_probe};
@@ -35,7 +35,7 @@ impl Tree {
         // Within the bounds there is neither infinity nor overflow.
         let clipped = Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
         let query = self.normal.pack(&clipped);
-        dispatch!(level(), simd => self.walk(|node| overlapping_box(simd, node, &query), traversal, visit))
+        dispatch!(simd => self.walk(|node| overlapping_box(simd, node, &query), traversal, visit))
     }
 
     /// Like [`overlapping`](Tree::overlapping), but only through boxes that `meets` does not refuse: for a query of which the box
@@ -65,7 +65,7 @@ impl Tree {
             let met = |lane: &usize| meets(&self.normal.unpack(&node.lane(*lane)));
             bits(hits).filter(met).fold(0, |hits, lane| hits | 1 << lane)
         };
-        dispatch!(level(), simd => {
+        dispatch!(simd => {
             self.walk(|node| met(overlapping_box(simd, node, &query), node), traversal, visit)
         })
     }
@@ -83,7 +83,7 @@ impl Tree {
         let normal = Normal::of(&query.bounds);
         let crossing = Crossing::new(&query.relative, &normal, &self.normal);
         let bounds = normal.pack(&query.bounds);
-        dispatch!(level(), simd => {
+        dispatch!(simd => {
             let probe = crossing.probe(simd, &bounds);
             self.walk(|node| overlapping_probe(simd, node, &crossing, &probe).0, traversal, visit)
         })

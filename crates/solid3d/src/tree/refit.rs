@@ -50,7 +50,7 @@ impl Tree {
                 }
                 total
             };
-            dispatch!(level(), simd => pass(simd, nodes, set_leaves))
+            dispatch!(simd => pass(simd, nodes, set_leaves))
         });
     }
 

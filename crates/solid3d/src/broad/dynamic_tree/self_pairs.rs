@@ -1,7 +1,7 @@
 //! All pairs of leaves whose boxes overlap: the tree against itself.
 
 use fearless_simd::Simd;
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 
 use super::node::{Kind, Place, lanes};
 use super::tree::Tree;
@@ -19,7 +19,7 @@ impl Tree {
         stack: &mut Vec<Lanes>,
         mut visit: impl FnMut(Proxy, Proxy),
     ) -> u64 {
-        dispatch!(level(), simd => self.pairs_within_with(simd, common, stack, &mut visit))
+        dispatch!(simd => self.pairs_within_with(simd, common, stack, &mut visit))
     }
 
     #[inline(always)]

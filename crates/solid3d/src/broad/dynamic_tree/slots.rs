@@ -19,7 +19,7 @@ use crate::broad::{Proxy, is_valid};
 #[cfg(feature = "rayon")]
 use crate::threads::{first_part_where, share};
 use fearless_simd::Simd;
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 
 /// What is kept of the boxes of some proxies that follow one another.
 pub(super) struct Slots<'a> {
@@ -227,7 +227,7 @@ impl Slots<'_> {
                 boxes.iter().position(|(proxy, bounds)| !self.insert(*proxy, bounds, notes))
             }
             Work::Update => {
-                dispatch!(level(), simd => self.update_each(simd, boxes, notes, moved_max))
+                dispatch!(simd => self.update_each(simd, boxes, notes, moved_max))
             }
         };
         (refused.unwrap_or(boxes.len()), refused)

@@ -6,7 +6,7 @@
 //! an insertion ends deeper than [`DEPTH_MAX`].
 
 use fearless_simd::Simd;
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::dispatch;
 
 use super::fat_box::FatBox;
 use super::node::{Child, Kind, Node, Place, PlaceCell, WIDTH, lanes};
@@ -148,7 +148,7 @@ impl Tree {
 
     /// Visits the leaves whose boxes overlap `b`; gives the number of nodes visited. `stack` is scratch.
     pub fn query(&self, b: &FatBox, stack: &mut Vec<u32>, mut visit: impl FnMut(Proxy)) -> u64 {
-        dispatch!(level(), simd => self.query_with(simd, b, stack, &mut visit))
+        dispatch!(simd => self.query_with(simd, b, stack, &mut visit))
     }
 
     #[inline(always)]
