@@ -273,10 +273,11 @@ impl Complex {
         for_each_part(&mut self.vertices, part, validate::VERTICES_MANY, |i, vertices| {
             vertices.copy_from_slice(&positions[i * part..][..vertices.len()]);
         });
-        let Complex { primitives, vertices, tree, leaf_points, .. } = self;
+        let Complex { primitives, tree, leaf_points, .. } = self;
         let points = leaf_points
             .get_or_init(|| Arc::new(LeafPoints::new(tree, |primitive| primitives.get(primitive))));
-        tree.refit_points(points, vertices);
+        // Not from the copies: what one thread has just written another waits for.
+        tree.refit_points(points, positions);
         self.topology = OnceLock::new();
         self.slabs = OnceLock::new();
         self.images = OnceLock::from(None);
