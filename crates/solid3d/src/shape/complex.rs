@@ -11,7 +11,7 @@ use super::topology::Topology;
 use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
-use crate::threads::for_each_part;
+use crate::threads::{both, for_each_part};
 use crate::tree::{LeafImages, LeafPoints, Slabs, Tree};
 
 /// A soup of convex primitives. Clones share what a deformation leaves alone.
@@ -269,15 +269,18 @@ impl Complex {
 
     /// Takes new positions, which were checked.
     pub fn deform(&mut self, positions: &[DVec3]) {
-        let part = validate::VERTICES_PART;
-        for_each_part(&mut self.vertices, part, validate::VERTICES_MANY, |i, vertices| {
-            vertices.copy_from_slice(&positions[i * part..][..vertices.len()]);
-        });
-        let Complex { primitives, tree, leaf_points, .. } = self;
+        let Complex { primitives, vertices, tree, leaf_points, .. } = self;
         let points = leaf_points
             .get_or_init(|| Arc::new(LeafPoints::new(tree, |primitive| primitives.get(primitive))));
+        let part = validate::VERTICES_PART;
+        let copy = || {
+            for_each_part(vertices, part, validate::VERTICES_MANY, |i, vertices| {
+                vertices.copy_from_slice(&positions[i * part..][..vertices.len()]);
+            });
+        };
         // Not from the copies: what one thread has just written another waits for.
-        tree.refit_points(points, positions);
+        let refit = || tree.refit_points(points, positions);
+        both(positions.len() >= validate::VERTICES_MANY, refit, copy);
         self.topology = OnceLock::new();
         self.slabs = OnceLock::new();
         self.images = OnceLock::from(None);
