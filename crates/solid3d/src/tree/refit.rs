@@ -4,6 +4,8 @@
 //! block by block: a few nodes of each wait for later blocks, all else is the same whichever block comes first. So several threads
 //! give the same bits as one, the cost included, which is summed in each block and then over the blocks.
 
+use std::ops::Range;
+
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x4};
 use glam::DVec3;
@@ -140,7 +142,7 @@ impl Block {
         let mut last_waiting = nodes.len();
         for index in (0..nodes.len()).rev() {
             bounds = bounds.union(&set_leaves(start + index, &mut nodes[index]));
-            if !set_children(nodes, start, index, last_waiting) {
+            if !set_children(nodes, start, index, 0..last_waiting) {
                 waiting[index / 64] |= 1 << (index % 64);
                 last_waiting = index;
             }
@@ -158,29 +160,47 @@ impl Block {
     }
 
     /// Gives the nodes that waited their boxes, and says what was found out of all; `nodes` are those of the block and all after it.
-    #[inline(always)]
+    #[inline(never)] // apart from what is done for every node
     fn finish<S: Simd>(&self, simd: S, nodes: &mut [Node], start: usize) -> Measured {
+        simd.vectorize(
+            #[inline(always)]
+            || self.finish_on(simd, nodes, start),
+        )
+    }
+
+    #[inline(always)]
+    fn finish_on<S: Simd>(&self, simd: S, nodes: &mut [Node], start: usize) -> Measured {
         let mut measured = self.measured;
-        for index in (0..BLOCK).rev().filter(|&index| self.waits(index)) {
-            set_children(nodes, start, index, usize::MAX);
-            measured.sum += measure_lanes(simd, std::iter::once(&nodes[index]));
+        let mut last_waiting = BLOCK;
+        for (word, &waiting) in self.waiting.iter().enumerate().rev() {
+            let mut waiting = waiting;
+            while let Some(bit) = waiting.checked_ilog2() {
+                let index = word * 64 + bit as usize;
+                set_children(nodes, start, index, last_waiting..usize::MAX);
+                measured.sum += measure_lanes(simd, std::iter::once(&nodes[index]));
+                last_waiting = index;
+                waiting ^= 1 << bit;
+            }
         }
         measured
     }
 }
 
-/// Gives the inner lanes of a node their boxes, from nodes after it; `false` when one of these is `unknown`. The first node is number `start`
-/// of all.
+/// Gives the inner lanes of a node their boxes, from nodes after it: those lanes that hold `those` nodes; `false` when there is one beyond. The first node
+/// is number `start` of all; `those` count from it.
 #[inline(always)]
-fn set_children(nodes: &mut [Node], start: usize, index: usize, unknown: usize) -> bool {
+fn set_children(nodes: &mut [Node], start: usize, index: usize, those: Range<usize>) -> bool {
     let (before, after) = nodes.split_at_mut(index + 1);
     let node = &mut before[index];
     for lane in 0..node.child.len() {
         if let Kind::Inner(child) = node.child[lane].kind() {
-            if child - start == unknown {
+            let child = child - start;
+            if child >= those.end {
                 return false;
             }
-            node.set_lane(lane, &after[child - start - index - 1].union());
+            if child >= those.start {
+                node.set_lane(lane, &after[child - index - 1].union());
+            }
         }
     }
     true
