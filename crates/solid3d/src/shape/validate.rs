@@ -10,7 +10,7 @@ use crate::tree::PRIMITIVES_MAX;
 /// What 32-bit indices can name.
 pub(super) const NAMEABLE_MAX: usize = u32::MAX as usize;
 
-/// Vertices that are checked or copied in one piece.
+/// Vertices, or triangles, that are checked or copied in one piece.
 pub(super) const VERTICES_PART: usize = 1 << 12;
 
 /// So many, of some 1 ns each, are worth another thread.
@@ -22,14 +22,18 @@ pub(super) fn vertices(vertices: &[DVec3]) -> Result<()> {
     let in_range = |v: &DVec3| {
         (v.x.abs() <= MAGNITUDE_MAX) & (v.y.abs() <= MAGNITUDE_MAX) & (v.z.abs() <= MAGNITUDE_MAX)
     };
-    // Without a branch within a part: nearly always all are.
-    let fails = |part: &[DVec3]| !part.iter().fold(true, |all, v| all & in_range(v));
-    let part = first_part_where(vertices, VERTICES_PART, VERTICES_MANY, fails);
-    let first = part.unwrap_or(0) * VERTICES_PART;
-    match part.and_then(|_| vertices[first..].iter().position(|v| !in_range(v))) {
-        Some(index) => Err(Error::Vertex { index: first + index, value: vertices[first + index] }),
+    match first_wrong(vertices, in_range) {
+        Some(index) => Err(Error::Vertex { index, value: vertices[index] }),
         None => Ok(()),
     }
+}
+
+/// The first element that is not right.
+fn first_wrong<T: Sync>(items: &[T], is_right: impl Fn(&T) -> bool + Sync + Send) -> Option<usize> {
+    // Without a branch within a part: nearly always all are.
+    let fails = |part: &[T]| !part.iter().fold(true, |all, item| all & is_right(item));
+    let first = first_part_where(items, VERTICES_PART, VERTICES_MANY, fails)? * VERTICES_PART;
+    items[first..].iter().position(|item| !is_right(item)).map(|index| first + index)
 }
 
 /// At least one, and no more than 32-bit indices can name.
@@ -65,10 +69,8 @@ pub(super) fn indices(primitive: usize, indices: &[u32], vertices: usize) -> Res
 pub(super) fn triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<()> {
     let is_named =
         |triangle: &[u32; 3]| triangle.iter().fold(true, |all, &index| all & ((index as usize) < vertices));
-    let fails = |part: &[[u32; 3]]| !part.iter().fold(true, |all, triangle| all & is_named(triangle));
-    match first_part_where(triangles, VERTICES_PART, VERTICES_MANY, fails) {
-        Some(part) => (part * VERTICES_PART..triangles.len())
-            .try_for_each(|primitive| indices(primitive, &triangles[primitive], vertices)),
+    match first_wrong(triangles, is_named) {
+        Some(primitive) => indices(primitive, &triangles[primitive], vertices),
         None => Ok(()),
     }
 }
