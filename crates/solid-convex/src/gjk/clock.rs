@@ -8,8 +8,8 @@
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::coherent::Pair;
 use super::intersection::CACHED_GAP_MIN;
+use super::pairs::{Pairs, images};
 use crate::Support;
 use crate::simd::dispatch;
 use crate::simplex::VOLUME_ERROR;
@@ -32,12 +32,9 @@ enum Evidence {
     None,
     /// The objects are apart along a unit axis, from `B` to `A`, by more than this and what the clock leaves.
     Apart { axis: DVec3, gap: f64 },
-    /// The tetrahedron of the differences of four pairs of points contains the origin.
-    Common { a: Points, b: Points },
+    /// The tetrahedron of the differences of the four pairs of points that are kept contains the origin.
+    Common,
 }
-
-/// Four points of an object by coordinate. Space: local.
-type Points = [[f64; 4]; 3];
 
 /// A placement by its columns, the translation last, for vector instructions.
 type Columns = [f64; 12];
@@ -73,18 +70,16 @@ const CHANGE_MAX: f64 = 0.5;
 const GAP_LEFT_MIN: f64 = 2.0 * CACHED_GAP_MIN;
 
 impl Clock {
-    /// Whether the objects intersect where they are now; `None` when that is to be found again. Placements of an answer are finite, not near
-    /// singular, and of magnitudes below 1e37.
+    /// Whether the objects intersect where they are now; `None` when that is to be found again. The pairs of points must be those that it was
+    /// set with. Placements of an answer are finite, not near singular, and of magnitudes below 1e37.
     #[inline]
-    pub fn answer(&self, at_a: &DAffine3, at_b: &DAffine3) -> Option<bool> {
+    pub fn answer(&self, pairs: &Pairs, at_a: &DAffine3, at_b: &DAffine3) -> Option<bool> {
         match &self.evidence {
             Evidence::None => None,
             Evidence::Apart { axis, gap } => {
                 dispatch!(simd => self.still_apart(simd, at_a, at_b, *axis, *gap)).then_some(false)
             }
-            Evidence::Common { a, b } => {
-                dispatch!(simd => self.still_common(simd, at_a, at_b, a, b)).then_some(true)
-            }
+            Evidence::Common => dispatch!(simd => self.still_common(simd, at_a, at_b, pairs)).then_some(true),
         }
     }
 
@@ -100,23 +95,14 @@ impl Clock {
     }
 
     #[inline(always)]
-    fn still_common<S: Simd>(
-        &self,
-        simd: S,
-        at_a: &DAffine3,
-        at_b: &DAffine3,
-        a: &Points,
-        b: &Points,
-    ) -> bool {
+    fn still_common<S: Simd>(&self, simd: S, at_a: &DAffine3, at_b: &DAffine3, pairs: &Pairs) -> bool {
         let (_, allowed_a) = self.a.change(simd, at_a);
         let (_, allowed_b) = self.b.change(simd, at_b);
         let offset = at_b.translation - at_a.translation;
-        let (on_a, on_b) = (images(&at_a.matrix3, a), images(&at_b.matrix3, b));
+        let (on_a, on_b) = (images(simd, &at_a.matrix3, &pairs.a), images(simd, &at_b.matrix3, &pairs.b));
         let mut points = [[0.0; 4]; 3];
         for i in 0..3 {
-            for k in 0..4 {
-                points[i][k] = on_a[i][k] - on_b[i][k] - offset[i];
-            }
+            (on_a[i] - on_b[i] - f64x4::splat(simd, offset[i])).store_slice(&mut points[i]);
         }
         let error = VOLUME_ERROR * self.size * self.size * self.size;
         allowed_a & allowed_b & contains_origin(&points, error)
@@ -136,20 +122,13 @@ impl Clock {
         self.set((a, at_a), (b, at_b), |size| Evidence::Apart { axis, gap: gap - GAP_LEFT_MIN * size });
     }
 
-    /// Sets it for objects that intersect, by four pairs of points.
-    pub fn set_common<A, B>(
-        &mut self,
-        (a, at_a): (&A, &DAffine3),
-        (b, at_b): (&B, &DAffine3),
-        pairs: &[Pair; 4],
-    ) where
+    /// Sets it for objects that intersect, by the four pairs of points that are kept.
+    pub fn set_common<A, B>(&mut self, (a, at_a): (&A, &DAffine3), (b, at_b): (&B, &DAffine3))
+    where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let by_coordinate = |points: [DVec3; 4]| [0, 1, 2].map(|axis| points.map(|point| point[axis]));
-        let (on_a, on_b) = (pairs.map(|pair| pair.a), pairs.map(|pair| pair.b));
-        let evidence = Evidence::Common { a: by_coordinate(on_a), b: by_coordinate(on_b) };
-        self.set((a, at_a), (b, at_b), |_| evidence);
+        self.set((a, at_a), (b, at_b), |_| Evidence::Common);
     }
 
     /// Stops it: nothing is sure.
@@ -249,22 +228,9 @@ fn sum_is_less(x: DVec3, y: DVec3, bound: f64) -> bool {
     (bound > 0.0) & (rest > 0.0) & (4.0 * x * y < rest * rest)
 }
 
-/// The images of points under a linear map.
-#[inline(always)]
-fn images(linear: &DMat3, [x, y, z]: &Points) -> Points {
-    let DMat3 { x_axis, y_axis, z_axis } = linear;
-    let mut images = [[0.0; 4]; 3];
-    for i in 0..3 {
-        for k in 0..4 {
-            images[i][k] = x_axis[i] * x[k] + y_axis[i] * y[k] + z_axis[i] * z[k];
-        }
-    }
-    images
-}
-
 /// Whether a tetrahedron contains the origin: six times the volume that it makes with each face is, up to this error, of the same sign.
 #[inline(always)]
-fn contains_origin(points: &Points, error: f64) -> bool {
+fn contains_origin(points: &[[f64; 4]; 3], error: f64) -> bool {
     // Around each face, and the corner opposite: as in `sides_of_origin`.
     const FACES: [[usize; 4]; 3] = [[0, 1, 2, 0], [1, 2, 0, 1], [3, 3, 3, 2]];
     let [px, py, pz] = points;

@@ -4,11 +4,13 @@ use glam::{DAffine3, DVec3};
 
 use super::clock::Clock;
 use super::descent::{End, Goal, descend_robustly};
-use super::distance::{Measure, Measured, measure};
+use super::distance::{Answer, Measure, Measured, measure};
 use super::intersection::CACHED_GAP_MIN;
 use super::lean::{self, Lean, Search, Sure, Task};
-use super::{Closest, ClosestInWorld, DISTANCE_TOLERANCE, Witness, closest_points};
+use super::pairs::{Pair, Pairs};
+use super::{Closest, ClosestInWorld, Witness, closest_points, same_feature};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
+use crate::simd::dispatch;
 use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
 use crate::{Polytope, Support, epa};
 
@@ -45,17 +47,8 @@ pub struct Memory {
     axis: DVec3,
     /// For how long the last sure answer is.
     clock: Clock,
-    /// Pairs of points, one of each object: the first `len` of them. Four whose tetrahedron of differences contained the
-    /// origin, or up to three whose hull of differences had the point closest to it.
-    pairs: [Pair; 4],
-    len: u8,
-}
-
-/// A point of each object, each in its local space.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pair {
-    pub a: DVec3,
-    pub b: DVec3,
+    /// Four whose tetrahedron of differences contained the origin, or up to three whose hull of differences had the point closest to it.
+    pub(super) pairs: Pairs,
 }
 
 impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
@@ -114,7 +107,7 @@ impl Memory {
     /// ```
     #[inline]
     pub fn still(&self, placement_a: &DAffine3, placement_b: &DAffine3) -> Option<bool> {
-        self.clock.answer(placement_a, placement_b)
+        self.clock.answer(&self.pairs, placement_a, placement_b)
     }
 
     /// Whether they intersect: exactly when [`intersection`](super::intersection) does not say
@@ -155,7 +148,7 @@ impl Memory {
                 false
             }
             Found::Inside => {
-                self.clock.set_common(placed_a, placed_b, &self.pairs);
+                self.clock.set_common(placed_a, placed_b);
                 true
             }
             Found::Anew { lean, gap } => {
@@ -164,7 +157,7 @@ impl Memory {
                 if apart {
                     self.clock.set_apart(placed_a, placed_b, self.axis, gap);
                 } else {
-                    self.clock.set_common(placed_a, placed_b, &self.pairs);
+                    self.clock.set_common(placed_a, placed_b);
                 }
                 !apart
             }
@@ -224,7 +217,7 @@ impl Memory {
     }
 
     /// The closest points, as [`closest_points`](super::closest_points) within the same error. Cost: where the points lie on the same
-    /// features as before, two support points of each object.
+    /// features as before, one support point of each object.
     pub fn closest_points<A, B>(
         &mut self,
         a: &A,
@@ -240,42 +233,42 @@ impl Memory {
             // The cores, which are not what is kept, are as fast from scratch.
             return closest_points(a, placement_a, b, placement_b);
         }
-        let still = lean::run(a, placement_a, b, placement_b, SameFeature { memory: self });
-        still.unwrap_or_else(|| self.closest_points_anew(a, placement_a, b, placement_b))
-    }
-
-    /// The same of objects that are not rounded, when [`still_closest`](Memory::still_closest) was asked already, and said nothing.
-    pub fn closest_points_anew<A, B>(
-        &mut self,
-        a: &A,
-        placement_a: &DAffine3,
-        b: &B,
-        placement_b: &DAffine3,
-    ) -> Closest
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
         if let Some(simplex) = self.tetrahedron(&Difference::new(a, placement_a, b, placement_b)) {
             return Closest { distance: 0.0, points: Witness::of(&simplex) };
         }
-        let task = Measure { bound: f64::INFINITY, warm: self.nearest() };
+        let (pairs, len) = self.nearest();
+        let task = Measure { bound: f64::INFINITY, warm: &pairs[..len] };
         let found = measure(a, placement_a, b, placement_b, task);
         let Measured { closest, v, points, len } = found.expect("every distance is finite");
         self.keep(closest.distance > 0.0, v, &points[..len]);
         closest
     }
 
-    /// What [`closest_points`](Memory::closest_points) says of two polytopes, to the bit, where the points lie on the same features as
-    /// before. Of placements and of no answer, see [`quickly_closest`](super::quickly_closest).
-    pub fn still_closest(
-        &self,
+    /// What [`closest_points`](Memory::closest_points) says of two polytopes, within the same error, where a search without care is enough. Of
+    /// placements and of no answer, see [`quickly_closest`](super::quickly_closest).
+    ///
+    /// ```
+    /// use solid_convex::{Polytope, gjk::Memory};
+    /// use glam::{DAffine3, DVec3};
+    /// let corners = (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)));
+    /// let block = Polytope::new(corners.collect()).unwrap();
+    /// let mut memory = Memory::default();
+    /// for frame in 0..40 {
+    ///     let right = DAffine3::from_translation(DVec3::new(3.0 - 0.01 * f64::from(frame), 0.5, 0.5));
+    ///     let found = memory.quickly_closest(&block, &DAffine3::IDENTITY, &block, &right).unwrap();
+    ///     assert!((found.distance - (right.translation.x - 1.0)).abs() < 1e-12);
+    /// }
+    /// ```
+    pub fn quickly_closest(
+        &mut self,
         a: &Polytope,
         placement_a: &DAffine3,
         b: &Polytope,
         placement_b: &DAffine3,
     ) -> Option<ClosestInWorld> {
-        lean::run_in_world(a, placement_a, b, placement_b, SameFeature { memory: self })
+        let pairs = &self.pairs;
+        let still = dispatch!(simd => same_feature::closest(simd, pairs, (a, placement_a), (b, placement_b)));
+        still.or_else(|| lean::run_in_world(a, placement_a, b, placement_b, Renew { memory: self }))
     }
 
     /// The tetrahedron of the four kept pairs, when it still contains the origin: then no axis separates the objects.
@@ -284,11 +277,11 @@ impl Memory {
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        if self.len < 4 {
+        if self.pairs.len() < 4 {
             return None;
         }
         let mut simplex = Simplex::new();
-        for pair in &self.pairs {
+        for pair in self.pairs.all() {
             simplex.push(difference.point(pair.a, pair.b));
         }
         simplex.reduce_if_inside().then_some(simplex)
@@ -297,56 +290,36 @@ impl Memory {
     fn keep<'p>(&mut self, separated: bool, v: DVec3, points: impl IntoIterator<Item = &'p SupportPoint>) {
         self.clock.stop();
         self.axis = if separated { v.normalize_or_zero() } else { DVec3::ZERO };
-        self.len = 0;
-        for (pair, p) in self.pairs.iter_mut().zip(points) {
-            *pair = Pair { a: p.a, b: p.b };
-            self.len += 1;
-        }
+        self.pairs = Pairs::of(points);
     }
 
-    /// The pairs between which the closest point was.
-    fn nearest(&self) -> &[Pair] {
-        let len = if self.len < 4 { self.len } else { 0 };
-        &self.pairs[..usize::from(len)]
+    /// The pairs between which the closest point was, and how many they are.
+    #[inline(always)]
+    fn nearest(&self) -> ([Pair; 4], usize) {
+        (self.pairs.all(), if self.pairs.len() < 4 { self.pairs.len() } else { 0 })
     }
 }
 
-/// The closest points, where they are still between the kept pairs of points.
-struct SameFeature<'m> {
-    memory: &'m Memory,
+/// The closest points, by a search from where the last one ended, which is kept in its place.
+struct Renew<'m> {
+    memory: &'m mut Memory,
 }
 
-impl Task for SameFeature<'_> {
+impl Task for Renew<'_> {
     type Found = Option<Closest>;
 
     #[inline(always)]
     fn run(self, difference: &impl MinkowskiDifference) -> Option<Closest> {
-        let Memory { ref pairs, len, .. } = *self.memory;
-        if len == 0 {
-            return None;
+        let (pairs, len) = self.memory.nearest();
+        let search = Measure { bound: f64::INFINITY, warm: &pairs[..len] };
+        let mut lean = Lean::default();
+        match search.run_in(&mut lean, difference) {
+            Answer::Closest(closest, v) => {
+                self.memory.keep(closest.distance > 0.0, v, lean.points());
+                Some(closest)
+            }
+            Answer::Beyond | Answer::Unknown => None,
         }
-        let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
-        let mut points = [zero; 4];
-        let len = usize::from(len).min(4);
-        // No `map` of arrays: it is not inlined here.
-        for i in 0..len {
-            points[i] = difference.point(pairs[i].a, pairs[i].b);
-        }
-        if len == 4 {
-            let [p, q, r, s] = &points;
-            let (sides, least) = sides_of_origin([p.w, q.w, r.w, s.w]);
-            let inside = sides[0].min(sides[1]).min(sides[2].min(sides[3])) > 0.0;
-            let common =
-                if inside && least > VOLUME_ERROR { lean::common_point(&points, sides) } else { None };
-            return common.map(|points| Closest { distance: 0.0, points });
-        }
-        let (v, witness) = lean::closest_point(&points[..len])?;
-        // One support point shows that nothing is nearer.
-        let (length, vw) = (v.length(), v.dot(difference.support_against(v).w));
-        let goal = Goal::Distance { tolerance: DISTANCE_TOLERANCE };
-        let sure =
-            vw > SUPPORT_ERROR * v.abs().element_sum() && goal.is_within_tolerance(length, vw / length);
-        sure.then(|| Closest { distance: length / difference.scale(), points: witness })
     }
 }
 
@@ -373,19 +346,18 @@ impl Task for Again<'_> {
 
     #[inline(always)]
     fn run(self, difference: &impl MinkowskiDifference) -> Found {
-        let Memory { axis, ref pairs, len, .. } = *self.memory;
+        let Memory { axis, ref pairs, .. } = *self.memory;
         if axis != DVec3::ZERO {
             let (gap, clear) = gap(axis, difference.support_against(axis).w);
             if clear {
                 return Found::Separated { gap: gap / difference.scale() };
             }
         }
-        let mut warm = self.memory.nearest();
-        let face;
-        if len == 4 {
+        let (mut nearest, mut len) = self.memory.nearest();
+        if pairs.len() == 4 {
             let mut points = [DVec3::ZERO; 4];
             for i in 0..4 {
-                points[i] = difference.point(pairs[i].a, pairs[i].b).w;
+                points[i] = difference.point(nearest[i].a, nearest[i].b).w;
             }
             let (sides, least) = sides_of_origin(points);
             if least <= VOLUME_ERROR {
@@ -396,17 +368,17 @@ impl Task for Again<'_> {
                 return Found::Inside;
             }
             // The face that the origin went out by.
-            let [p, q, r, s] = *pairs;
-            face = match sides {
-                [side, ..] if side == outside => [p, q, s],
-                [_, side, ..] if side == outside => [q, r, s],
-                [_, _, side, _] if side == outside => [r, p, s],
-                _ => [p, q, r],
+            let [p, q, r, s] = nearest;
+            len = 3;
+            nearest = match sides {
+                [side, ..] if side == outside => [p, q, s, r],
+                [_, side, ..] if side == outside => [q, r, s, p],
+                [_, _, side, _] if side == outside => [r, p, s, q],
+                _ => [p, q, r, s],
             };
-            warm = &face;
         }
         // First from where the last search ended, then from nothing.
-        for warm in [warm, &[]] {
+        for warm in [&nearest[..len], &[]] {
             let search = Search { goal: Goal::Separation, warm };
             let lean = search.run(difference);
             match lean.sure {

@@ -3,9 +3,9 @@
 use glam::{DAffine3, DVec3};
 
 use super::Witness;
-use super::coherent::Pair;
 use super::descent::{Descent, End, Goal, descend_robustly};
 use super::lean::{self, Lean, Search, Sure, Task};
+use super::pairs::Pair;
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::rounded::Core;
 use crate::{Polytope, Support};
@@ -96,6 +96,14 @@ impl Measure<'_> {
     fn goal(&self, scale: f64) -> Goal {
         Goal::DistanceWithin { tolerance: DISTANCE_TOLERANCE, bound: self.bound * scale }
     }
+
+    /// Runs it in place: what the search ends with is too large to be moved about.
+    #[inline(always)]
+    pub fn run_in(&self, lean: &mut Lean, difference: &impl MinkowskiDifference) -> Answer {
+        let goal = self.goal(difference.scale());
+        Search { goal, warm: self.warm }.descend(lean, difference);
+        Answer::of(lean, goal, difference.scale())
+    }
 }
 
 /// What a lean search for the closest points is sure of.
@@ -133,9 +141,8 @@ impl Task for Measure<'_> {
 
     #[inline(always)]
     fn run(self, difference: &impl MinkowskiDifference) -> (Answer, Lean) {
-        let goal = self.goal(difference.scale());
-        let lean = Search { goal, warm: self.warm }.run(difference);
-        (Answer::of(&lean, goal, difference.scale()), lean)
+        let mut lean = Lean::default();
+        (self.run_in(&mut lean, difference), lean)
     }
 }
 
@@ -149,10 +156,7 @@ impl Task for MeasureAnew {
 
     #[inline(always)]
     fn run(self, difference: &impl MinkowskiDifference) -> Answer {
-        let goal = Measure { bound: self.bound, warm: &[] }.goal(difference.scale());
-        let mut lean = Lean::default();
-        Search { goal, warm: &[] }.descend(&mut lean, difference);
-        Answer::of(&lean, goal, difference.scale())
+        Measure { bound: self.bound, warm: &[] }.run_in(&mut Lean::default(), difference)
     }
 }
 

@@ -11,9 +11,9 @@ use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 
 use super::Witness;
-use super::coherent::Pair;
 use super::descent::Goal;
 use super::distance::{Closest, ClosestInWorld};
+use super::pairs::Pair;
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::polytope_difference::{PolytopeDifference, Scanned, in_world, is_plain};
 use crate::simd::{self, Level, dispatch};

@@ -19,6 +19,8 @@ mod descent;
 mod distance;
 mod intersection;
 mod lean;
+mod pairs;
+mod same_feature;
 #[cfg(test)]
 mod tests;
 

@@ -27,7 +27,7 @@ pub(crate) fn intersects_again(a: Placed, b: Placed, memory: &mut Memory, scratc
 pub(crate) fn closest_again(a: Placed, b: Placed, memory: &mut Memory, scratch: &mut Scratch) -> Closest {
     // Of known types, without calls through a table of functions.
     if let (Some(on_a), Some(on_b)) = (a.shape.polytope(), b.shape.polytope()) {
-        return memory.closest_points_anew(on_a, a.placement, on_b, b.placement);
+        return memory.closest_points(on_a, a.placement, on_b, b.placement);
     }
     let Some(((on_a, _), (on_b, _))) = convex(a, b) else { return closest(a, b, scratch) };
     closed_form::closest(a, b).unwrap_or_else(|| memory.closest_points(on_a, a.placement, on_b, b.placement))

@@ -72,7 +72,7 @@ impl PairCache {
     pub fn distance(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<Distance> {
         let Self { a, b, memory, scratch } = self;
         if let (Some(of_a), Some(of_b)) = (a.polytope(), b.polytope())
-            && let Some(found) = memory.still_closest(of_a, placement_a, of_b, placement_b)
+            && let Some(found) = memory.quickly_closest(of_a, placement_a, of_b, placement_b)
         {
             return Ok(found.into());
         }

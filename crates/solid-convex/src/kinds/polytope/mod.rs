@@ -135,6 +135,17 @@ impl Polytope {
         [a.point_at(on_a), b.point_at(on_b)]
     }
 
+    /// The products of those with their directions.
+    #[inline(always)]
+    pub(crate) fn greatest_of_both<S: Simd>(simd: S, [a, b]: [&Polytope; 2], along: [DVec3; 2]) -> [f64; 2] {
+        if a.rows.are_few() && b.rows.are_few() {
+            return Rows::greatest_of_both(simd, [&a.rows, &b.rows], along);
+        }
+        let on_a = a.point_at(a.furthest_of_many(simd, along[0]));
+        let on_b = b.point_at(b.furthest_of_many(simd, along[1]));
+        [on_a.dot(along[0]), on_b.dot(along[1])]
+    }
+
     #[inline(always)]
     fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
         match self.furthest_mapped(direction) {

@@ -65,6 +65,20 @@ impl Rows {
         }
     }
 
+    /// The products of those points with their directions: of all [`FEW`] rows, since nothing is spared by asking how many do not hold the last
+    /// point alone.
+    #[inline(always)]
+    pub fn greatest_of_both<S: Simd>(simd: S, [a, b]: [&Rows; 2], along: [DVec3; 2]) -> [f64; 2] {
+        let (along_a, along_b) = (products(simd, along[0]), products(simd, along[1]));
+        let (a, b) = (a.first::<FEW>(), b.first::<FEW>());
+        let mut best = [along_a(&a[0]), along_b(&b[0])];
+        for k in 1..FEW {
+            best[0] = best[0].max(along_a(&a[k]));
+            best[1] = best[1].max(along_b(&b[k]));
+        }
+        [best[0].reduce_max(), best[1].reduce_max()]
+    }
+
     /// The first rows, so many as there are at least.
     #[inline(always)]
     fn first<const N: usize>(&self) -> &[Row; N] {
@@ -209,6 +223,9 @@ mod tests {
                         });
                         let alone = |rows: &Rows, along| dispatch!(level, simd => rows.furthest(simd, along));
                         assert_eq!(both[0], [first, alone(&other, -direction)], "{level:?}");
+                        let products = dispatch!(level, simd => Rows::greatest_of_both(simd, [&rows, &other], [direction, -direction]));
+                        let of_other = points[both[0][1]].dot(-direction);
+                        assert_eq!(products, [greatest, of_other], "{level:?}");
                         assert_eq!(
                             both[1],
                             [alone(&other, direction), alone(&rows, -direction)],
