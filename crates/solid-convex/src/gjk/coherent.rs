@@ -233,10 +233,11 @@ impl Memory {
             // The cores, which are not what is kept, are as fast from scratch.
             return closest_points(a, placement_a, b, placement_b);
         }
-        if let Some(simplex) = self.tetrahedron(&Difference::new(a, placement_a, b, placement_b)) {
+        let difference = Difference::new(a, placement_a, b, placement_b);
+        if let Some(simplex) = self.tetrahedron(&difference) {
             return Closest { distance: 0.0, points: Witness::of(&simplex) };
         }
-        let (pairs, len) = self.nearest();
+        let (pairs, len) = self.start(&difference);
         let task = Measure { bound: f64::INFINITY, warm: &pairs[..len] };
         let found = measure(a, placement_a, b, placement_b, task);
         let Measured { closest, v, points, len } = found.expect("every distance is finite");
@@ -293,10 +294,15 @@ impl Memory {
         self.pairs = Pairs::of(points);
     }
 
-    /// The pairs between which the closest point was, and how many they are.
+    /// The pairs that a search begins with, and how many of them: those between which the closest point was; of a tetrahedron that contained the
+    /// origin, the face by which it went out.
     #[inline(always)]
-    fn nearest(&self) -> ([Pair; 4], usize) {
-        (self.pairs.all(), if self.pairs.len() < 4 { self.pairs.len() } else { 0 })
+    fn start(&self, difference: &impl MinkowskiDifference) -> ([Pair; 4], usize) {
+        let pairs = self.pairs.all();
+        if self.pairs.len() < 4 {
+            return (pairs, self.pairs.len());
+        }
+        (left_by(pairs, sides_of_origin(differences(&pairs, difference)).0), 3)
     }
 }
 
@@ -310,7 +316,7 @@ impl Task for Renew<'_> {
 
     #[inline(always)]
     fn run(self, difference: &impl MinkowskiDifference) -> Option<Closest> {
-        let (pairs, len) = self.memory.nearest();
+        let (pairs, len) = self.memory.start(difference);
         let search = Measure { bound: f64::INFINITY, warm: &pairs[..len] };
         let mut lean = Lean::default();
         match search.run_in(&mut lean, difference) {
@@ -353,32 +359,19 @@ impl Task for Again<'_> {
                 return Found::Separated { gap: gap / difference.scale() };
             }
         }
-        let (mut nearest, mut len) = self.memory.nearest();
-        if pairs.len() == 4 {
-            let mut points = [DVec3::ZERO; 4];
-            for i in 0..4 {
-                points[i] = difference.point(nearest[i].a, nearest[i].b).w;
-            }
-            let (sides, least) = sides_of_origin(points);
+        let (mut start, mut len) = (pairs.all(), pairs.len());
+        if len == 4 {
+            let (sides, least) = sides_of_origin(differences(&start, difference));
             if least <= VOLUME_ERROR {
                 return Found::Unknown;
             }
-            let outside = sides[0].min(sides[1]).min(sides[2].min(sides[3]));
-            if outside > 0.0 {
+            if sides[0].min(sides[1]).min(sides[2].min(sides[3])) > 0.0 {
                 return Found::Inside;
             }
-            // The face that the origin went out by.
-            let [p, q, r, s] = nearest;
-            len = 3;
-            nearest = match sides {
-                [side, ..] if side == outside => [p, q, s, r],
-                [_, side, ..] if side == outside => [q, r, s, p],
-                [_, _, side, _] if side == outside => [r, p, s, q],
-                _ => [p, q, r, s],
-            };
+            (start, len) = (left_by(start, sides), 3);
         }
         // First from where the last search ended, then from nothing.
-        for warm in [&nearest[..len], &[]] {
+        for warm in [&start[..len], &[]] {
             let search = Search { goal: Goal::Separation, warm };
             let lean = search.run(difference);
             match lean.sure {
@@ -398,6 +391,28 @@ impl Task for Again<'_> {
             }
         }
         Found::Unknown
+    }
+}
+
+/// The points of the difference that pairs make.
+#[inline(always)]
+fn differences(pairs: &[Pair; 4], difference: &impl MinkowskiDifference) -> [DVec3; 4] {
+    let mut points = [DVec3::ZERO; 4];
+    for (point, pair) in points.iter_mut().zip(pairs) {
+        *point = difference.point(pair.a, pair.b).w;
+    }
+    points
+}
+
+/// The face by which the origin went out of a tetrahedron, before the corner opposite.
+#[inline(always)]
+fn left_by([p, q, r, s]: [Pair; 4], sides: [f64; 4]) -> [Pair; 4] {
+    let outside = sides[0].min(sides[1]).min(sides[2].min(sides[3]));
+    match sides {
+        [side, ..] if side == outside => [p, q, s, r],
+        [_, side, ..] if side == outside => [q, r, s, p],
+        [_, _, side, _] if side == outside => [r, p, s, q],
+        _ => [p, q, r, s],
     }
 }
 
