@@ -9,10 +9,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
+use rand::Rng;
 use rand::rngs::StdRng;
 use rand::seq::IndexedRandom;
-use rand::{Rng, SeedableRng};
 use solid::*;
+use solid_oracle::generate::seeded;
 
 const CALLS: u64 = 1_000_000;
 const THREADS: u64 = 4;
@@ -30,7 +31,7 @@ static REFUSED: AtomicU64 = AtomicU64::new(0);
 static CALLBACKS: AtomicU64 = AtomicU64::new(0);
 
 thread_local! {
-    static RNG: RefCell<StdRng> = RefCell::new(StdRng::seed_from_u64(SEED));
+    static RNG: RefCell<StdRng> = RefCell::new(seeded(SEED));
     /// How many responses this thread is in.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
 }
@@ -213,7 +214,7 @@ fn a_million_calls_in_random_order() {
     thread::scope(|scope| {
         for thread in 0..THREADS {
             scope.spawn(move || {
-                RNG.set(StdRng::seed_from_u64(SEED + thread));
+                RNG.set(seeded(SEED + thread));
                 (0..CALLS / THREADS).for_each(|_| call());
             });
         }

@@ -1,8 +1,13 @@
-//! What the readers of text formats share: lines with their numbers, and numbers.
+//! What the readers of text formats share: where a text begins, lines with their numbers, and numbers.
 
 use glam::DVec3;
 
 use crate::fault::{Fault, Result};
+
+/// A text without the byte order mark that some editors write before it.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
 
 /// The lines of a text with their numbers, from 1; a line ends with LF, CR or both.
 pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
@@ -52,6 +57,12 @@ mod tests {
     fn lines_end_three_ways() {
         let found: Vec<_> = lines("a\nb\r\nc\rd\n\ne").collect();
         assert_eq!(found, [(1, "a"), (2, "b"), (3, "c"), (4, "d"), (5, ""), (6, "e")]);
+    }
+
+    #[test]
+    fn a_text_may_follow_a_byte_order_mark() {
+        assert_eq!(without_mark(b"\xef\xbb\xbfv 1 2 3"), b"v 1 2 3");
+        assert_eq!(without_mark(b"v 1 2 3"), b"v 1 2 3");
     }
 
     #[test]

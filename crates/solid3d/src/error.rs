@@ -225,7 +225,7 @@ pub enum Error {
 }
 
 /// Three coordinates, short also when they are huge.
-fn coordinates(v: &DVec3) -> String {
+pub(crate) fn coordinates(v: &DVec3) -> String {
     format!("({:?}, {:?}, {:?})", v.x, v.y, v.z)
 }
 

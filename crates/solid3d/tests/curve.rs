@@ -523,6 +523,16 @@ fn edges_that_graze_a_plane_are_cut_precisely() {
     assert_rate("grazing triangles", hits, cases);
 }
 
+/// The signs that tell where facets meet are lost where products of the coordinates underflow.
+#[test]
+fn coordinates_of_very_different_magnitudes_do_no_harm() {
+    let one = [[0.5, 1e-100, 0.5], [1.0, -1e100, 1e-9], [1e50, 1e-9, -1e100]].map(DVec3::from_array);
+    let other = [[0.5, 1e-100, 1e-100], [1e-100, 0.0, -1e100], [1e50, 1e-100, 1.0]].map(DVec3::from_array);
+    let [a, b] = [one, other].map(|corners| Shape::mesh(corners, [[0, 1, 2]]).unwrap());
+    let found = curve(&a, &DAffine3::IDENTITY, &b, &DAffine3::IDENTITY);
+    assert!(found.length().is_finite());
+}
+
 #[test]
 fn swapping_the_shapes_gives_the_same_points() {
     let seed = 9;

@@ -913,3 +913,39 @@ fn events_are_those_between_two_ends_of_frames() {
     world.test();
     assert_eq!(events(&world), [(ids[0], new, EventKind::Began), (ids[2], ids[3], EventKind::Persists)]);
 }
+
+/// Only a test changes what the last test found: to ask how near objects are, or about one pair, does not, though the boxes of the
+/// pair have come apart.
+#[test]
+fn questions_between_tests_are_no_events() {
+    let ball = Shape::sphere(1.0).unwrap();
+    let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+    for boxes in [Boxes::Dynamic, Boxes::FixedSize] {
+        let mut world = World::with_options(&WorldOptions { boxes, ..WorldOptions::default() });
+        let [a, b, c] = [0.0, 1.0, -1.5].map(|x| world.add(&ball, at(x)).unwrap());
+        let kinds = |world: &World| world.events().map(|event| (event.b, event.kind)).collect::<Vec<_>>();
+        let apart = |world: &mut World| {
+            assert_eq!(world.test().len(), 2);
+            world.proceed();
+            world.set_placement(b, at(10.0)).unwrap();
+            world.set_placement(c, at(-10.0)).unwrap();
+            assert_eq!((world.near(), world.test_pair(a, b).unwrap()), (vec![], None));
+            assert_eq!(kinds(world), [(b, EventKind::Persists), (c, EventKind::Persists)]);
+            assert_eq!(world.collisions().count(), 2);
+        };
+        // Together again.
+        apart(&mut world);
+        world.set_placement(b, at(1.0)).unwrap();
+        world.set_placement(c, at(-1.5)).unwrap();
+        world.test();
+        assert_eq!(kinds(&world), [(b, EventKind::Persists), (c, EventKind::Persists)]);
+        // One stays away, another is removed.
+        apart(&mut world);
+        world.remove(c).unwrap();
+        assert_eq!(kinds(&world), [(b, EventKind::Persists), (c, EventKind::Ended)]);
+        assert_eq!(world.collisions().map(|collision| collision.b).collect::<Vec<_>>(), [b]);
+        world.proceed();
+        world.test();
+        assert_eq!(kinds(&world), [(b, EventKind::Ended)]);
+    }
+}

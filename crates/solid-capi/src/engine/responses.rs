@@ -144,7 +144,7 @@ fn ordered(a: Reference, b: Reference) -> (Reference, Reference) {
     (a.min(b), a.max(b))
 }
 
-fn check_pair(a: Reference, b: Reference) -> Result<()> {
+pub(super) fn check_pair(a: Reference, b: Reference) -> Result<()> {
     if a == b {
         return Err(Fault::new(Code::Object, format!("object1 and object2 are both {a}; a pair needs two")));
     }

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use solid3d::glam::DVec3;
 use solid3d::{Collision, Contact, TestProgress};
 
+use super::responses::check_pair;
 use super::{Callback, Engine};
 use crate::fault::{Code, Fault, Result};
 use crate::reference::Reference;
@@ -84,6 +85,7 @@ impl Engine {
     /// The callback for two objects, if they collide.
     pub fn test_objects(&mut self, object1: Reference, object2: Reference) -> Result<Option<Event>> {
         let (a, b) = (self.object("object1", object1)?.id, self.object("object2", object2)?.id);
+        check_pair(object1, object2)?;
         self.settle()?;
         Ok(self.world.test_pair(a, b)?.and_then(|collision| self.event(&collision)))
     }

@@ -200,6 +200,8 @@ static void test_objects(void) {
     dtTestObjects(&a, &b);
     CHECK(record_count == 1);
     REFUSED(dtTestObjects(&a, &a), DT_ERROR_OBJECT);
+    dtTestObjects(&a, &a);
+    CHECK(strstr(dtGetErrorMessage(), "object1 and object2 are both 0x") != NULL);
     REFUSED(dtTestObjects(&a, NULL), DT_ERROR_OBJECT);
     dtDeleteObject(&a);
     dtDeleteObject(&b);

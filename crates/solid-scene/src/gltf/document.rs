@@ -8,6 +8,7 @@ use gltf::json::{Accessor, Mesh, Node, Root, Skin, buffer};
 
 use super::buffer::load;
 use crate::fault::Result;
+use crate::text::without_mark;
 
 /// How many numbers may be read out of a file per byte of it and its buffers. A text can name one buffer any number of
 /// times, so that a small one could ask for any amount of memory; files that mean well stay below 10.
@@ -45,6 +46,7 @@ pub(super) struct Document {
 impl Document {
     /// Parses a `.gltf` or `.glb` and loads its buffers; those in files of their own are looked for in `folder`.
     pub fn parse(bytes: &[u8], folder: &Path) -> Result<Document> {
+        let bytes = without_mark(bytes);
         check_container(bytes)?;
         let Gltf { document, blob: mut binary } =
             Gltf::from_slice_without_validation(bytes).map_err(|error| format!("not glTF 2.0: {error}"))?;

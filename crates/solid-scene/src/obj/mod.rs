@@ -17,6 +17,7 @@ use crate::load::LoadOptions;
 use crate::part::Part;
 use crate::polygon::folded_warning;
 use crate::soup::still_part;
+use crate::text::without_mark;
 
 /// Reads an OBJ file: one object, named by the file, or with [`LoadOptions::split`] one for each group or object that
 /// has primitives, named by it.
@@ -26,7 +27,7 @@ pub(crate) fn load(path: &Path, options: &LoadOptions) -> std::result::Result<Pa
 }
 
 fn parse(bytes: &[u8], stem: &str, split: bool) -> Result<Part> {
-    let statements = reader::read(&String::from_utf8_lossy(bytes), stem)?;
+    let statements = reader::read(&String::from_utf8_lossy(without_mark(bytes)), stem)?;
     let mut warnings = statements.warnings();
     let soups = if split { statements.split()? } else { statements.whole(stem)? };
     warnings.extend(folded_warning(soups.folded));

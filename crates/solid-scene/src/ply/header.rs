@@ -2,7 +2,7 @@
 
 use super::payload::{Encoding, Payload};
 use crate::fault::{Fault, Result};
-use crate::text::quoted;
+use crate::text::{quoted, without_mark};
 
 /// The elements of a file, in order.
 #[derive(Debug, Default)]
@@ -77,12 +77,12 @@ impl Property {
 pub(super) fn read(bytes: &[u8]) -> Result<(Header, Payload<'_>)> {
     let mut header = Header::default();
     let mut encoding = None;
-    let mut rest = bytes;
+    let mut rest = without_mark(bytes);
     let mut line = 0;
     loop {
         line += 1;
         let Some(content) = next_line(&mut rest) else {
-            return Err(Fault::at(line - 1, "the file ends in its header; expected `end_header`"));
+            return Err(Fault::at((line - 1).max(1), "the file ends in its header; expected `end_header`"));
         };
         let content = String::from_utf8_lossy(content);
         let words: Vec<&str> = content.split_whitespace().collect();

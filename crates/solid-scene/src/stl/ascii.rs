@@ -7,7 +7,7 @@ use crate::text;
 
 /// The corners of the triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>> {
-    let text = String::from_utf8_lossy(bytes);
+    let text = String::from_utf8_lossy(text::without_mark(bytes));
     let mut reader = Reader::default();
     let mut last = 0;
     for (line, content) in text::lines(&text) {

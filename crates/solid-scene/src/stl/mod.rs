@@ -15,6 +15,7 @@ use crate::fault::Result;
 use crate::file;
 use crate::part::Part;
 use crate::soup::{Soup, still_part};
+use crate::text::without_mark;
 use crate::weld::Weld;
 
 /// Reads an STL file: one object, named by the file, of all its solids.
@@ -35,7 +36,7 @@ fn parse(bytes: &[u8], stem: &str) -> Result<Part> {
 /// Whether the file is text. The first word alone does not tell, since binary headers may begin with "solid" too: a
 /// file that is as long as its binary triangle count says is binary, and so is one with a zero byte.
 fn is_text(bytes: &[u8]) -> bool {
-    let first_word = bytes.trim_ascii_start().get(..5).unwrap_or_default().to_ascii_lowercase();
+    let first_word = without_mark(bytes).trim_ascii_start().get(..5).unwrap_or_default().to_ascii_lowercase();
     let said = first_word == b"solid" || first_word == b"facet";
     said && !binary::has_exact_length(bytes) && !bytes.contains(&0)
 }

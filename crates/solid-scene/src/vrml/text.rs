@@ -5,6 +5,7 @@ use std::path::Path;
 use super::limits::FILE_BYTES_MAX;
 use crate::error::SceneError;
 use crate::file;
+use crate::text::without_mark;
 
 /// The first line of every VRML97 file begins with this.
 const HEADER: &str = "#VRML V2.0 utf8";
@@ -25,8 +26,7 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<String, SceneError> {
     if bytes.starts_with(&[0x1f, 0x8b]) {
         return fail("is compressed with gzip; expected plain text, so decompress it first (gzip -dc)");
     }
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let mut text = String::from_utf8_lossy(bytes).into_owned();
+    let mut text = String::from_utf8_lossy(without_mark(bytes)).into_owned();
     if text.starts_with("#VRML V1.0") {
         return fail("is VRML 1.0; expected VRML97, whose first line is \"#VRML V2.0 utf8\"");
     }

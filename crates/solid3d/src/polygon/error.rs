@@ -3,6 +3,8 @@
 use glam::DVec3;
 use solid_convex::MAGNITUDE_MAX;
 
+use crate::error::coordinates;
+
 /// Vertices that make no polygon. The message names what, where and the limit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -17,13 +19,24 @@ pub enum PolygonError {
     },
     /// A vertex is not finite, or too far out.
     #[error(
-        "vertex {index} is {value}; each coordinate must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
+        "vertex {index} is {}; each coordinate must be finite and at most {MAGNITUDE_MAX:e} in magnitude",
+        coordinates(value)
     )]
     Vertex {
         /// Its place in the chain.
         index: usize,
         /// Its position.
         value: DVec3,
+    },
+    /// A chain names a vertex that is not there.
+    #[error("{chain} names vertex {index}, but there are {vertices} vertices")]
+    VertexIndex {
+        /// Which chain: `outer`, or `hole 0`.
+        chain: String,
+        /// The index.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
     },
     /// The vertices do not lie in a plane.
     #[error("vertex {index} is {deviation:e} off the plane of the polygon; at most {tolerance:e} is allowed")]
@@ -53,7 +66,7 @@ pub enum PolygonError {
     },
     /// A sphere's centre or radius, or a corner of a box, that no query can be made of.
     #[error(
-        "{argument} is {value}; it must be finite, at most {MAGNITUDE_MAX:e} in magnitude, and no radius is negative"
+        "{argument} is {value:?}; it must be finite, at most {MAGNITUDE_MAX:e} in magnitude, and no radius is negative"
     )]
     Argument {
         /// The argument's name.

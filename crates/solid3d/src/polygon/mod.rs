@@ -357,17 +357,21 @@ impl Polygon {
 /// let vertices = [(0, 0), (9, 0), (0, 9), (1, 1), (2, 1), (1, 2)].map(|(x, y)| DVec3::new(x.into(), y.into(), 0.0));
 /// let chain = join_holes(&vertices, &[0, 1, 2], &[vec![3, 4, 5]])?;
 /// assert_eq!(chain, [0, 3, 5, 4, 3, 0, 1, 2]);
+/// let error = join_holes(&vertices, &[0, 1, 2], &[vec![3, 4, 6]]).unwrap_err();
+/// assert_eq!(error.to_string(), "hole 0 names vertex 6, but there are 6 vertices");
 /// # Ok::<(), solid3d::polygon::PolygonError>(())
 /// ```
-///
-/// # Panics
-/// If an index names no vertex.
 pub fn join_holes(vertices: &[DVec3], outer: &[u32], holes: &[Vec<u32>]) -> Result<Vec<u32>> {
     let places = |chain: &[u32]| chain.iter().map(|&i| i as usize).collect::<Vec<usize>>();
     let names = std::iter::once("outer".to_owned()).chain((0..holes.len()).map(|i| format!("hole {i}")));
-    let chains = || std::iter::once(outer).chain(holes.iter().map(|hole| &hole[..]));
-    if let Some((chain, short)) = names.zip(chains()).find(|(_, chain)| chain.len() < 3) {
-        return Err(PolygonError::TooFewVertices { chain, count: short.len() });
+    let chains = std::iter::once(outer).chain(holes.iter().map(|hole| &hole[..]));
+    for (chain, indices) in names.zip(chains) {
+        if indices.len() < 3 {
+            return Err(PolygonError::TooFewVertices { chain, count: indices.len() });
+        }
+        if let Some(&index) = indices.iter().find(|&&i| i as usize >= vertices.len()) {
+            return Err(PolygonError::VertexIndex { chain, index, vertices: vertices.len() });
+        }
     }
     check(vertices)?;
     let boundary = outer.iter().map(|&i| vertices[i as usize]).collect::<Vec<_>>();

@@ -59,7 +59,7 @@ impl Round {
         self.half_height == 0.0
     }
 
-    /// The radius of a ball around the local origin that contains the shape.
+    /// [`Simple::radius`] of it.
     #[inline(always)]
     pub(crate) fn reach(&self) -> f64 {
         self.radius + self.half_height

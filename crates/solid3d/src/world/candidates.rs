@@ -11,7 +11,7 @@ use super::findings::{FindingId, Findings};
 use super::near::{Near, Nearness};
 use super::pair_map::{PairMap, Place};
 use super::stirred::Staleness;
-use super::{Contact, ObjectId, World};
+use super::{Collision, Contact, ObjectId, World};
 use crate::bounds::Aabb;
 use crate::broad::room::push;
 use crate::broad::{PairChange, PairId};
@@ -79,6 +79,8 @@ pub(super) struct Candidates {
     more_wait: bool,
     /// How many matter.
     pub count: u64,
+    /// The collisions of candidates that were forgotten since the last test.
+    lapsed: Vec<FindingId>,
     /// What the last search for near pairs said, as far as it holds; as long as that search needed.
     nearness: Vec<Nearness>,
 }
@@ -100,14 +102,23 @@ impl Candidates {
         push(&mut self.queue, place);
     }
 
-    /// Forgets a candidate and its collision.
-    pub fn end(&mut self, pair: PairId, findings: &mut Findings) {
+    /// Forgets a candidate. Its collision is still that of the last test, and lapses with the next.
+    pub fn end(&mut self, pair: PairId) {
         if let Some(candidate) = self.slots.remove(pair) {
             self.count -= u64::from(candidate.matters);
-            if let Some(found) = candidate.found {
+            self.lapsed.extend(candidate.found);
+        }
+    }
+
+    /// Takes the collisions out of the findings that have lapsed and are concerned.
+    pub fn take_lapsed(&mut self, findings: &mut Findings, is_concerned: impl Fn(&Collision) -> bool) {
+        self.lapsed.retain(|&found| {
+            let lapses = is_concerned(findings.collision(found));
+            if lapses {
                 findings.remove(found);
             }
-        }
+            !lapses
+        });
     }
 
     /// Has a candidate examined by the next test.
@@ -218,7 +229,7 @@ impl World {
                 let (a, b) = if objects[a].order <= objects[b].order { (a, b) } else { (b, a) };
                 candidates.begin(pair, a, b);
             } else {
-                candidates.end(pair, findings);
+                candidates.end(pair);
             }
         }
         if MANY * stirred.slots().len() >= objects.len() {

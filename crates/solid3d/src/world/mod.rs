@@ -184,7 +184,8 @@ impl World {
         let object = self.objects.remove(id).ok_or(Error::UnknownObject { argument: "object", id })?;
         self.forget_responses(id, object.pair_responses);
         let Self { broad, candidates, findings, stirred, .. } = self;
-        broad.for_each_pair_of(proxy(id), &mut |pair, _| candidates.end(pair, findings));
+        broad.for_each_pair_of(proxy(id), &mut |pair, _| candidates.end(pair));
+        candidates.take_lapsed(findings, |collision| collision.a == id || collision.b == id);
         broad.remove(proxy(id));
         stirred.vacate(proxy(id));
         self.stale = true;

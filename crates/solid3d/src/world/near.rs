@@ -45,7 +45,8 @@ impl World {
     /// [`Response::Ignore`].
     ///
     /// Exactly the pairs that [`query::intersects`](crate::query::intersects), or of which
-    /// [`query::distance`](crate::query::distance) is less than the clearance. The distance is that of `query::distance`, and where that is 0, less
+    /// [`query::distance_within`](crate::query::distance_within) the clearance is less than it. The distance is that, which is
+    /// [`query::distance`](crate::query::distance) but for its last bits, and where that is 0, less
     /// the depth of [`query::penetration`](crate::query::penetration). This is apart from [`test`](World::test): what is near but
     /// apart is no collision, has no event, and may be asked for before or after a test, or not at all.
     ///

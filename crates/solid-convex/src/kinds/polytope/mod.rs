@@ -216,16 +216,16 @@ fn height_over([p, q, r]: [DVec3; 3], point: DVec3) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
     use super::*;
     use crate::Points;
 
-    /// Pseudo-random numbers in [-1, 1).
+    /// Random numbers in [-1, 1).
     fn numbers(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
+        let mut rng = seeded(seed);
+        move || rng.random_range(-1.0..1.0)
     }
 
     /// Balls, boxes of points, drums, plates and lines, with duplicates.

@@ -221,13 +221,14 @@ impl BroadTest for FieldTree {
 
 #[cfg(test)]
 mod tests {
-    use rand::{Rng, SeedableRng};
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
 
     use super::*;
 
     /// Boxes of sizes from a thousandth of the space to a tenth.
     fn boxes_of_many_sizes(count: usize) -> Vec<Aabb> {
-        let mut rng = rand::rngs::StdRng::seed_from_u64(34);
+        let mut rng = seeded(34);
         (0..count)
             .map(|_| {
                 let side = 10f64.powf(rng.random_range(-3.0..-1.0));

@@ -1,5 +1,6 @@
+use rand::Rng;
 use rand::rngs::StdRng;
-use rand::{Rng, SeedableRng};
+use solid_oracle::generate::seeded;
 use solid3d::Aabb;
 use solid3d::glam::{DAffine3, DQuat, DVec3};
 
@@ -48,7 +49,7 @@ fn solids_intersect(a: &Mesh, b: &Mesh) -> bool {
 #[test]
 fn merging_finds_what_the_oracle_finds_either_way_round() {
     const ROUNDS: usize = 150;
-    let mut rng = StdRng::seed_from_u64(95);
+    let mut rng = seeded(95);
     let mut merge = Merge::default();
     let (mut hits, mut within) = (0, 0);
     for round in 0..ROUNDS {
@@ -77,7 +78,7 @@ fn merging_finds_what_the_oracle_finds_either_way_round() {
 #[test]
 fn a_tree_contains_the_points_that_its_surface_winds_around() {
     const POINTS: usize = 600;
-    let mut rng = StdRng::seed_from_u64(96);
+    let mut rng = seeded(96);
     let mut inside = 0;
     for round in 0..6 {
         let mesh = solid(&mut rng, round);

@@ -1,5 +1,6 @@
+use rand::Rng;
 use rand::rngs::StdRng;
-use rand::{Rng, SeedableRng};
+use solid_oracle::generate::seeded;
 use solid_oracle::{Convex, distance_bounds, verdict};
 use solid3d::glam::{DAffine3, DQuat, DVec3};
 
@@ -11,7 +12,7 @@ fn vector(rng: &mut StdRng) -> DVec3 {
 
 /// Polytopes of 4 to 40 vertices at distances at which half of them overlap.
 fn random_pairs(count: usize) -> Vec<[(Vec<DVec3>, DAffine3); 2]> {
-    let mut rng = StdRng::seed_from_u64(44);
+    let mut rng = seeded(44);
     let mut placed = |reach: f64| {
         let vertices = (0..rng.random_range(4..=40)).map(|_| vector(&mut rng)).collect::<Vec<_>>();
         let turn = DQuat::from_axis_angle(vector(&mut rng).normalize(), rng.random_range(0.0..6.0));
@@ -109,7 +110,7 @@ fn distances_agree_with_the_oracle() {
 
 #[test]
 fn climbing_finds_what_scanning_finds() {
-    let mut rng = StdRng::seed_from_u64(45);
+    let mut rng = seeded(45);
     for [(points, _), _] in random_pairs(50) {
         let polytope = Polytope::hull_of(&points).expect("there are points");
         for start in 0..polytope.vertices().len() as u32 {

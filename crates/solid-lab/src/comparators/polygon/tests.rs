@@ -1,5 +1,4 @@
-use rand::SeedableRng;
-use rand::rngs::StdRng;
+use solid_oracle::generate::seeded;
 use solid3d::polygon::{Counters, Polygon, intersect_straightforward};
 
 use super::*;
@@ -7,7 +6,7 @@ use crate::experiments::star;
 
 #[test]
 fn both_tests_agree_with_the_library() {
-    let mut rng = StdRng::seed_from_u64(32);
+    let mut rng = seeded(32);
     let mut hits = 0;
     for round in 0..600 {
         let [a, b] = [0.0, 0.9].map(|reach| star(&mut rng, 3 + round % 20, reach));

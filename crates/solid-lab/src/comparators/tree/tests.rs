@@ -1,5 +1,6 @@
+use rand::Rng;
 use rand::rngs::StdRng;
-use rand::{Rng, SeedableRng};
+use solid_oracle::generate::seeded;
 use solid3d::glam::{DAffine3, DQuat, DVec3};
 
 use super::*;
@@ -32,7 +33,7 @@ fn indexed(triangles: &[Triangle]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 }
 
 fn finds_what_the_oracle_finds<V: Volume>(options: V::Options) {
-    let mut rng = StdRng::seed_from_u64(52);
+    let mut rng = seeded(52);
     let mut hits = 0;
     for round in 0..60 {
         let (x, y) = (soup(&mut rng, 1 + round), soup(&mut rng, 1 + 2 * round));
@@ -77,7 +78,7 @@ fn k_dop_trees_find_what_the_oracle_finds() {
 
 #[test]
 fn sat_lite_separates_only_what_sat_separates() {
-    let mut rng = StdRng::seed_from_u64(53);
+    let mut rng = seeded(53);
     let mut differ = 0;
     for _ in 0..20_000 {
         let [a, b] = [0; 2].map(|_| AlignedBox { center: vector(&mut rng), half: vector(&mut rng).abs() });
@@ -91,7 +92,7 @@ fn sat_lite_separates_only_what_sat_separates() {
 
 #[test]
 fn a_refitted_tree_is_that_of_the_moved_triangles() {
-    let mut rng = StdRng::seed_from_u64(54);
+    let mut rng = seeded(54);
     let (before, after) = (soup(&mut rng, 100), soup(&mut rng, 100));
     let other = Tree::<AlignedBox>::build(soup(&mut rng, 50), ());
     let mut refitted = Tree::<AlignedBox>::build(before, ());
@@ -112,7 +113,7 @@ fn a_refitted_tree_is_that_of_the_moved_triangles() {
 
 #[test]
 fn distances_agree_with_the_oracle() {
-    let mut rng = StdRng::seed_from_u64(55);
+    let mut rng = seeded(55);
     for round in 0..40 {
         let (x, y) = (soup(&mut rng, 1 + round), soup(&mut rng, 1 + round));
         let b_to_a = placement(&mut rng, 4.0);

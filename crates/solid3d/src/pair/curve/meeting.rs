@@ -71,12 +71,12 @@ pub(super) fn meet(x: &Facet, y: &Facet, sites: &Sites, nodes: &mut Vec<Node>, m
     nodes.sort_unstable();
     nodes.dedup();
     // Where an edge of a degenerate triangle is crossed, so is another at the same place: the segment between them has no
-    // length, and joins what ends at the triangle's neighbours.
+    // length, and joins what ends at the triangle's neighbours. More than two points there are only where coordinates are so far apart
+    // in magnitude that products of them are lost, and with them their signs.
     match nodes[..] {
         [] => {}
         [node] => found(Piece::Point(node)),
-        [one, other] => found(Piece::Segment([one, other], Origin::Crossing)),
-        _ => unreachable!("facets that are not coplanar meet in a segment at most"),
+        [one, .., other] => found(Piece::Segment([one, other], Origin::Crossing)),
     }
 }
 
