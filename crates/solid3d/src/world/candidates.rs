@@ -170,19 +170,18 @@ impl Candidates {
         self.slots.values_mut().iter_mut().flatten().for_each(|candidate| candidate.nearness_holds = false);
     }
 
-    /// Puts into `places` the candidates of which it is not known how near they are.
-    pub fn unknown(&mut self, places: &mut Vec<Place>) {
+    /// Puts into `places` the candidates of which it is not known how near they are, in ascending order: each is to be looked at.
+    pub fn take_unknown(&mut self, places: &mut Vec<Place>) {
         places.clear();
         self.nearness.resize(self.slots.values().len(), Nearness::Far);
-        let is_unknown = |value: &Option<Candidate>| value.is_some_and(|candidate| !candidate.nearness_holds);
-        places.extend(
-            (0..).zip(self.slots.values()).filter(|(_, value)| is_unknown(value)).map(|(place, _)| place),
-        );
+        let take = |candidate: &mut Candidate| !std::mem::replace(&mut candidate.nearness_holds, true);
+        let values = (0..).zip(self.slots.values_mut());
+        places.extend(values.filter_map(|(place, value)| value.as_mut().is_some_and(take).then_some(place)));
     }
 
-    pub fn set_nearness(&mut self, place: Place, nearness: Nearness) {
-        self.nearness[place as usize] = nearness;
-        self.get_mut(place).nearness_holds = true;
+    /// All candidates, and how near they are, by place.
+    pub fn with_nearness_mut(&mut self) -> (&[Option<Candidate>], &mut [Nearness]) {
+        (self.slots.values(), &mut self.nearness)
     }
 
     /// The candidates that are near, in any order.
@@ -195,8 +194,9 @@ impl Candidates {
         })
     }
 
-    pub fn get(&self, place: Place) -> &Candidate {
-        self.slots.get(place).expect("what waits to be examined is a candidate")
+    /// All candidates, by place.
+    pub fn values_mut(&mut self) -> &mut [Option<Candidate>] {
+        self.slots.values_mut()
     }
 
     pub fn get_mut(&mut self, place: Place) -> &mut Candidate {

@@ -100,7 +100,7 @@ pub struct World {
     /// Working memory: the candidates that a test examines.
     to_examine: Vec<pair_map::Place>,
     /// Working memory: what examining them gave, part by part.
-    verdicts: Vec<test::Verdicts>,
+    news: Vec<test::News>,
     /// Working memory: the boxes of what moved.
     new_bounds: Vec<(Proxy, Aabb)>,
     workers: Workers,
@@ -137,7 +137,7 @@ impl World {
             stale: false,
             default_changed: false,
             to_examine: Vec::new(),
-            verdicts: Vec::new(),
+            news: Vec::new(),
             new_bounds: Vec::new(),
             workers: Workers::default(),
             statistics: Statistics::default(),
