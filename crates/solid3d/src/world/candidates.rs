@@ -12,19 +12,9 @@ use super::near::{Near, Nearness};
 use super::pair_map::{PairMap, Place};
 use super::stirred::Staleness;
 use super::{Contact, ObjectId, World};
-use crate::bounds::Aabb;
 use crate::broad::room::push;
 use crate::broad::{PairChange, PairId};
 use crate::threads::for_each_part;
-
-/// So many boxes of objects that moved are found at a time: what they take is bounded by it.
-const BOXES_AT_A_TIME: usize = 1 << 12;
-
-/// So many boxes, of some 100 ns each, are worth another thread.
-const BOXES_MANY: usize = 1000;
-
-/// One thread finds so many at a time.
-const BOXES_OF_A_PART: usize = 128;
 
 /// When one in so many objects changed, all candidates are looked at in one pass, rather than those of each that did.
 const MANY: usize = 4;
@@ -242,20 +232,12 @@ impl World {
 
     /// Gives the broad phase the boxes of what moved: in the order of slots, in which both have them in memory.
     fn update_broad(&mut self) {
-        let Self { broad, objects, stirred, clearances, new_bounds, .. } = self;
+        let Self { broad, objects, stirred, clearances, .. } = self;
         stirred.sort();
-        for slots in stirred.slots().chunks(BOXES_AT_A_TIME) {
-            let elsewhere = slots.iter().filter(|&&slot| stirred.is_elsewhere(slot));
-            new_bounds.clear();
-            new_bounds.extend(elsewhere.map(|&slot| (slot, Aabb::EMPTY)));
-            for_each_part(new_bounds, BOXES_OF_A_PART, BOXES_MANY, |_, part| {
-                for (slot, bounds) in part {
-                    let object = objects.at(*slot).expect("what is elsewhere is in the world");
-                    *bounds = clearances.grown(object.bounds());
-                }
-            });
-            broad.update_many(new_bounds);
-        }
+        broad.update_with(stirred.elsewhere(), &|slot| {
+            let object = objects.at(slot).expect("what is elsewhere is in the world");
+            clearances.grown(object.bounds())
+        });
         broad.flush();
     }
 

@@ -36,8 +36,7 @@ pub use response::Response;
 pub use statistics::Statistics;
 pub use test::TestProgress;
 
-use crate::bounds::Aabb;
-use crate::broad::{BroadPhase, PROXY_MAX, Proxy};
+use crate::broad::{BroadPhase, PROXY_MAX};
 use crate::error::{Error, Result};
 use crate::placement;
 use crate::shape::Shape;
@@ -101,8 +100,6 @@ pub struct World {
     to_examine: Vec<pair_map::Place>,
     /// Working memory: what examining them gave, part by part.
     news: Vec<test::News>,
-    /// Working memory: the boxes of what moved.
-    new_bounds: Vec<(Proxy, Aabb)>,
     workers: Workers,
     statistics: Statistics,
 }
@@ -138,7 +135,6 @@ impl World {
             default_changed: false,
             to_examine: Vec::new(),
             news: Vec::new(),
-            new_bounds: Vec::new(),
             workers: Workers::default(),
             statistics: Statistics::default(),
         }

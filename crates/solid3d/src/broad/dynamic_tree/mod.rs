@@ -38,7 +38,7 @@ use crate::threads::both;
 use build::Builder;
 use fat_box::FatBox;
 use search::{Found, Search};
-use slots::{Notes, Slots, Work};
+use slots::{Notes, Slots, Told};
 use status::Status;
 use tree::{DEPTH_MAX, Tree};
 
@@ -122,6 +122,14 @@ impl DynamicTree {
             self.tree.grow(proxies);
             self.pairs.grow(proxies);
         }
+    }
+
+    /// Moves many boxes; which one is refused, if one is.
+    fn move_many(&mut self, told: Told) -> Option<usize> {
+        let moved_max = self.moved_max();
+        let (slots, notes) = self.slots();
+        let (_, refused) = slots.many(told, notes, moved_max);
+        refused
     }
 
     #[cold]
@@ -293,7 +301,7 @@ impl BroadPhase for DynamicTree {
         while !rest.is_empty() {
             let moved_max = self.moved_max();
             let (slots, notes) = self.slots();
-            let (taken, refused) = slots.many(Work::Insert, rest, notes, moved_max);
+            let (taken, refused) = slots.many(Told::New(rest), notes, moved_max);
             self.alive += taken;
             let Some(refused) = refused else { return };
             let (proxy, bounds) = rest[refused];
@@ -303,11 +311,16 @@ impl BroadPhase for DynamicTree {
     }
 
     fn update_many(&mut self, boxes: &[(Proxy, Aabb)]) {
-        let moved_max = self.moved_max();
-        let (slots, notes) = self.slots();
-        let (_, refused) = slots.many(Work::Update, boxes, notes, moved_max);
-        if let Some(&(proxy, bounds)) = refused.and_then(|refused| boxes.get(refused)) {
+        if let Some(refused) = self.move_many(Told::Moved(boxes)) {
+            let (proxy, bounds) = boxes[refused];
             self.refuse_update(proxy, &bounds);
+        }
+    }
+
+    fn update_with(&mut self, proxies: &[Proxy], bounds: &(dyn Fn(Proxy) -> Aabb + Sync)) {
+        if let Some(refused) = self.move_many(Told::MovedTo(proxies, bounds)) {
+            let proxy = proxies[refused];
+            self.refuse_update(proxy, &bounds(proxy));
         }
     }
 
