@@ -243,6 +243,9 @@ impl DynamicTree {
 
     /// Takes those that were removed out of the queue.
     fn drop_removed(&mut self) {
+        if !std::mem::take(&mut self.notes.queued_removed) {
+            return;
+        }
         let status = &mut self.status;
         self.notes.queue.retain(|&proxy| {
             let status = &mut status[proxy as usize];
@@ -328,6 +331,7 @@ impl BroadPhase for DynamicTree {
         assert!(self.is_alive(proxy), "proxy {proxy} is not in use");
         let status = &mut self.status[proxy as usize];
         status.set(Status::ALIVE, false);
+        let is_queued = status.is(Status::QUEUED);
         self.fat[proxy as usize] = FatBox::EMPTY;
         if status.is(Status::IN_TREE) {
             status.set(Status::IN_TREE, false);
@@ -337,6 +341,7 @@ impl BroadPhase for DynamicTree {
         }
         self.alive -= 1;
         self.notes.changed = true;
+        self.notes.queued_removed |= is_queued;
     }
 
     fn flush(&mut self) {

@@ -165,6 +165,8 @@ pub(super) struct Notes {
     pub all_moved: bool,
     /// Those whose fat boxes are not in the tree as they are, each once; some may have been removed since.
     pub queue: Vec<Proxy>,
+    /// Whether any of those was removed.
+    pub queued_removed: bool,
     /// What threads note of their parts; empty but for its memory.
     #[cfg(feature = "rayon")]
     parts: Vec<Notes>,
