@@ -19,6 +19,18 @@ pub(crate) fn for_each_part<T: Send>(
     items.chunks_mut(part).enumerate().for_each(|(i, part)| work(i, part));
 }
 
+/// Calls `work` with each of `items` and its number; of any two, each is worth a thread of its own, if `worth`.
+pub(crate) fn for_each<T: Send>(items: &mut [T], worth: bool, work: impl Fn(usize, &mut T) + Sync + Send) {
+    #[cfg(feature = "rayon")]
+    if share(usize::from(worth), 1) {
+        use rayon::prelude::*;
+        // Else some would be kept together, and what comes late for its share would wait for all of them.
+        return items.par_iter_mut().enumerate().with_max_len(1).for_each(|(i, item)| work(i, item));
+    }
+    let _ = worth;
+    items.iter_mut().enumerate().for_each(|(i, item)| work(i, item));
+}
+
 /// The number of the first part of `items` for which `is` holds.
 pub(crate) fn first_part_where<T: Sync>(
     items: &[T],
@@ -84,6 +96,11 @@ mod tests {
             let mut numbers = vec![0; 1000];
             for_each_part(&mut numbers, 7, 1, |i, part| part.fill(i));
             assert!(numbers.iter().enumerate().all(|(i, &number)| number == i / 7));
+            for worth in [true, false] {
+                for_each(&mut numbers, worth, |i, number| *number += i);
+            }
+            assert!(numbers.iter().enumerate().all(|(i, &number)| number == i / 7 + 2 * i));
+            for_each_part(&mut numbers, 7, 1, |i, part| part.fill(i));
             assert_eq!(first_part_where(&numbers, 7, 1, |part| part[0] >= 20), Some(20));
             assert_eq!(first_part_where(&numbers, 7, 1, |part| part[0] > 1000), None);
             let (mut one, mut other) = (0, 0);

@@ -115,6 +115,26 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
         boxes.iter().for_each(|(proxy, bounds)| self.update(*proxy, *bounds));
     }
 
+    /// Moves many boxes to where `bounds` says; the same as to move them one by one, in this order. With the feature `rayon`, and if their
+    /// proxies ascend, on the threads of the current pool, which then also ask `bounds`.
+    ///
+    /// ```
+    /// use solid3d::broad::{BroadPhase, DynamicTree};
+    /// use solid3d::{Aabb, glam::DVec3};
+    /// let unit_at = |x: f64| Aabb::new(DVec3::splat(x), DVec3::splat(x + 1.0));
+    /// let mut broad = DynamicTree::default();
+    /// broad.insert_many(&[(0, unit_at(0.0)), (1, unit_at(2.0)), (2, unit_at(4.0))]);
+    /// broad.update_with(&[1, 2], &|proxy| unit_at(0.5 * f64::from(proxy)));
+    /// broad.flush();
+    /// assert_eq!(broad.sorted_pairs(), [(0, 1), (0, 2), (1, 2)]);
+    /// ```
+    ///
+    /// # Panics
+    /// As [`update_many`](Self::update_many).
+    fn update_with(&mut self, proxies: &[Proxy], bounds: &(dyn Fn(Proxy) -> Aabb + Sync)) {
+        proxies.iter().for_each(|&proxy| self.update(proxy, bounds(proxy)));
+    }
+
     /// Takes a box out; its proxy may be used again at once.
     ///
     /// # Panics

@@ -284,6 +284,14 @@ fn the_number_of_threads_changes_nothing() {
     }
 }
 
+/// How boxes are told.
+#[derive(Clone, Copy, Debug)]
+enum Told {
+    OneByOne,
+    Many,
+    With,
+}
+
 /// Law: many boxes told at once are as if told one by one, whatever their order: the same pairs in the same order, the same changes
 /// and counters.
 #[test]
@@ -313,15 +321,22 @@ fn many_at_once_are_as_one_by_one() {
     shuffled.extend_from_slice(&frames[1][..5000]);
     frames.push(shuffled);
     for kind in KINDS {
-        let run = |many: bool| {
+        let run = |how: Told| {
             let mut broad = kind.build();
             let (mut pairs, mut changes) = (Vec::new(), Vec::new());
             for (frame, boxes) in frames.iter().enumerate() {
-                match (frame, many) {
-                    (0, true) => broad.insert_many(boxes),
-                    (0, false) => boxes.iter().for_each(|(proxy, b)| broad.insert(*proxy, *b)),
-                    (_, true) => broad.update_many(boxes),
-                    (_, false) => boxes.iter().for_each(|(proxy, b)| broad.update(*proxy, *b)),
+                match (frame, how) {
+                    (0, Told::OneByOne) => boxes.iter().for_each(|(proxy, b)| broad.insert(*proxy, *b)),
+                    (0, _) => broad.insert_many(boxes),
+                    (_, Told::OneByOne) => boxes.iter().for_each(|(proxy, b)| broad.update(*proxy, *b)),
+                    (_, Told::Many) => broad.update_many(boxes),
+                    (_, Told::With) => {
+                        let (once, again) = boxes.split_at(BOXES as usize);
+                        let proxies: Vec<Proxy> = once.iter().map(|(proxy, _)| *proxy).collect();
+                        let bounds: BTreeMap<Proxy, Aabb> = once.iter().copied().collect();
+                        broad.update_with(&proxies, &|proxy| bounds[&proxy]);
+                        broad.update_many(again);
+                    }
                 }
                 broad.validate();
                 broad.flush();
@@ -331,13 +346,15 @@ fn many_at_once_are_as_one_by_one() {
             broad.validate();
             (pairs, changes, broad.counters())
         };
-        let one_by_one = run(false);
+        let one_by_one = run(Told::OneByOne);
         assert!(one_by_one.1.len() > 5_000, "{kind:?}: {} changes", one_by_one.1.len());
-        assert!(run(true) == one_by_one, "{kind:?}");
-        #[cfg(feature = "rayon")]
-        for threads in [1, 2, 3] {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            assert!(pool.install(|| run(true)) == one_by_one, "{kind:?}, {threads} threads");
+        for how in [Told::Many, Told::With] {
+            assert!(run(how) == one_by_one, "{kind:?}, {how:?}");
+            #[cfg(feature = "rayon")]
+            for threads in [1, 2, 3] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                assert!(pool.install(|| run(how)) == one_by_one, "{kind:?}, {how:?}, {threads} threads");
+            }
         }
     }
 }
@@ -355,15 +372,18 @@ fn many_boxes_with_a_bad_one_are_refused() {
     let mut bad = good.clone();
     bad[27_000].1.max.y = f64::NAN;
     bad[27_003].1.max.y = f64::INFINITY;
+    let proxies: Vec<Proxy> = (0..BOXES).collect();
     let run = || {
-        for insert in [true, false] {
+        for (insert, how) in [(true, Told::Many), (false, Told::Many), (false, Told::With)] {
             let mut broad = BroadPhaseKind::DynamicTree.build();
             if !insert {
                 broad.insert_many(&good);
                 broad.flush();
             }
-            let told = std::panic::AssertUnwindSafe(|| {
-                if insert { broad.insert_many(&bad) } else { broad.update_many(&bad) }
+            let told = std::panic::AssertUnwindSafe(|| match how {
+                _ if insert => broad.insert_many(&bad),
+                Told::With => broad.update_with(&proxies, &|proxy| bad[proxy as usize].1),
+                _ => broad.update_many(&bad),
             });
             let refused = std::panic::catch_unwind(told).unwrap_err();
             let message = refused.downcast_ref::<String>().unwrap();

@@ -12,19 +12,9 @@ use super::near::{Near, Nearness};
 use super::pair_map::{PairMap, Place};
 use super::stirred::Staleness;
 use super::{Collision, Contact, ObjectId, World};
-use crate::bounds::Aabb;
 use crate::broad::room::push;
 use crate::broad::{PairChange, PairId};
 use crate::threads::for_each_part;
-
-/// So many boxes of objects that moved are found at a time: what they take is bounded by it.
-const BOXES_AT_A_TIME: usize = 1 << 12;
-
-/// So many boxes, of some 100 ns each, are worth another thread.
-const BOXES_MANY: usize = 1000;
-
-/// One thread finds so many at a time.
-const BOXES_OF_A_PART: usize = 128;
 
 /// When one in so many objects changed, all candidates are looked at in one pass, rather than those of each that did.
 const MANY: usize = 4;
@@ -181,19 +171,18 @@ impl Candidates {
         self.slots.values_mut().iter_mut().flatten().for_each(|candidate| candidate.nearness_holds = false);
     }
 
-    /// Puts into `places` the candidates of which it is not known how near they are.
-    pub fn unknown(&mut self, places: &mut Vec<Place>) {
+    /// Puts into `places` the candidates of which it is not known how near they are, in ascending order: each is to be looked at.
+    pub fn take_unknown(&mut self, places: &mut Vec<Place>) {
         places.clear();
         self.nearness.resize(self.slots.values().len(), Nearness::Far);
-        let is_unknown = |value: &Option<Candidate>| value.is_some_and(|candidate| !candidate.nearness_holds);
-        places.extend(
-            (0..).zip(self.slots.values()).filter(|(_, value)| is_unknown(value)).map(|(place, _)| place),
-        );
+        let take = |candidate: &mut Candidate| !std::mem::replace(&mut candidate.nearness_holds, true);
+        let values = (0..).zip(self.slots.values_mut());
+        places.extend(values.filter_map(|(place, value)| value.as_mut().is_some_and(take).then_some(place)));
     }
 
-    pub fn set_nearness(&mut self, place: Place, nearness: Nearness) {
-        self.nearness[place as usize] = nearness;
-        self.get_mut(place).nearness_holds = true;
+    /// All candidates, and how near they are, by place.
+    pub fn with_nearness_mut(&mut self) -> (&[Option<Candidate>], &mut [Nearness]) {
+        (self.slots.values(), &mut self.nearness)
     }
 
     /// The candidates that are near, in any order.
@@ -206,8 +195,9 @@ impl Candidates {
         })
     }
 
-    pub fn get(&self, place: Place) -> &Candidate {
-        self.slots.get(place).expect("what waits to be examined is a candidate")
+    /// All candidates, by place.
+    pub fn values_mut(&mut self) -> &mut [Option<Candidate>] {
+        self.slots.values_mut()
     }
 
     pub fn get_mut(&mut self, place: Place) -> &mut Candidate {
@@ -253,20 +243,12 @@ impl World {
 
     /// Gives the broad phase the boxes of what moved: in the order of slots, in which both have them in memory.
     fn update_broad(&mut self) {
-        let Self { broad, objects, stirred, clearances, new_bounds, .. } = self;
+        let Self { broad, objects, stirred, clearances, .. } = self;
         stirred.sort();
-        for slots in stirred.slots().chunks(BOXES_AT_A_TIME) {
-            let elsewhere = slots.iter().filter(|&&slot| stirred.is_elsewhere(slot));
-            new_bounds.clear();
-            new_bounds.extend(elsewhere.map(|&slot| (slot, Aabb::EMPTY)));
-            for_each_part(new_bounds, BOXES_OF_A_PART, BOXES_MANY, |_, part| {
-                for (slot, bounds) in part {
-                    let object = objects.at(*slot).expect("what is elsewhere is in the world");
-                    *bounds = clearances.grown(object.bounds());
-                }
-            });
-            broad.update_many(new_bounds);
-        }
+        broad.update_with(stirred.elsewhere(), &|slot| {
+            let object = objects.at(slot).expect("what is elsewhere is in the world");
+            clearances.grown(object.bounds())
+        });
         broad.flush();
     }
 

@@ -36,8 +36,7 @@ pub use response::Response;
 pub use statistics::Statistics;
 pub use test::TestProgress;
 
-use crate::bounds::Aabb;
-use crate::broad::{BroadPhase, PROXY_MAX, Proxy};
+use crate::broad::{BroadPhase, PROXY_MAX};
 use crate::error::{Error, Result};
 use crate::placement;
 use crate::shape::Shape;
@@ -100,9 +99,7 @@ pub struct World {
     /// Working memory: the candidates that a test examines.
     to_examine: Vec<pair_map::Place>,
     /// Working memory: what examining them gave, part by part.
-    verdicts: Vec<test::Verdicts>,
-    /// Working memory: the boxes of what moved.
-    new_bounds: Vec<(Proxy, Aabb)>,
+    news: Vec<test::News>,
     workers: Workers,
     statistics: Statistics,
 }
@@ -137,8 +134,7 @@ impl World {
             stale: false,
             default_changed: false,
             to_examine: Vec::new(),
-            verdicts: Vec::new(),
-            new_bounds: Vec::new(),
+            news: Vec::new(),
             workers: Workers::default(),
             statistics: Statistics::default(),
         }

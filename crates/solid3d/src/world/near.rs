@@ -2,7 +2,11 @@
 
 use glam::DVec3;
 
+use super::arena::Arena;
+use super::candidates::Candidate;
+use super::clearance::Clearances;
 use super::pair_map::Place;
+use super::response::ResponseTable;
 use super::threads::{PART, Workers};
 use super::{ObjectId, Response, Statistics, World};
 use crate::pair::{self, Approach, Scratch};
@@ -30,13 +34,6 @@ pub struct Near {
 pub(super) enum Nearness {
     Far,
     Near(Near),
-}
-
-/// What looking at a candidate gave.
-#[derive(Debug)]
-pub(super) struct Looked {
-    nearness: Nearness,
-    work: Statistics,
 }
 
 impl World {
@@ -77,7 +74,7 @@ impl World {
             self.candidates.forget_nearness();
         }
         let mut places = std::mem::take(&mut self.to_examine);
-        self.candidates.unknown(&mut places);
+        self.candidates.take_unknown(&mut places);
         self.look_at_all(&places);
         self.to_examine = places;
         let mut near: Vec<Near> = self.candidates.near().copied().collect();
@@ -88,38 +85,48 @@ impl World {
     /// Looks at candidates, and keeps what that gave.
     fn look_at_all(&mut self, places: &[Place]) {
         let share = Workers::share(self.statistics.units_for(places.len()));
-        let mut workers = std::mem::take(&mut self.workers);
-        let mut looked = Vec::new();
+        let Self { objects, responses, clearances, candidates, workers, .. } = self;
+        let looker = Looker { objects, responses, clearances };
+        let (candidates, nearness) = candidates.with_nearness_mut();
+        let mut works = Vec::new();
         for batch in places.chunks(Workers::batch(share)) {
-            workers.each_part(share, batch, &mut looked, |places, looked: &mut Vec<_>, scratch| {
-                looked.extend(places.iter().map(|&place| self.look_at(place, scratch)));
+            workers.each(share, nearness, batch, &mut works, |place, nearness, work, scratch| {
+                let candidate =
+                    candidates[place as usize].as_ref().expect("what is looked at is a candidate");
+                *nearness = looker.look_at(candidate, work, scratch);
             });
-            for (places, looked) in batch.chunks(PART).zip(&mut looked) {
-                places.iter().zip(looked.drain(..)).for_each(|(&place, looked)| self.keep(place, looked));
+            for work in works.iter_mut().take(batch.len().div_ceil(PART)) {
+                self.statistics += std::mem::take(work);
             }
         }
-        self.workers = workers;
     }
+}
 
-    fn keep(&mut self, place: Place, looked: Looked) {
-        self.statistics += looked.work;
-        self.candidates.set_nearness(place, looked.nearness);
-    }
+/// What the nearness of a pair depends on, beside the pair.
+struct Looker<'a> {
+    objects: &'a Arena,
+    responses: &'a ResponseTable,
+    clearances: &'a Clearances,
+}
 
+impl Looker<'_> {
     /// How near the objects of a candidate are to each other; a function of the two, their response and their clearance alone.
-    fn look_at(&self, place: Place, scratch: &mut Scratch) -> Looked {
-        let candidate = self.candidates.get(place);
-        let (a, b) = (candidate.a, candidate.b);
-        let mut work = Statistics::default();
+    fn look_at(
+        &self,
+        &Candidate { a, b, .. }: &Candidate,
+        work: &mut Statistics,
+        scratch: &mut Scratch,
+    ) -> Nearness {
         if self.responses.of(a, b) == Response::Ignore {
-            return Looked { nearness: Nearness::Far, work };
+            return Nearness::Far;
         }
         let before = scratch.work();
         let near = self.nearness(a, b, scratch);
         let after = scratch.work();
-        work.examined = 1;
-        (work.box_tests, work.primitive_tests) = (after.0 - before.0, after.1 - before.1);
-        Looked { nearness: near.map_or(Nearness::Far, Nearness::Near), work }
+        work.examined += 1;
+        work.box_tests += after.0 - before.0;
+        work.primitive_tests += after.1 - before.1;
+        near.map_or(Nearness::Far, Nearness::Near)
     }
 
     fn nearness(&self, a: ObjectId, b: ObjectId, scratch: &mut Scratch) -> Option<Near> {

@@ -62,8 +62,20 @@ impl Stirred {
         &self.slots
     }
 
+    /// Puts those that are [elsewhere](Self::is_elsewhere) first, and both them and the others in order.
     pub fn sort(&mut self) {
-        self.slots.sort_unstable();
+        let Self { staleness, slots } = self;
+        slots.sort_unstable();
+        let is_elsewhere = |slot: Proxy| staleness[slot as usize] == Staleness::Bounds;
+        // Mostly all are. A sort by both at once took 130 us for 100,000, in place of 31 for that above.
+        if !slots.iter().all(|&slot| is_elsewhere(slot)) {
+            slots.sort_unstable_by_key(|&slot| (!is_elsewhere(slot), slot));
+        }
+    }
+
+    /// Those that are elsewhere, in order, after a [`sort`](Self::sort).
+    pub fn elsewhere(&self) -> &[Proxy] {
+        &self.slots[..self.slots.partition_point(|&slot| self.is_elsewhere(slot))]
     }
 
     /// Notes that nothing is out of date any more.

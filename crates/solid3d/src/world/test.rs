@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::arena::Arena;
 use super::candidates::{Candidate, PairKey};
 use super::object::Object;
 use super::pair_map::Place;
+use super::response::ResponseTable;
 use super::threads::{PART, Workers};
 use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
 use crate::error::Result;
@@ -57,12 +59,16 @@ impl Outcome {
     }
 }
 
-/// What examining some candidates gave.
+/// What examining some candidates gave that is not of one of them alone.
 #[derive(Debug, Default)]
-pub(super) struct Verdicts {
-    each: Vec<Verdict>,
-    /// Of those that are so, in their order.
+pub(super) struct News {
+    /// Those whose collision is not what it was, or may not be, with their place in the order of pairs.
+    changed: Vec<(Place, PairKey, Outcome)>,
+    /// Of collisions that are so, in the order of the candidates.
     described: Vec<(When, Contact)>,
+    /// How many matter, and how many did.
+    matter: u64,
+    mattered: u64,
     work: Statistics,
 }
 
@@ -182,11 +188,11 @@ impl World {
         }
         // What depends on the way of a swept object is brought up to date with its box.
         self.refresh();
-        let mut workers = std::mem::take(&mut self.workers);
         let (a, b) = self.in_order(a, b);
         let mut described = Vec::new();
-        let Examined { verdict, work } = self.examine(a, b, None, workers.own(), &mut described);
-        self.workers = workers;
+        let Self { objects, responses, caching, workers, .. } = self;
+        let examiner = Examiner { objects, responses, caching: *caching };
+        let Examined { verdict, work } = examiner.examine(a, b, None, workers.own(), &mut described);
         let found = verdict.outcome.found(|| described.pop());
         self.statistics += Statistics { candidates: 1, collisions: u64::from(found.is_some()), ..work };
         Ok(found.map(|(when, contact)| Collision { a, b, when, contact }))
@@ -208,62 +214,83 @@ impl World {
         let before = self.statistics.examined;
         let mut places = std::mem::take(&mut self.to_examine);
         self.candidates.take_queue(&mut places);
-        self.examine_all(&places);
+        self.examine_all(&mut places);
         self.to_examine = places;
         self.statistics.examined - before
     }
 
-    /// Examines candidates, and keeps what that gave, in their order.
-    fn examine_all(&mut self, places: &[Place]) {
+    /// Examines candidates, and keeps what that gave.
+    fn examine_all(&mut self, places: &mut [Place]) {
         let share = Workers::share(self.statistics.units_for(places.len()));
-        let mut workers = std::mem::take(&mut self.workers);
-        let mut verdicts = std::mem::take(&mut self.verdicts);
+        if share {
+            places.sort_unstable();
+        }
+        // Taken out, so that a panic leaves nothing in it.
+        let mut news = std::mem::take(&mut self.news);
+        let Self { objects, responses, caching, candidates, findings, workers, .. } = self;
+        let examiner = Examiner { objects, responses, caching: *caching };
         for batch in places.chunks(Workers::batch(share)) {
-            workers.each_part(share, batch, &mut verdicts, |places, verdicts: &mut Verdicts, scratch| {
-                places.iter().for_each(|&place| self.examine_candidate(place, scratch, verdicts));
-            });
-            for (places, verdicts) in batch.chunks(PART).zip(&mut verdicts) {
-                self.note(places, verdicts);
+            workers.each(
+                share,
+                candidates.values_mut(),
+                batch,
+                &mut news,
+                |place, candidate, news, scratch| {
+                    examiner.renew(place, candidate, news, scratch);
+                },
+            );
+            for news in news.iter_mut().take(batch.len().div_ceil(PART)) {
+                self.statistics += std::mem::take(&mut news.work);
+                candidates.count += std::mem::take(&mut news.matter);
+                candidates.count -= std::mem::take(&mut news.mattered);
+                let mut described = news.described.drain(..);
+                for (place, key, outcome) in news.changed.drain(..) {
+                    let found = outcome.found(|| described.next());
+                    let &mut Candidate { a, b, found: ref mut id, .. } = candidates.get_mut(place);
+                    match (*id, found) {
+                        (None, None) => {}
+                        (None, Some((when, contact))) => {
+                            *id = Some(findings.add(key, Collision { a, b, when, contact }));
+                        }
+                        (Some(was), None) => {
+                            findings.remove(was);
+                            *id = None;
+                        }
+                        (Some(was), Some((when, contact))) => findings.replace(was, when, contact),
+                    }
+                }
             }
         }
-        (self.workers, self.verdicts) = (workers, verdicts);
+        self.news = news;
     }
+}
 
-    fn examine_candidate(&self, place: Place, scratch: &mut Scratch, verdicts: &mut Verdicts) {
-        let &Candidate { a, b, axis, .. } = self.candidates.get(place);
-        let Examined { verdict, work } = self.examine(a, b, axis, scratch, &mut verdicts.described);
-        verdicts.each.push(verdict);
-        verdicts.work += work;
-    }
+/// What examining a pair depends on, beside the pair.
+struct Examiner<'a> {
+    objects: &'a Arena,
+    responses: &'a ResponseTable,
+    caching: bool,
+}
 
-    /// Keeps what examining candidates gave.
-    fn note(&mut self, places: &[Place], verdicts: &mut Verdicts) {
-        self.statistics += std::mem::take(&mut verdicts.work);
-        let Self { candidates, findings, objects, .. } = self;
-        let mut described = verdicts.described.drain(..);
-        for (&place, verdict) in places.iter().zip(verdicts.each.drain(..)) {
-            let candidate = candidates.get_mut(place);
-            let was_plain = std::mem::replace(&mut candidate.is_plain, verdict.outcome == Outcome::Plain);
-            let mattered = std::mem::replace(&mut candidate.matters, verdict.matters);
-            candidate.axis = verdict.axis;
-            let found = verdict.outcome.found(|| described.next());
-            let &mut Candidate { a, b, found: id, .. } = candidate;
-            match (id, found) {
-                (None, None) => {}
-                // As it was.
-                (Some(_), Some(_)) if was_plain && candidate.is_plain => {}
-                (None, Some((when, contact))) => {
-                    let key = (objects[a].order, objects[b].order);
-                    candidate.found = Some(findings.add(key, Collision { a, b, when, contact }));
-                }
-                (Some(id), None) => {
-                    findings.remove(id);
-                    candidate.found = None;
-                }
-                (Some(id), Some((when, contact))) => findings.replace(id, when, contact),
-            }
-            candidates.count += u64::from(verdict.matters);
-            candidates.count -= u64::from(mattered);
+impl Examiner<'_> {
+    /// Examines a candidate, and keeps what is of it alone; the rest is news.
+    fn renew(&self, place: Place, candidate: &mut Option<Candidate>, news: &mut News, scratch: &mut Scratch) {
+        let candidate = candidate.as_mut().expect("what waits to be examined is a candidate");
+        let &mut Candidate { a, b, axis, found, .. } = candidate;
+        let Examined { verdict, work } = self.examine(a, b, axis, scratch, &mut news.described);
+        let Verdict { matters, outcome, axis } = verdict;
+        candidate.axis = axis;
+        let was_plain = std::mem::replace(&mut candidate.is_plain, outcome == Outcome::Plain);
+        news.matter += u64::from(matters);
+        news.mattered += u64::from(std::mem::replace(&mut candidate.matters, matters));
+        news.work += work;
+        let is_as_it_was = match (found, outcome) {
+            (None, outcome) => outcome == Outcome::Apart,
+            (Some(_), outcome) => was_plain && outcome == Outcome::Plain,
+        };
+        if !is_as_it_was {
+            let key = (self.objects[a].order, self.objects[b].order);
+            push_of_part(&mut news.changed, (place, key, outcome));
         }
     }
 
@@ -349,10 +376,15 @@ fn now(
 }
 
 fn describe(when: When, contact: Contact, described: &mut Vec<(When, Contact)>) -> Outcome {
-    // No part ever has more: so a world in which as much happens as before takes no memory.
-    described.reserve_exact(PART.saturating_sub(described.len()));
-    described.push((when, contact));
+    push_of_part(described, (when, contact));
     Outcome::Described
+}
+
+/// Adds something of one of the candidates of a part.
+fn push_of_part<T>(list: &mut Vec<T>, element: T) {
+    // No part ever has more: so a world in which as much happens as before takes no memory.
+    list.reserve_exact(PART.saturating_sub(list.len()));
+    list.push(element);
 }
 
 /// Whether two objects that are apart now collided on the way; else an axis, when one separates them all the way.

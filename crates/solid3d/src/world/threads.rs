@@ -3,6 +3,7 @@
 //! What is computed of an item depends on it alone, and results come in the order of the items: so the number of threads
 //! changes nothing.
 
+use super::pair_map::Place;
 use crate::pair::Scratch;
 
 /// Work that is worth more than one thread, in units of [`Statistics::units_for`](super::Statistics::units_for), of some 25 ns each. To
@@ -47,33 +48,34 @@ impl Workers {
         if share { BATCH } else { PART }
     }
 
-    /// Calls `work` with each [`PART`] of `items` and the place for what comes of it, of which there are as many as parts or more; with the
-    /// feature `rayon` on the threads of the current pool, if `share`.
-    pub fn each_part<T: Sync, R: Default + Send>(
+    /// Calls `work` with each of `places`, what stands there, and the result of the [`PART`] that it is of, of which there are as many as
+    /// parts or more; with the feature `rayon` on the threads of the current pool, if `share`. Then places must ascend.
+    pub fn each<T: Send, R: Default + Send>(
         &mut self,
         share: bool,
-        items: &[T],
+        values: &mut [T],
+        places: &[Place],
         results: &mut Vec<R>,
-        work: impl Fn(&[T], &mut R, &mut Scratch) + Sync + Send,
+        work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
-        let parts = items.len().div_ceil(PART);
+        let parts = places.len().div_ceil(PART);
         if results.len() < parts {
             results.resize_with(parts, R::default);
         }
+        let items = Items { first: 0, values, places, results };
         #[cfg(feature = "rayon")]
         if share {
-            return self.share_parts(items, results, work);
+            return self.on_threads(items, work);
         }
         let _ = share;
-        items.chunks(PART).zip(results).for_each(|(part, result)| work(part, result, &mut self.own));
+        items.each(&mut self.own, &work);
     }
 
     #[cfg(feature = "rayon")]
-    fn share_parts<T: Sync, R: Send>(
+    fn on_threads<T: Send, R: Send>(
         &mut self,
-        items: &[T],
-        results: &mut [R],
-        work: impl Fn(&[T], &mut R, &mut Scratch) + Sync + Send,
+        items: Items<T, R>,
+        work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
         use std::sync::{Mutex, PoisonError};
 
@@ -88,7 +90,43 @@ impl Workers {
             // What a panic left is as good as new: it is memory to be overwritten, and counts of which differences are taken.
             of_pool[thread].lock().unwrap_or_else(PoisonError::into_inner)
         };
-        let parts = items.par_chunks(PART).zip(results);
-        parts.for_each_init(scratch, |scratch, (part, result)| work(part, result, scratch));
+        rayon::iter::split(items, Items::halves)
+            .for_each_init(scratch, |scratch, items| items.each(scratch, &work));
+    }
+}
+
+/// Some of the values, and the results for them.
+struct Items<'a, T, R> {
+    /// The place of the first of `values`.
+    first: Place,
+    values: &'a mut [T],
+    places: &'a [Place],
+    results: &'a mut [R],
+}
+
+impl<T, R> Items<'_, T, R> {
+    fn each(self, scratch: &mut Scratch, work: &impl Fn(Place, &mut T, &mut R, &mut Scratch)) {
+        for (part, result) in self.places.chunks(PART).zip(self.results) {
+            for &place in part {
+                work(place, &mut self.values[(place - self.first) as usize], result, scratch);
+            }
+        }
+    }
+
+    /// Two halves, if there is more than a part.
+    #[cfg(feature = "rayon")]
+    fn halves(self) -> (Self, Option<Self>) {
+        let Items { first, values, places, results } = self;
+        if places.len() <= PART {
+            return (Items { first, values, places, results }, None);
+        }
+        let parts = places.len().div_ceil(PART) / 2;
+        let (places, later_places) = places.split_at(parts * PART);
+        let (results, later_results) = results.split_at_mut(parts);
+        let later_first = later_places[0];
+        let (values, later_values) = values.split_at_mut((later_first - first) as usize);
+        let later =
+            Items { first: later_first, values: later_values, places: later_places, results: later_results };
+        (Items { first, values, places, results }, Some(later))
     }
 }

@@ -32,6 +32,9 @@ impl FatBox {
     ///
     /// Coordinates beyond the range of `f32` are clamped to it. Such a box does not contain `bounds`, yet no overlap
     /// is lost: rounding and clamping are monotone, so `a.min <= b.max` implies the same of their images.
+    ///
+    /// Inlined: a call of its own made a box that is added or leaves its fat box take a third more.
+    #[inline(always)]
     pub fn around(bounds: &Aabb) -> Self {
         FatBox { min: bounds.min.to_array().map(round_down), max: bounds.max.to_array().map(round_up) }
     }

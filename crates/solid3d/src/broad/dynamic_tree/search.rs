@@ -1,10 +1,11 @@
-//! The search for all pairs of a tree that was just built.
+//! The search for all pairs of a tree that was just built, and for those of some of its leaves.
 
 use super::Proxy;
+use super::fat_box::FatBox;
 use super::self_pairs::Lanes;
 use super::tree::Tree;
 use crate::broad::boxes::Boxes;
-use crate::threads::{both, for_each_part};
+use crate::threads::{both, for_each};
 
 /// Nodes that are searched in one piece, at least and at most: with some thousand pairs, whose boxes a core's own cache holds.
 const NODES: [usize; 2] = [32, 512];
@@ -14,6 +15,9 @@ const PIECES: usize = 16;
 
 /// So many nodes, of some 0.3 us each, are worth another thread.
 const NODES_MANY: usize = 512;
+
+/// So many leaves, of some 0.3 us each, are.
+const LEAVES_MANY: usize = 256;
 
 /// About so many times pairs are handed on in all: meanwhile the next are sought.
 const ROUNDS: usize = 8;
@@ -30,6 +34,7 @@ pub(super) struct Found {
 struct Piece {
     found: Vec<Found>,
     stack: Vec<Lanes>,
+    nodes: Vec<u32>,
     visits: u64,
 }
 
@@ -51,18 +56,15 @@ impl Search {
         let count = tree.nodes.len();
         let nodes = (count / (PIECES * ROUNDS)).clamp(NODES[0], NODES[1]);
         let worth = count >= NODES_MANY;
-        let enough = if worth { 1 } else { usize::MAX };
         let mut visits = 0;
         for first in (0..count).step_by(nodes * PIECES) {
-            let search = |i: usize, pieces: &mut [Piece]| {
-                for piece in pieces {
-                    let first = count.min(first + i * nodes);
-                    piece.search(tree, tight, first..count.min(first + nodes));
-                }
+            let search = |i: usize, piece: &mut Piece| {
+                let first = count.min(first + i * nodes);
+                piece.search(tree, tight, first..count.min(first + nodes));
             };
             both(
                 worth,
-                || for_each_part(next, 1, enough, search),
+                || for_each(next, worth, search),
                 || done.iter().flat_map(|piece| &piece.found).for_each(&mut visit),
             );
             visits += next.iter().map(|piece| piece.visits).sum::<u64>();
@@ -71,11 +73,41 @@ impl Search {
         done.iter().flat_map(|piece| &piece.found).for_each(visit);
         visits
     }
+
+    /// Finds every pair of one of some leaves and another whose box overlaps its own, if `is_new` holds of it: twice, if both are
+    /// among these. Gives the number of nodes visited; see [`found`](Self::found).
+    pub fn seek_of(
+        &mut self,
+        tree: &Tree,
+        tight: &Boxes,
+        fat: &[FatBox],
+        leaves: &[Proxy],
+        is_new: impl Fn(Proxy, Proxy) -> bool + Sync + Send,
+    ) -> u64 {
+        let worth = leaves.len() >= LEAVES_MANY;
+        let of_piece = leaves.len().div_ceil(if worth { PIECES } else { 1 }).max(1);
+        let pieces = leaves.len().div_ceil(of_piece);
+        if self.next.len() < pieces {
+            self.next.resize_with(pieces, Piece::default);
+        }
+        let (pieces, others) = self.next.split_at_mut(pieces);
+        others.iter_mut().for_each(|piece| piece.found.clear());
+        for_each(pieces, worth, |i, piece| {
+            let leaves = &leaves[i * of_piece..];
+            piece.search_of(tree, tight, fat, &leaves[..of_piece.min(leaves.len())], &is_new);
+        });
+        pieces.iter().map(|piece| piece.visits).sum()
+    }
+
+    /// What was found of some leaves, in an order that depends on them and the tree alone.
+    pub fn found(&self) -> impl Iterator<Item = &Found> {
+        self.next.iter().flat_map(|piece| &piece.found)
+    }
 }
 
 impl Piece {
     fn search(&mut self, tree: &Tree, tight: &Boxes, nodes: std::ops::Range<usize>) {
-        let Self { found, stack, visits } = self;
+        let Self { found, stack, visits, .. } = self;
         found.clear();
         *visits = 0;
         for node in nodes {
@@ -83,8 +115,33 @@ impl Piece {
                 found.push(Found { proxies: [a, b], overlaps: false });
             });
         }
-        // In a loop of its own, which waits for many boxes at a time.
-        for Found { proxies: [a, b], overlaps } in found {
+        self.compare(tight);
+    }
+
+    fn search_of(
+        &mut self,
+        tree: &Tree,
+        tight: &Boxes,
+        fat: &[FatBox],
+        leaves: &[Proxy],
+        is_new: impl Fn(Proxy, Proxy) -> bool,
+    ) {
+        let Self { found, nodes, visits, .. } = self;
+        found.clear();
+        *visits = 0;
+        for &leaf in leaves {
+            *visits += tree.query(&fat[leaf as usize], nodes, |other| {
+                if other != leaf && is_new(leaf, other) {
+                    found.push(Found { proxies: [leaf, other], overlaps: false });
+                }
+            });
+        }
+        self.compare(tight);
+    }
+
+    /// Finds which of the boxes overlap: in a loop of its own, which waits for many of them at a time.
+    fn compare(&mut self, tight: &Boxes) {
+        for Found { proxies: [a, b], overlaps } in &mut self.found {
             *overlaps = tight.overlap(*a, *b);
         }
     }

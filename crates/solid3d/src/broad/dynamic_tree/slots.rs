@@ -2,7 +2,8 @@
 //!
 //! Boxes that are told in ascending order of their proxies are cut into parts, each of which owns the slots of its proxies; so several
 //! threads may work on them. What concerns all of them is noted by each part and joined in their order. So everything is as if
-//! the boxes had been told one by one.
+//! the boxes had been told one by one. Boxes that a function says are found by the thread that takes them, some at a time, and stand nowhere
+//! between.
 //!
 //! A move that stays inside waits for memory, and for as many boxes at a time as the processor has room for the instructions of: many are
 //! moved in vectors of four numbers, in a loop that knows whether moves are still noted, which takes some 30 instructions in place of 58 and
@@ -164,6 +165,8 @@ pub(super) struct Notes {
     pub all_moved: bool,
     /// Those whose fat boxes are not in the tree as they are, each once; some may have been removed since.
     pub queue: Vec<Proxy>,
+    /// Whether any of those was removed.
+    pub queued_removed: bool,
     /// What threads note of their parts; empty but for its memory.
     #[cfg(feature = "rayon")]
     parts: Vec<Notes>,
@@ -204,66 +207,134 @@ impl Notes {
     }
 }
 
-/// What is done with many boxes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Work {
-    Insert,
-    Update,
+/// Boxes that are told together, and what is done with them.
+#[derive(Clone, Copy)]
+pub(super) enum Told<'a> {
+    /// They are added.
+    New(&'a [(Proxy, Aabb)]),
+    /// They are moved.
+    Moved(&'a [(Proxy, Aabb)]),
+    /// They are moved to where a function says.
+    MovedTo(&'a [Proxy], &'a (dyn Fn(Proxy) -> Aabb + Sync)),
+}
+
+impl Told<'_> {
+    fn len(self) -> usize {
+        match self {
+            Told::New(boxes) | Told::Moved(boxes) => boxes.len(),
+            Told::MovedTo(proxies, _) => proxies.len(),
+        }
+    }
 }
 
 impl Slots<'_> {
-    /// Does a work with boxes one after the other, until one is refused. How many were taken, and which was refused, if one was.
-    fn each(
-        &mut self,
-        work: Work,
-        boxes: &[(Proxy, Aabb)],
-        notes: &mut Notes,
-        moved_max: usize,
-    ) -> (usize, Option<usize>) {
-        let refused = match work {
-            Work::Insert => {
+    /// Takes boxes one after the other, until one is refused. How many were taken, and which was refused, if one was.
+    fn each(&mut self, told: Told, notes: &mut Notes, moved_max: usize) -> (usize, Option<usize>) {
+        let refused = match told {
+            Told::New(boxes) => {
                 let queued = notes.queue.len() + boxes.len();
                 room(&mut notes.queue, queued);
                 boxes.iter().position(|(proxy, bounds)| !self.insert(*proxy, bounds, notes))
             }
-            Work::Update => {
+            Told::Moved(boxes) => {
                 dispatch!(simd => self.update_each(simd, boxes, notes, moved_max))
             }
+            Told::MovedTo(proxies, bounds) => self.update_to(proxies, bounds, notes, moved_max),
         };
-        (refused.unwrap_or(boxes.len()), refused)
+        (refused.unwrap_or(told.len()), refused)
     }
 
-    /// Does a work with many boxes, as if one after the other. How many were taken, and the first that was refused, if one was.
-    pub fn many(
-        mut self,
-        work: Work,
-        boxes: &[(Proxy, Aabb)],
+    /// Moves boxes to where a function says, some at a time, until one is refused: which one it is, if one is.
+    #[inline(never)]
+    fn update_to(
+        &mut self,
+        proxies: &[Proxy],
+        bounds: impl Fn(Proxy) -> Aabb,
         notes: &mut Notes,
         moved_max: usize,
-    ) -> (usize, Option<usize>) {
-        #[cfg(feature = "rayon")]
-        if share(boxes.len(), work.many()) && ascend(boxes) {
-            return self.on_threads(work, boxes, notes, moved_max);
+    ) -> Option<usize> {
+        const AT_A_TIME: usize = 64;
+        let mut boxes = [(0, Aabb::EMPTY); AT_A_TIME];
+        for (first, some) in (0..).step_by(AT_A_TIME).zip(proxies.chunks(AT_A_TIME)) {
+            let boxes = &mut boxes[..some.len()];
+            boxes.iter_mut().zip(some).for_each(|(to, &proxy)| *to = (proxy, bounds(proxy)));
+            let refused = dispatch!(simd => self.update_each(simd, boxes, notes, moved_max));
+            if let Some(refused) = refused {
+                return Some(first + refused);
+            }
         }
-        self.each(work, boxes, notes, moved_max)
+        None
+    }
+
+    /// The same with many boxes: with the feature `rayon`, and if their proxies ascend, on the threads of the current pool. If one is
+    /// refused, some after it may have been taken all the same.
+    pub fn many(mut self, told: Told, notes: &mut Notes, moved_max: usize) -> (usize, Option<usize>) {
+        #[cfg(feature = "rayon")]
+        if share(told.len(), told.many()) && told.ascends() {
+            return self.on_threads(told, notes, moved_max);
+        }
+        self.each(told, notes, moved_max)
     }
 }
 
 #[cfg(feature = "rayon")]
-impl Work {
-    /// How many boxes are worth another thread. One that moves takes some 3 ns, and what a thread wrote of it the pass over pairs then reads on
-    /// another: 16,000 to 30,000 that all move took 1.1 to 1.2 times as long on two threads, 60,000 take 0.8.
+impl Told<'_> {
+    /// How many boxes are worth another thread. One that is known and moves takes some 3 ns, and what a thread wrote of it the pass over pairs
+    /// then reads on another: 16,000 to 30,000 that all move took 1.1 to 1.2 times as long on two threads, 60,000 take 0.8. To be asked where
+    /// it is takes some 50 ns.
     fn many(self) -> usize {
         match self {
-            Work::Insert => 1 << 12,
-            Work::Update => 1 << 15,
+            Told::New(_) => 1 << 12,
+            Told::Moved(_) => 1 << 15,
+            Told::MovedTo(..) => 1 << 10,
+        }
+    }
+
+    /// Boxes in one part.
+    fn part(self) -> usize {
+        match self {
+            Told::New(_) | Told::Moved(_) => 1 << 10,
+            Told::MovedTo(..) => 1 << 8,
+        }
+    }
+
+    /// Whether proxies ascend.
+    fn ascends(self) -> bool {
+        match self {
+            Told::New(boxes) | Told::Moved(boxes) => {
+                let part = self.part();
+                let is_before = |(a, _): &(Proxy, Aabb), (b, _): &(Proxy, Aabb)| a < b;
+                first_part_where(boxes, part, 1, |part| !part.is_sorted_by(is_before)).is_none()
+                    && (part..boxes.len()).step_by(part).all(|next| is_before(&boxes[next - 1], &boxes[next]))
+            }
+            Told::MovedTo(proxies, _) => proxies.is_sorted_by(|a, b| a < b),
+        }
+    }
+
+    fn first(self) -> Proxy {
+        match self {
+            Told::New(boxes) | Told::Moved(boxes) => boxes[0].0,
+            Told::MovedTo(proxies, _) => proxies[0],
+        }
+    }
+
+    fn split_at(self, at: usize) -> (Self, Self) {
+        match self {
+            Told::New(boxes) => {
+                let (boxes, later) = boxes.split_at(at);
+                (Told::New(boxes), Told::New(later))
+            }
+            Told::Moved(boxes) => {
+                let (boxes, later) = boxes.split_at(at);
+                (Told::Moved(boxes), Told::Moved(later))
+            }
+            Told::MovedTo(proxies, bounds) => {
+                let (proxies, later) = proxies.split_at(at);
+                (Told::MovedTo(proxies, bounds), Told::MovedTo(later, bounds))
+            }
         }
     }
 }
-
-/// Boxes in one part.
-#[cfg(feature = "rayon")]
-const PART: usize = 1 << 10;
 
 #[cfg(feature = "rayon")]
 impl<'a> Slots<'a> {
@@ -283,49 +354,30 @@ impl<'a> Slots<'a> {
     }
 
     /// See [`many`](Self::many); the proxies ascend.
-    fn on_threads(
-        self,
-        work: Work,
-        boxes: &[(Proxy, Aabb)],
-        notes: &mut Notes,
-        moved_max: usize,
-    ) -> (usize, Option<usize>) {
+    fn on_threads(self, told: Told, notes: &mut Notes, moved_max: usize) -> (usize, Option<usize>) {
         let mut parts = std::mem::take(&mut notes.parts);
-        parts.resize_with(boxes.len().div_ceil(PART), Notes::default);
+        parts.resize_with(told.len().div_ceil(told.part()), Notes::default);
         parts.iter_mut().for_each(|part| part.all_moved = notes.all_moved);
-        let done = self.in_parts(work, boxes, &mut parts, moved_max);
+        let done = self.in_parts(told, &mut parts, moved_max);
         parts.iter_mut().for_each(|part| notes.append(part, moved_max));
         notes.parts = parts;
         done
     }
 
-    /// Does a work with boxes that are noted in one part, or with both halves of them at the same time.
-    fn in_parts(
-        mut self,
-        work: Work,
-        boxes: &[(Proxy, Aabb)],
-        parts: &mut [Notes],
-        moved_max: usize,
-    ) -> (usize, Option<usize>) {
+    /// Takes boxes that are noted in one part, or both halves of them at the same time.
+    fn in_parts(mut self, told: Told, parts: &mut [Notes], moved_max: usize) -> (usize, Option<usize>) {
         if let [part] = parts {
-            return self.each(work, boxes, part, moved_max);
+            return self.each(told, part, moved_max);
         }
         let half = parts.len() / 2;
-        let (boxes, later_boxes) = boxes.split_at(half * PART);
+        let boxes = half * told.part();
+        let (told, later_told) = told.split_at(boxes);
         let (parts, later_parts) = parts.split_at_mut(half);
-        let slots = self.split_off(later_boxes[0].0 as usize);
+        let slots = self.split_off(later_told.first() as usize);
         let ((taken, refused), (later_taken, later_refused)) = rayon::join(
-            || slots.in_parts(work, boxes, parts, moved_max),
-            || self.in_parts(work, later_boxes, later_parts, moved_max),
+            || slots.in_parts(told, parts, moved_max),
+            || self.in_parts(later_told, later_parts, moved_max),
         );
-        (taken + later_taken, refused.or(later_refused.map(|refused| boxes.len() + refused)))
+        (taken + later_taken, refused.or(later_refused.map(|refused| boxes + refused)))
     }
-}
-
-/// Whether proxies ascend.
-#[cfg(feature = "rayon")]
-fn ascend(boxes: &[(Proxy, Aabb)]) -> bool {
-    let is_before = |(a, _): &(Proxy, Aabb), (b, _): &(Proxy, Aabb)| a < b;
-    first_part_where(boxes, PART, 1, |part| !part.is_sorted_by(is_before)).is_none()
-        && (PART..boxes.len()).step_by(PART).all(|next| is_before(&boxes[next - 1], &boxes[next]))
 }
