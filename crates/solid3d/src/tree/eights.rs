@@ -92,6 +92,7 @@ impl Image {
 
 /// Which of eight boxes and eight may overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(32))]
 pub(super) struct Overlaps {
     /// The lanes of `b` that were held against those of `a`, as bits. Others overlap none.
     pub tested: u32,
