@@ -46,6 +46,7 @@ struct Intervals<S: Simd> {
 
 impl Image {
     /// `None` for a map that stretches or moves by so much that single precision tells nothing.
+    #[inline(always)]
     pub fn new(folded: &Folded) -> Option<Image> {
         let DVec3 { x, y, z } = folded.map.translation;
         let sums = 2.0 * row_sums(&folded.abs) + folded.map.translation.abs() + folded.slack;

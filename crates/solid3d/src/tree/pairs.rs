@@ -77,8 +77,7 @@ pub(crate) fn pairs_on<B>(
     traversal: &mut Traversal,
     visitor: &mut impl LeafPairs<B>,
 ) -> ControlFlow<B> {
-    let duel = Duel::new(a, b, relative);
-    dispatch!(level, simd => walk(simd, &duel, traversal, visitor))
+    dispatch!(level, simd => walk(simd, &Duel::new(a, b, relative), traversal, visitor))
 }
 
 #[inline(always)] // into the function that is compiled for a level of instructions
@@ -192,6 +191,7 @@ pub(super) struct Duel<'t> {
 }
 
 /// The ways of boxes of `b` to `a`, and the reverse.
+#[inline(always)]
 fn folded(a: &Tree, b: &Tree, relative: &Relative) -> [Folded; 2] {
     [
         Folded::new(&relative.b_to_a, relative.slack_in_a, &b.normal, &a.normal),
@@ -217,6 +217,7 @@ pub(super) enum Step<'d, 't> {
 }
 
 impl<'t> Duel<'t> {
+    #[inline(always)]
     pub fn new(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
         let ways = folded(a, b, relative);
         let images = Image::new(&ways[0]).zip(Image::new(&ways[1])).map(|(of_b, of_a)| [of_b, of_a]);
@@ -228,7 +229,7 @@ impl<'t> Duel<'t> {
         Self::of(a, b, folded(a, b, relative), None)
     }
 
-    #[inline]
+    #[inline(always)]
     fn of(a: &'t Tree, b: &'t Tree, ways: [Folded; 2], images: Option<[Image; 2]>) -> Self {
         let magnification = ways[0].magnification() as f32;
         Duel { a, b, ways, crossings: OnceCell::new(), images, magnification }
