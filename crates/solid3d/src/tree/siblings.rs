@@ -135,16 +135,19 @@ impl Overlaps {
 
     #[inline(always)]
     fn deepest_on<S: Simd>(&self, simd: S) -> usize {
-        let mut lanes = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
+        let lanes = i32x8::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7]);
         let none = i32x8::splat(simd, -1);
         let mut deepest = none;
-        for (row, gaps) in self.gaps.iter().enumerate() {
-            let hits = self.hits >> (WIDTH * row) & u64::from(LANES);
+        let mut rest = self.hits;
+        while rest != 0 {
+            let row = rest.trailing_zeros() as usize / WIDTH;
+            let hits = rest >> (WIDTH * row) & u64::from(LANES);
+            rest ^= hits << (WIDTH * row);
             // The bits of numbers that are not negative are in their order.
-            let depths: i32x8<S> = f32x8::load_array_ref(simd, gaps).abs().bitcast();
-            let keys = depths & i32x8::splat(simd, !TIE_BITS) | lanes;
+            let depths: i32x8<S> = f32x8::load_array_ref(simd, &self.gaps[row]).abs().bitcast();
+            let places = lanes + i32x8::splat(simd, (WIDTH * row) as i32);
+            let keys = depths & i32x8::splat(simd, !TIE_BITS) | places;
             deepest = deepest.max(mask32x8::from_bitmask(simd, hits).select(keys, none));
-            lanes += i32x8::splat(simd, WIDTH as i32);
         }
         (deepest.reduce_max() & TIE_BITS) as usize
     }
