@@ -68,6 +68,7 @@ fn direction(axis: DVec3) -> Option<DVec3> {
 }
 
 /// The inverse of a checked placement's linear part. Axes of very different length do it no harm.
+#[inline(always)]
 pub(crate) fn inverse_linear(linear: &DMat3) -> DMat3 {
     // Most of what stays in its place is not turned either.
     if *linear == DMat3::IDENTITY {
@@ -82,6 +83,7 @@ pub(crate) fn inverse_linear(linear: &DMat3) -> DMat3 {
 }
 
 /// The largest sum of magnitudes over a row: a bound on how much the map stretches the largest coordinate.
+#[inline(always)]
 pub(crate) fn row_norm(linear: &DMat3) -> f64 {
     (abs(linear) * DVec3::ONE).max_element()
 }

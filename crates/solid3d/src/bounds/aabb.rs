@@ -101,6 +101,7 @@ impl Aabb {
 }
 
 /// The matrix of absolute values.
+#[inline(always)]
 pub(crate) fn abs(m: &glam::DMat3) -> glam::DMat3 {
     glam::DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs())
 }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
-use solid_convex::simd::level;
+use solid_convex::simd::{dispatch, level};
 use solid_convex::{Closest, Witness, gjk};
 
 use super::containment::{PlacedSolid, part_inside};
@@ -60,7 +60,7 @@ fn meeting_pairs_in(
     found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
-    let (relative, common) = (frame.relative(), &frame.common);
+    let (relative, common) = (dispatch!(_simd => frame.relative()), &frame.common);
     rows.iter_mut().for_each(Rows::clear);
     let mut meeting = Meeting { a, b, common, wants_first, rows, primitive_tests, found };
     pairs_on(level(), a.0.tree(), b.0.tree(), &relative, traversal, &mut meeting)
@@ -269,7 +269,7 @@ impl NearLeafPairs for Approach<'_> {
 }
 
 fn frame(a: PlacedComplex, b: PlacedComplex) -> Frame {
-    Frame::new(a.1, a.0.reach(), b.1, b.0.reach())
+    dispatch!(_simd => Frame::new(a.1, a.0.reach(), b.1, b.0.reach()))
 }
 
 /// The boxes of the primitives of a leaf in the common frame.

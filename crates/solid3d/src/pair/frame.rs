@@ -44,6 +44,7 @@ pub(super) struct Stretch {
 }
 
 impl Frame {
+    #[inline(always)]
     pub fn new(at_a: &DAffine3, reach_a: DVec3, at_b: &DAffine3, reach_b: DVec3) -> Frame {
         let inverse_a = inverse_linear(&at_a.matrix3);
         let offset = at_a.translation - at_b.translation;
@@ -68,6 +69,7 @@ impl Frame {
     }
 
     /// Takes points of either space to the other. Of what is convex, where it is in the space of a mesh is mostly enough.
+    #[inline(always)]
     pub fn relative(&self) -> Relative {
         let [linear_a, linear_b] = &self.linear;
         let inverse_b = inverse_linear(linear_b);
@@ -97,6 +99,7 @@ impl Frame {
 }
 
 /// The error of a world point of magnitude `size`, taken to local space by an inverse that has an error of its own.
+#[inline(always)]
 pub(super) fn slack(linear: &DMat3, inverse: &DMat3, size: f64) -> f64 {
     let norm = row_norm(inverse);
     ROUNDINGS * norm * (1.0 + norm * row_norm(linear)) * size

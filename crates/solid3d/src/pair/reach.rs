@@ -58,6 +58,7 @@ fn length(v: DVec3) -> f64 {
 }
 
 /// The largest magnitude of each coordinate over the image of a box under a linear map.
+#[inline(always)]
 pub(super) fn image_reach(linear: &DMat3, reach: DVec3) -> DVec3 {
     abs(linear) * reach
 }

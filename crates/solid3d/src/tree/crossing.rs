@@ -46,6 +46,7 @@ pub(super) struct Folded {
 }
 
 impl Folded {
+    #[inline(always)]
     pub fn new(map: &DAffine3, slack: f64, from: &Normal, to: &Normal) -> Self {
         let linear = map.matrix3 * from.scale * to.inverse;
         let offset = map.matrix3 * from.origin + map.translation - to.origin;
@@ -70,6 +71,7 @@ fn frobenius(m: &DMat3) -> f64 {
     (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt()
 }
 
+#[inline(always)]
 pub(super) fn row_sums(m: &DMat3) -> DVec3 {
     m.x_axis + m.y_axis + m.z_axis
 }
@@ -214,6 +216,7 @@ fn within<S: Simd>(simd: S, v: f64x4<S>) -> f64x4<S> {
     v.simd_gt(one(simd, -HUGE)).select(v, one(simd, -HUGE)).min(one(simd, HUGE))
 }
 
+#[inline(always)]
 fn abs(m: &DMat3) -> DMat3 {
     DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs())
 }

@@ -46,6 +46,7 @@ struct Intervals<S: Simd> {
 
 impl Image {
     /// `None` for a map that stretches or moves by so much that single precision tells nothing.
+    #[inline(always)]
     pub fn new(folded: &Folded) -> Option<Image> {
         let DVec3 { x, y, z } = folded.map.translation;
         let sums = 2.0 * row_sums(&folded.abs) + folded.map.translation.abs() + folded.slack;
@@ -92,6 +93,7 @@ impl Image {
 
 /// Which of eight boxes and eight may overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(32))]
 pub(super) struct Overlaps {
     /// The lanes of `b` that were held against those of `a`, as bits. Others overlap none.
     pub tested: u32,

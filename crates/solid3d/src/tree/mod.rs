@@ -21,8 +21,8 @@
 //! | `validate` | the invariants |
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
-//! | `order` | the order in which pairs of subtrees are looked at where one that meets will do |
-//! | `beam` | pairs of leaves that are likely near to each other, for a first distance |
+//! | `siblings` | pairs of subtrees to be looked at: in which order, where one that meets will do |
+//! | `beam`, `order` | pairs of leaves that are likely near to each other, for a first distance |
 //! | `eights` | the eight boxes of a node against the eight of another, across such a map |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
 //! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
@@ -60,6 +60,7 @@ mod pairs;
 mod ray;
 mod refit;
 mod relative;
+mod siblings;
 mod slabs;
 mod split;
 mod traversal;
@@ -218,12 +219,24 @@ impl Tree {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place(u32);
 
+impl Default for Place {
+    fn default() -> Self {
+        Place::ROOT
+    }
+}
+
 impl Place {
     const ROOT: Place = Place(u32::MAX);
 
     /// Lane `lane` of node `node`.
     fn lane(node: usize, lane: usize) -> Self {
         Place((node * 8 + lane) as u32)
+    }
+
+    /// The lane so many after this one, of the same node.
+    #[inline(always)]
+    fn after(self, lanes: u32) -> Self {
+        Place(self.0 + lanes)
     }
 
     #[inline(always)]

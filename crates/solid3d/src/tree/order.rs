@@ -1,5 +1,4 @@
-//! The order of pairs of subtrees: what overlaps deepest is looked at first where the first that meets is all that is wanted, and what is
-//! likely nearest goes on where a first distance is sought.
+//! Some of up to 64 in the order of their numbers: what is likely nearest goes on where a first distance is sought.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x8};
@@ -11,8 +10,8 @@ use super::node::WIDTH;
 /// As many as two nodes have pairs of children.
 pub(super) const PAIRS_MAX: usize = WIDTH * WIDTH;
 
-/// The bits of a key that tell apart equal ones.
-const TIE_BITS: i32 = PAIRS_MAX as i32 - 1;
+/// The bits of a key that tell apart equal ones: as many as tell apart 64.
+pub(super) const TIE_BITS: i32 = PAIRS_MAX as i32 - 1;
 
 /// Some of up to 64, in an order.
 pub(super) struct Order {

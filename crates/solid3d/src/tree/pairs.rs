@@ -1,18 +1,15 @@
 //! The pairs of leaves of two trees whose boxes may overlap.
 
 use fearless_simd::Simd;
-use fearless_simd::prelude::*;
 use glam::DVec3;
 use solid_convex::simd::{Level, dispatch, level};
 
 use super::crossing::{Crossing, Folded, Probe};
-use super::eights::{Image, Overlaps, overlaps};
-use super::lanes::{bits, extents, overlapping_probe};
+use super::eights::{Image, overlaps};
+use super::lanes::overlapping_probe;
 use super::node::{Kind, WIDTH};
-use super::order::Order;
 use super::packed::PackedBox;
 use super::relative::Relative;
-use super::traversal::STACK_USUAL;
 use super::{Place, Traversal, Tree};
 use std::cell::OnceCell;
 use std::ops::ControlFlow;
@@ -80,8 +77,7 @@ pub(crate) fn pairs_on<B>(
     traversal: &mut Traversal,
     visitor: &mut impl LeafPairs<B>,
 ) -> ControlFlow<B> {
-    let duel = Duel::new(a, b, relative);
-    dispatch!(level, simd => walk(simd, &duel, traversal, visitor))
+    dispatch!(level, simd => walk(simd, &Duel::new(a, b, relative), traversal, visitor))
 }
 
 #[inline(always)] // into the function that is compiled for a level of instructions
@@ -93,77 +89,48 @@ fn walk<B, S: Simd>(
 ) -> ControlFlow<B> {
     let (a, b) = (duel.a, duel.b);
     let Traversal { counters, pairs: stack, .. } = traversal;
-    stack.clear();
-    stack.reserve(STACK_USUAL);
-    stack.push(duel.roots());
+    stack.begin([Place::ROOT; 2]);
     let wants_first = visitor.wants_first();
     // Of the boxes tested last: several in a row are often the same.
     let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
-    // Of the nodes opened together last.
-    let mut found = Overlaps::default();
-    while let Some(pair) = stack.pop() {
-        match duel.step(&pair) {
+    while let Some([at_a, at_b]) = stack.pop(simd, wants_first) {
+        let step = duel.step_at(
+            at_a,
+            at_b,
+            #[inline(always)]
+            || [extent(&a.box_at(at_a)), extent(&b.box_at(at_b))],
+        );
+        match step {
             Step::Leaves(leaf_a, leaf_b) => {
                 counters.leaf_visits += 1;
                 visitor.visit(simd, leaf_a, leaf_b)?;
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, duel.b_to_a(), b, pair.b));
-                let extents = extents(simd, lanes);
-                let (hits, gaps) = overlapping_probe(simd, lanes, duel.b_to_a(), probe);
-                push(simd, stack, wants_first, hits, &gaps.to_array(), |lane| {
-                    pair.with_a(node, lane % WIDTH, &extents)
-                });
+                let probe = of_b.probe(simd, duel.b_to_a(), b, at_b);
+                let found = overlapping_probe(simd, &a.nodes[node], duel.b_to_a(), probe);
+                stack.above().of_a(node, at_b, found);
+                stack.push();
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, duel.a_to_b(), a, pair.a));
-                let extents = extents(simd, lanes);
-                let (hits, gaps) = overlapping_probe(simd, lanes, duel.a_to_b(), probe);
-                push(simd, stack, wants_first, hits, &gaps.to_array(), |lane| {
-                    pair.with_b(node, lane % WIDTH, &extents)
-                });
+                let probe = of_a.probe(simd, duel.a_to_b(), a, at_a);
+                let found = overlapping_probe(simd, &b.nodes[node], duel.a_to_b(), probe);
+                stack.above().of_b(node, at_a, found);
+                stack.push();
             }
             Step::OpenBoth(node_a, node_b, images) => {
                 let (lanes_a, lanes_b) = (&a.nodes[node_a], &b.nodes[node_b]);
-                overlaps(simd, lanes_a, lanes_b, images, &a.box_at(pair.a), &mut found);
-                counters.box_tests += u64::from(found.tested.count_ones());
-                let (extents_a, extents_b) = (extents(simd, lanes_a), extents(simd, lanes_b));
-                push(simd, stack, wants_first, found.hits, found.gaps.as_flattened(), |place| {
-                    let (lane_a, lane_b) = (place % WIDTH, place / WIDTH % WIDTH);
-                    Pair {
-                        a: Place::lane(node_a, lane_a),
-                        b: Place::lane(node_b, lane_b),
-                        extent_a: extents_a[lane_a],
-                        extent_b: extents_b[lane_b],
-                    }
-                });
+                let siblings = stack.above();
+                siblings.of_both(node_a, node_b);
+                overlaps(simd, lanes_a, lanes_b, images, &a.box_at(at_a), &mut siblings.left);
+                counters.box_tests += u64::from(siblings.left.tested.count_ones());
+                stack.push();
             }
             Step::Nothing => {}
         }
     }
     ControlFlow::Continue(())
-}
-
-/// Adds the pairs that a mask says, of which the last is looked at first.
-#[inline(always)]
-fn push<S: Simd>(
-    simd: S,
-    stack: &mut Vec<Pair>,
-    wants_first: bool,
-    hits: impl Into<u64>,
-    gaps: &[f32],
-    pair: impl Fn(usize) -> Pair,
-) {
-    if wants_first {
-        let order = Order::ascending(simd, hits.into(), gaps);
-        stack.extend(order.as_slice().iter().map(|&place| pair(usize::from(place))));
-    } else {
-        for place in bits(hits) {
-            stack.push(pair(place));
-        }
-    }
 }
 
 /// A pair of subtrees.
@@ -224,6 +191,7 @@ pub(super) struct Duel<'t> {
 }
 
 /// The ways of boxes of `b` to `a`, and the reverse.
+#[inline(always)]
 fn folded(a: &Tree, b: &Tree, relative: &Relative) -> [Folded; 2] {
     [
         Folded::new(&relative.b_to_a, relative.slack_in_a, &b.normal, &a.normal),
@@ -249,6 +217,7 @@ pub(super) enum Step<'d, 't> {
 }
 
 impl<'t> Duel<'t> {
+    #[inline(always)]
     pub fn new(a: &'t Tree, b: &'t Tree, relative: &Relative) -> Self {
         let ways = folded(a, b, relative);
         let images = Image::new(&ways[0]).zip(Image::new(&ways[1])).map(|(of_b, of_a)| [of_b, of_a]);
@@ -260,7 +229,7 @@ impl<'t> Duel<'t> {
         Self::of(a, b, folded(a, b, relative), None)
     }
 
-    #[inline]
+    #[inline(always)]
     fn of(a: &'t Tree, b: &'t Tree, ways: [Folded; 2], images: Option<[Image; 2]>) -> Self {
         let magnification = ways[0].magnification() as f32;
         Duel { a, b, ways, crossings: OnceCell::new(), images, magnification }
@@ -310,25 +279,33 @@ impl<'t> Duel<'t> {
     /// each other all at once.
     #[inline(always)]
     pub fn step(&self, pair: &Pair) -> Step<'_, 't> {
-        let (child_a, child_b) = (self.a.child_at(pair.a), self.b.child_at(pair.b));
+        self.step_at(
+            pair.a,
+            pair.b,
+            #[inline(always)]
+            || [pair.extent_a, pair.extent_b],
+        )
+    }
+
+    /// The same of two places, given how to find the sizes of the boxes there.
+    #[inline(always)]
+    fn step_at(&self, at_a: Place, at_b: Place, extents: impl Fn() -> [f32; 2]) -> Step<'_, 't> {
+        let (child_a, child_b) = (self.a.child_at(at_a), self.b.child_at(at_b));
         match (child_a.kind(), child_b.kind()) {
             (Kind::Empty, _) | (_, Kind::Empty) => Step::Nothing,
             (Kind::Leaf(of_a), Kind::Leaf(of_b)) => Step::Leaves(self.a.leaf(of_a), self.b.leaf(of_b)),
             (Kind::Inner(node), Kind::Leaf(_)) => Step::OpenA(node),
             (Kind::Leaf(_), Kind::Inner(node)) => Step::OpenB(node),
             (Kind::Inner(node_a), Kind::Inner(node_b)) => {
-                let (size_a, size_b) = (pair.extent_a, self.magnification * pair.extent_b);
+                let [extent_a, extent_b] = extents();
+                let (size_a, size_b) = (extent_a, self.magnification * extent_b);
                 if let Some(images) = &self.images
                     && size_a <= EVEN * size_b
                     && size_b <= EVEN * size_a
                 {
                     return Step::OpenBoth(node_a, node_b, images);
                 }
-                if pair.extent_a >= self.magnification * pair.extent_b {
-                    Step::OpenA(node_a)
-                } else {
-                    Step::OpenB(node_b)
-                }
+                if size_a >= size_b { Step::OpenA(node_a) } else { Step::OpenB(node_b) }
             }
         }
     }

@@ -3,6 +3,7 @@
 use super::Place;
 use super::node::Child;
 use super::pairs::Pair;
+use super::siblings::Stack;
 use std::ops::AddAssign;
 
 /// The work of queries: deterministic, so tests can assert on it where times are noise.
@@ -44,7 +45,7 @@ pub struct Traversal {
     /// Nodes to visit.
     pub(super) nodes: Vec<u32>,
     /// Pairs of subtrees to visit.
-    pub(super) pairs: Vec<Pair>,
+    pub(super) pairs: Stack,
     /// Subtrees to visit, with the lower bound of their distance; of each node, the nearest last.
     pub(super) near: Vec<(f64, Place)>,
     /// Subtrees to visit along a ray, with the parameter at which it enters them, likewise.
@@ -58,7 +59,7 @@ impl Traversal {
     pub(crate) fn bytes(&self) -> usize {
         let Traversal { counters: _, nodes, pairs, near, ahead, near_pairs } = self;
         nodes.capacity() * size_of::<u32>()
-            + pairs.capacity() * size_of::<Pair>()
+            + pairs.bytes()
             + near.capacity() * size_of::<(f64, Place)>()
             + ahead.capacity() * size_of::<(f32, (Child, Place))>()
             + near_pairs.capacity() * size_of::<(f64, Pair)>()
