@@ -89,7 +89,7 @@ fn bad_arguments_are_named() {
     let error = triangle.meets_sphere(DVec3::new(0.0, f64::NAN, 0.0), 1.0).unwrap_err();
     assert!(error.to_string().starts_with("center is NaN"), "{error}");
     let error = triangle.meets_sphere(DVec3::ZERO, -2.0).unwrap_err();
-    assert!(error.to_string().starts_with("radius is -2;"), "{error}");
+    assert!(error.to_string().starts_with("radius is -2.0;"), "{error}");
     let error = triangle.meets_box(&Aabb::new(DVec3::ZERO, DVec3::splat(f64::NAN))).unwrap_err();
     assert!(error.to_string().starts_with("bounds is NaN"), "{error}");
     assert!(!triangle.meets_box(&Aabb::EMPTY).unwrap());
