@@ -371,6 +371,14 @@ pub(crate) fn sides_of_origin([p, q, r, s]: [DVec3; 4]) -> ([f64; 4], f64) {
     ([a * sign, b * sign, c * sign, d * sign], least)
 }
 
+/// The weights of the corners of a tetrahedron in the origin, by on which side of each of its [`FACES`] that is.
+#[inline(always)]
+pub(crate) fn weights_of_origin(sides: [f64; 4]) -> [f64; 4] {
+    let inverse = 1.0 / (sides[0] + sides[1] + sides[2] + sides[3]);
+    // Of each corner the side of the face opposite.
+    [sides[1] * inverse, sides[2] * inverse, sides[0] * inverse, sides[3] * inverse]
+}
+
 /// The point closest to the origin on the line through `p` along `edge`. `p` should be the nearer end of the edge, whose
 /// rounding error is the smaller.
 ///

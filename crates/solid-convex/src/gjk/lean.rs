@@ -17,7 +17,9 @@ use super::pairs::Pair;
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::polytope_difference::{PolytopeDifference, Scanned, in_world, is_plain};
 use crate::simd::{self, Level, dispatch};
-use crate::simplex::{Simplex, VOLUME_ERROR, Within, sides_of_origin, within_edge, within_face};
+use crate::simplex::{
+    Simplex, VOLUME_ERROR, Within, sides_of_origin, weights_of_origin, within_edge, within_face,
+};
 use crate::{Polytope, Support};
 
 /// Support points after which it gives up. A random pair of polytopes takes 3 of each object, in the mean, to tell whether it
@@ -93,7 +95,35 @@ impl Lean {
     /// it is the difference of; `None` where it takes yet more care.
     #[inline(always)]
     pub fn closest_point(&self) -> Option<(DVec3, Witness)> {
-        closest_point(self.points())
+        let (v, weights) = match *self.points() {
+            [p] => (p.w, [1.0, 0.0, 0.0]),
+            [p, q] => {
+                let (v, [x, y]) = within_edge([p.w, q.w]).ok()?;
+                (v, [x, y, 0.0])
+            }
+            [p, q, r] => {
+                let squares = [p.w.length_squared(), q.w.length_squared(), r.w.length_squared()];
+                // Around the face from the corner nearest to the origin.
+                let i = if squares[1] < squares[0] { 1 } else { 0 };
+                let i = if squares[2] < squares[i] { 2 } else { i };
+                let [j, k] = [[1, 2], [2, 0], [0, 1]][i];
+                match within_face([self.points[i].w, self.points[j].w, self.points[k].w]) {
+                    Within::Face(v, [x, y, z]) => {
+                        let mut weights = [0.0; 3];
+                        (weights[i], weights[j], weights[k]) = (x, y, z);
+                        (v, weights)
+                    }
+                    Within::Outside | Within::Sliver => return None,
+                }
+            }
+            _ => return None,
+        };
+        let (mut on_a, mut on_b) = (DVec3::ZERO, DVec3::ZERO);
+        for (point, weight) in self.points().iter().zip(weights) {
+            on_a += point.a * weight;
+            on_b += point.b * weight;
+        }
+        Some((v, Witness { on_a, on_b }))
     }
 
     /// The same as a simplex that is not reduced.
@@ -104,51 +134,14 @@ impl Lean {
 
 /// Where the origin is in a tetrahedron, by the volumes that it makes with the faces, as a point of each object; `None` where that is not precise.
 #[inline(always)]
-pub(super) fn common_point(points: &[SupportPoint; 4], sides: [f64; 4]) -> Option<Witness> {
-    let inverse = 1.0 / (sides[0] + sides[1] + sides[2] + sides[3]);
-    // Of each point the side of the face opposite.
-    let weights = [sides[1], sides[2], sides[0], sides[3]].map(|side| side * inverse);
+fn common_point(points: &[SupportPoint; 4], sides: [f64; 4]) -> Option<Witness> {
     let (mut w, mut on_a, mut on_b) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-    for (point, weight) in points.iter().zip(weights) {
+    for (point, weight) in points.iter().zip(weights_of_origin(sides)) {
         w += point.w * weight;
         on_a += point.a * weight;
         on_b += point.b * weight;
     }
     (w.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR).then_some(Witness { on_a, on_b })
-}
-
-/// See [`Lean::closest_point`].
-#[inline(always)]
-pub(super) fn closest_point(points: &[SupportPoint]) -> Option<(DVec3, Witness)> {
-    let (v, weights) = match *points {
-        [p] => (p.w, [1.0, 0.0, 0.0]),
-        [p, q] => {
-            let (v, [x, y]) = within_edge([p.w, q.w]).ok()?;
-            (v, [x, y, 0.0])
-        }
-        [p, q, r] => {
-            let squares = [p.w.length_squared(), q.w.length_squared(), r.w.length_squared()];
-            // Around the face from the corner nearest to the origin.
-            let i = if squares[1] < squares[0] { 1 } else { 0 };
-            let i = if squares[2] < squares[i] { 2 } else { i };
-            let [j, k] = [[1, 2], [2, 0], [0, 1]][i];
-            match within_face([points[i].w, points[j].w, points[k].w]) {
-                Within::Face(v, [x, y, z]) => {
-                    let mut weights = [0.0; 3];
-                    (weights[i], weights[j], weights[k]) = (x, y, z);
-                    (v, weights)
-                }
-                Within::Outside | Within::Sliver => return None,
-            }
-        }
-        _ => return None,
-    };
-    let (mut on_a, mut on_b) = (DVec3::ZERO, DVec3::ZERO);
-    for (point, weight) in points.iter().zip(weights) {
-        on_a += point.a * weight;
-        on_b += point.b * weight;
-    }
-    Some((v, Witness { on_a, on_b }))
 }
 
 /// The closest point of a hull: `v / divisor`, on the newest point and those older ones whose bits are set.

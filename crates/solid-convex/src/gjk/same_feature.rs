@@ -10,7 +10,7 @@ use super::{ClosestInWorld, DISTANCE_TOLERANCE};
 use crate::difference::SUPPORT_ERROR;
 use crate::polytope_difference::is_plain;
 use crate::similarity::rough_squares;
-use crate::simplex::{VOLUME_ERROR, Within, sides_of_origin, within_edge, within_face};
+use crate::simplex::{VOLUME_ERROR, Within, sides_of_origin, weights_of_origin, within_edge, within_face};
 use crate::{Polytope, Support};
 
 /// Sizes of the data of which a product of four lengths neither overflows nor loses digits.
@@ -97,9 +97,7 @@ fn nearest(w: &[[f64; 4]; 3], len: usize, volume_error: f64) -> Option<(DVec3, [
         4 => {
             let (sides, least) = sides_of_origin([p, q, r, s]);
             let inside = sides[0].min(sides[1]).min(sides[2].min(sides[3])) > 0.0;
-            let inverse = 1.0 / (sides[0] + sides[1] + sides[2] + sides[3]);
-            // Of each point the side of the face opposite.
-            let weights = [sides[1] * inverse, sides[2] * inverse, sides[0] * inverse, sides[3] * inverse];
+            let weights = weights_of_origin(sides);
             let v = p * weights[0] + q * weights[1] + r * weights[2] + s * weights[3];
             if inside && least > volume_error { Some((v, weights)) } else { None }
         }
