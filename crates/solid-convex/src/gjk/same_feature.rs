@@ -29,7 +29,7 @@ pub(super) fn closest<S: Simd>(
 ) -> Option<ClosestInWorld> {
     let [stretch_a, stretch_b] = rough_squares(simd, [at_a, at_b]).or_else(
         #[inline(always)]
-        || plain_squares(simd, [at_a, at_b]),
+        || squares_if_plain(simd, [at_a, at_b]),
     )?;
     let offset = at_b.translation - at_a.translation;
     let (on_a, on_b) = (images(simd, &at_a.matrix3, &pairs.a), images(simd, &at_b.matrix3, &pairs.b));
@@ -66,7 +66,7 @@ pub(super) fn closest<S: Simd>(
 
 /// Bounds on the squares of how much plain placements stretch; `None` unless both are plain.
 #[inline(always)]
-fn plain_squares<S: Simd>(simd: S, placements: [&DAffine3; 2]) -> Option<[f64; 2]> {
+fn squares_if_plain<S: Simd>(simd: S, placements: [&DAffine3; 2]) -> Option<[f64; 2]> {
     let [a, b] = placements;
     let squares = placements.map(|at| {
         let axes = &at.matrix3;
@@ -158,10 +158,9 @@ mod tests {
                     [0.0, 0.004].map(|moved| place(3 * k + 1, (i + k as usize / 3) % 3, moved));
                 let mut memory = Memory::default();
                 memory.closest_points(&a, &a_before, &b, &b_before);
-                let [found, wide] = [0, levels().len() - 1].map(|level| {
-                    let (pairs, a, b) = (&memory.pairs, (&a, &a_now), (&b, &b_now));
-                    dispatch!(levels()[level], simd => closest(simd, pairs, a, b))
-                });
+                let (pairs, on_a, on_b) = (&memory.pairs, (&a, &a_now), (&b, &b_now));
+                let [found, wide] =
+                    levels().map(|level| dispatch!(level, simd => closest(simd, pairs, on_a, on_b)));
                 assert_eq!(found, wide, "{count} and {other}, {k}");
                 let expected = closest_points(&a, &a_now, &b, &b_now).distance;
                 asked += 1;
