@@ -231,6 +231,11 @@ impl PairLists {
         }
     }
 
+    /// Puts the pairs that were changed and are to be settled into the order of their ids.
+    pub fn sort_touched(&mut self) {
+        self.touched.sort_unstable();
+    }
+
     /// Forgets the changes that were settled before.
     pub fn begin(&mut self) {
         self.changes.clear();

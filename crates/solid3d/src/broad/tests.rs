@@ -316,6 +316,12 @@ fn many_at_once_are_as_one_by_one() {
         }
         frames.push(boxes.clone());
     }
+    // The first move, and no others.
+    for (_, b) in &mut boxes[..1000] {
+        let way = anywhere(0.3);
+        *b = Aabb::new(b.min + way, b.max + way);
+    }
+    frames.push(boxes.clone());
     let mut shuffled = boxes.clone();
     shuffled.reverse();
     shuffled.extend_from_slice(&frames[1][..5000]);

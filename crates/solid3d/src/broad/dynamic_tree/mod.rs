@@ -180,6 +180,8 @@ impl DynamicTree {
             for &proxy in &notes.moved {
                 pairs.refresh_of(proxy, |partner| tight.overlap(proxy, partner));
             }
+            // Then what became of them is told in the order in which a pass over all tells it.
+            pairs.sort_touched();
         }
         pairs.settle(|_| true);
     }
