@@ -90,10 +90,11 @@ impl World {
         let (candidates, nearness) = candidates.with_nearness_mut();
         let mut works = Vec::new();
         for batch in places.chunks(Workers::batch(share)) {
-            workers.each(share, nearness, batch, &mut works, |place, nearness, work, scratch| {
-                let candidate =
-                    candidates[place as usize].as_ref().expect("what is looked at is a candidate");
-                *nearness = looker.look_at(candidate, work, scratch);
+            let candidate =
+                |place| candidates[place as usize].as_ref().expect("what is looked at is a candidate");
+            let fetch = |place: Place, _: &Nearness| objects.fetch([candidate(place).a, candidate(place).b]);
+            workers.each(share, nearness, batch, &mut works, fetch, |place, nearness, work, scratch| {
+                *nearness = looker.look_at(candidate(place), work, scratch);
             });
             for work in works.iter_mut().take(batch.len().div_ceil(PART)) {
                 self.statistics += std::mem::take(work);

@@ -235,6 +235,9 @@ impl World {
                 candidates.values_mut(),
                 batch,
                 &mut news,
+                |_, candidate| {
+                    objects.fetch(candidate.iter().flat_map(|candidate| [candidate.a, candidate.b]))
+                },
                 |place, candidate, news, scratch| {
                     examiner.renew(place, candidate, news, scratch);
                 },

@@ -50,12 +50,16 @@ impl Workers {
 
     /// Calls `work` with each of `places`, what stands there, and the result of the [`PART`] that it is of, of which there are as many as
     /// parts or more; with the feature `rayon` on the threads of the current pool, if `share`. Then places must ascend.
+    ///
+    /// Before a part `fetch` is called with each of it: it reads what `work` is going to, and gives any number of that. So what is far away
+    /// in memory is waited for once for all of a part, not by each in turn.
     pub fn each<T: Send, R: Default + Send>(
         &mut self,
         share: bool,
         values: &mut [T],
         places: &[Place],
         results: &mut Vec<R>,
+        fetch: impl Fn(Place, &T) -> u64 + Sync + Send,
         work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
         let parts = places.len().div_ceil(PART);
@@ -65,16 +69,17 @@ impl Workers {
         let items = Items { first: 0, values, places, results };
         #[cfg(feature = "rayon")]
         if share {
-            return self.on_threads(items, work);
+            return self.on_threads(items, fetch, work);
         }
         let _ = share;
-        items.each(&mut self.own, &work);
+        items.each(&mut self.own, &fetch, &work);
     }
 
     #[cfg(feature = "rayon")]
     fn on_threads<T: Send, R: Send>(
         &mut self,
         items: Items<T, R>,
+        fetch: impl Fn(Place, &T) -> u64 + Sync + Send,
         work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
         use std::sync::{Mutex, PoisonError};
@@ -91,7 +96,7 @@ impl Workers {
             of_pool[thread].lock().unwrap_or_else(PoisonError::into_inner)
         };
         rayon::iter::split(items, Items::halves)
-            .for_each_init(scratch, |scratch, items| items.each(scratch, &work));
+            .for_each_init(scratch, |scratch, items| items.each(scratch, &fetch, &work));
     }
 }
 
@@ -105,10 +110,18 @@ struct Items<'a, T, R> {
 }
 
 impl<T, R> Items<'_, T, R> {
-    fn each(self, scratch: &mut Scratch, work: &impl Fn(Place, &mut T, &mut R, &mut Scratch)) {
+    fn each(
+        self,
+        scratch: &mut Scratch,
+        fetch: &impl Fn(Place, &T) -> u64,
+        work: &impl Fn(Place, &mut T, &mut R, &mut Scratch),
+    ) {
+        let at = |place: Place| (place - self.first) as usize;
         for (part, result) in self.places.chunks(PART).zip(self.results) {
+            let fetched = part.iter().fold(0, |all, &place| all ^ fetch(place, &self.values[at(place)]));
+            std::hint::black_box(fetched);
             for &place in part {
-                work(place, &mut self.values[(place - self.first) as usize], result, scratch);
+                work(place, &mut self.values[at(place)], result, scratch);
             }
         }
     }
