@@ -11,13 +11,15 @@ const BLOCK_MAX: usize = 64;
 pub(super) struct Ordered<T> {
     /// None is empty; all keys of one are below those of the next.
     blocks: Vec<Vec<(PairKey, T)>>,
+    /// The first key of each: a search reads these side by side, where to look into the blocks was to wait for memory at each step.
+    firsts: Vec<PairKey>,
     spare: Vec<Vec<(PairKey, T)>>,
     len: usize,
 }
 
 impl<T> Default for Ordered<T> {
     fn default() -> Self {
-        Ordered { blocks: Vec::new(), spare: Vec::new(), len: 0 }
+        Ordered { blocks: Vec::new(), firsts: Vec::new(), spare: Vec::new(), len: 0 }
     }
 }
 
@@ -32,6 +34,7 @@ impl<T: Copy> Ordered<T> {
         if self.blocks.is_empty() {
             let mut block = self.new_block();
             block.push((key, value));
+            self.firsts.push(key);
             return self.blocks.push(block);
         }
         let mut at = self.block_of(key);
@@ -41,12 +44,15 @@ impl<T: Copy> Ordered<T> {
             // Keys that come in ascending order leave full blocks behind.
             let ascends = lower[BLOCK_MAX - 1].0 < key;
             upper.extend(lower.drain(if ascends { BLOCK_MAX - 1 } else { BLOCK_MAX / 2 }..));
+            let first = upper[0].0;
             self.blocks.insert(at + 1, upper);
-            at += usize::from(self.blocks[at + 1][0].0 <= key);
+            self.firsts.insert(at + 1, first);
+            at += usize::from(first <= key);
         }
         let block = &mut self.blocks[at];
         let place = block.partition_point(|entry| entry.0 < key);
         block.insert(place, (key, value));
+        self.firsts[at] = block[0].0;
     }
 
     /// Takes an entry out; gives its value.
@@ -56,6 +62,9 @@ impl<T: Copy> Ordered<T> {
         let place = block.binary_search_by_key(&key, |entry| entry.0).ok()?;
         let (_, value) = block.remove(place);
         self.len -= 1;
+        if let Some((first, _)) = block.first() {
+            self.firsts[at] = *first;
+        }
         self.join(at);
         Some(value)
     }
@@ -87,6 +96,7 @@ impl<T: Copy> Ordered<T> {
 
     pub fn clear(&mut self) {
         self.len = 0;
+        self.firsts.clear();
         for mut block in self.blocks.drain(..) {
             block.clear();
             self.spare.push(block);
@@ -95,7 +105,7 @@ impl<T: Copy> Ordered<T> {
 
     /// The last block that begins at or before a key, or else the first.
     fn block_of(&self, key: PairKey) -> usize {
-        self.blocks.partition_point(|block| block[0].0 <= key).saturating_sub(1)
+        self.firsts.partition_point(|first| *first <= key).saturating_sub(1)
     }
 
     fn new_block(&mut self) -> Vec<(PairKey, T)> {
@@ -118,6 +128,7 @@ impl<T: Copy> Ordered<T> {
 
     fn drop_block(&mut self, at: usize) {
         let block = self.blocks.remove(at);
+        self.firsts.remove(at);
         self.spare.push(block);
     }
 }
@@ -160,6 +171,7 @@ mod tests {
                     assert!(map.iter().eq(truth.iter().map(|(&key, &value)| (key, value))));
                     let count = rng.random_range(0..=map.len() + 1);
                     assert!(map.iter_from(count).eq(map.iter().skip(count)));
+                    assert!(map.blocks.iter().map(|block| block[0].0).eq(map.firsts.iter().copied()));
                     assert!(
                         map.blocks.iter().all(|block| !block.is_empty() && block.capacity() == BLOCK_MAX)
                     );
