@@ -40,7 +40,14 @@ fn create(path: &Path) -> io::Result<Box<dyn Write>> {
     builder.prefix(".solid-");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    Ok(Box::new(Staged { file: Some(builder.tempfile_in(folder)?), path: there }))
+    let file = builder.tempfile_in(folder).map_err(unnamed)?;
+    Ok(Box::new(Staged { file: Some(file), path: there }))
+}
+
+/// What went wrong, without the path of a file beside the one that was asked for.
+fn unnamed(error: io::Error) -> io::Error {
+    let source = error.get_ref().and_then(|named| named.source()).map(|source| source.to_string());
+    source.map_or_else(|| error.kind().into(), |source| io::Error::new(error.kind(), source))
 }
 
 /// A file that takes its name when it is flushed, once.
