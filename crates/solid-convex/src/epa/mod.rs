@@ -54,7 +54,7 @@ const HEIGHT_ERROR: f64 = 2.0 * SUPPORT_ERROR;
 
 /// Bounds that are further apart than the tolerance of the search, times this, are so because planes of faces were lost in rounding, or because
 /// [`VERTICES_MAX`] ended it.
-const UNCERTAIN: f64 = 8.0;
+const UNCERTAIN: f64 = 2.0;
 
 /// How deep two placed convex objects are in each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,9 +206,9 @@ struct Nearest {
 }
 
 impl Nearest {
-    /// How far its bounds are apart.
+    /// How far its bounds are apart; no depth is below 0.
     fn uncertainty(&self) -> f64 {
-        self.height - self.lower
+        self.height.max(0.0) - self.lower.max(0.0)
     }
 
     /// Whether they are as near to each other as the search wants them.

@@ -39,12 +39,15 @@ impl Stretch {
         let (q, length) = furthest(points, |x| from_p(x).length());
         let line = from_p(&q) / length;
         let off_line = |x: &SupportPoint| from_p(x).reject_from_normalized(line);
-        let (r, width) = furthest(points, |x| off_line(x).length());
-        if width > NEEDLE * length {
+        let (r, _) = furthest(points, |x| off_line(x).length());
+        let aside = off_line(&r).normalize_or_zero();
+        let normal = line.cross(aside);
+        let (s, _) = furthest(points, |x| normal.dot(off_line(x)).abs());
+        // The points may be fewer than show how thick the difference is.
+        let width = |n: DVec3| n.dot(difference.support_against(-n).w - difference.support_against(n).w);
+        if width(aside).max(width(normal)) > NEEDLE * length {
             return None;
         }
-        let normal = line.cross(off_line(&r)).normalize_or_zero();
-        let (s, _) = furthest(points, |x| normal.dot(off_line(x)).abs());
         // A quarter: coordinates are to be below 2.
         let map = DMat3::from_cols(from_p(&q), off_line(&r), off_line(&s)).inverse() * 0.25;
         let error = map.abs() * DVec3::splat(SUPPORT_ERROR);
