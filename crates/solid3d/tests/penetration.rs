@@ -90,7 +90,7 @@ impl Tally {
             "{what}: {judged} of {certain} is not representative"
         );
         assert!(
-            judged * 10 >= hit * 8,
+            judged * 4 >= hit * 3,
             "{what}: the oracle must be certain of most, not of {judged} of {hit}"
         );
         assert!(worst <= 1.0, "{what}: {worst} times the stated error");
@@ -176,7 +176,7 @@ fn plates() {
 #[test]
 fn needles() {
     // Most are moved to cross.
-    run(Regime::Sliver, 30..=75);
+    run(Regime::Sliver, 30..=80);
 }
 
 /// A needle along y, of length 1.
@@ -202,7 +202,7 @@ fn needles_along_each_other() {
             let [a, b] = [(); 2].map(|()| needle(&mut rng, thickness));
             let pa = DAffine3::from_quat(DQuat::from_rotation_arc(DVec3::Y, direction(&mut rng)));
             let turn = DQuat::from_axis_angle(direction(&mut rng), thickness * rng.random_range(-2.0..=2.0));
-            let aside = in_cube(&mut rng) * DVec3::new(1.5 * thickness, 0.7, 1.5 * thickness);
+            let aside = in_cube(&mut rng) * DVec3::new(thickness, 0.6, thickness);
             let pb = pa * DAffine3::from_rotation_translation(turn, aside);
             let pair = Pair { a, pa, b, pb, size: 1.0 };
             let shapes = [&pair.a, &pair.b].map(|shape| common::try_shape_of(shape).unwrap());
