@@ -40,14 +40,12 @@ fn create(path: &Path) -> io::Result<Box<dyn Write>> {
     builder.prefix(".solid-");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder).map_err(unnamed)?;
+    if !folder.is_dir() {
+        return Err(io::Error::new(ErrorKind::NotFound, format!("there is no folder {}", folder.display())));
+    }
+    // Its errors name the file beside it, which is no concern of the user.
+    let file = builder.tempfile_in(folder).map_err(|error| error.kind())?;
     Ok(Box::new(Staged { file: Some(file), path: there }))
-}
-
-/// What went wrong, without the path of a file beside the one that was asked for.
-fn unnamed(error: io::Error) -> io::Error {
-    let source = error.get_ref().and_then(|named| named.source()).map(|source| source.to_string());
-    source.map_or_else(|| error.kind().into(), |source| io::Error::new(error.kind(), source))
 }
 
 /// A file that takes its name when it is flushed, once.
