@@ -40,7 +40,12 @@ fn create(path: &Path) -> io::Result<Box<dyn Write>> {
     builder.prefix(".solid-");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    Ok(Box::new(Staged { file: Some(builder.tempfile_in(folder)?), path: there }))
+    if !folder.is_dir() {
+        return Err(io::Error::new(ErrorKind::NotFound, format!("there is no folder {}", folder.display())));
+    }
+    // Its errors name the file beside it, which is no concern of the user.
+    let file = builder.tempfile_in(folder).map_err(|error| error.kind())?;
+    Ok(Box::new(Staged { file: Some(file), path: there }))
 }
 
 /// A file that takes its name when it is flushed, once.

@@ -1,6 +1,8 @@
-//! A progress bar, for long work with a person watching.
+//! What is shown of long work with a person watching: a progress bar, or that it goes on.
 
 use std::io::IsTerminal;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -10,6 +12,35 @@ const PATIENCE: Duration = Duration::from_millis(500);
 
 /// What the bar shows.
 const TEMPLATE: &str = "{wide_bar} {pos}/{len} frames, {eta} left";
+
+/// What is shown of work whose end is not known.
+const WAITING_TEMPLATE: &str = "{spinner} {msg}, {elapsed}";
+
+/// How often that is drawn.
+const TICK: Duration = Duration::from_millis(100);
+
+/// Does work whose end is not known, and says on standard error what it is when that is a terminal and it takes long.
+pub fn while_waiting<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
+    if !std::io::stderr().is_terminal() {
+        return work();
+    }
+    thread::scope(|scope| {
+        // Dropped when the work ends, however it does.
+        let (working, done) = channel::<()>();
+        scope.spawn(move || {
+            if done.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                let spinner = spinner(what);
+                spinner.enable_steady_tick(TICK);
+                // Until the other end is dropped.
+                let _ = done.recv();
+                spinner.finish_and_clear();
+            }
+        });
+        let result = work();
+        drop(working);
+        result
+    })
+}
 
 /// Counts frames on standard error when that is a terminal and the work takes long.
 pub struct Progress {
@@ -48,6 +79,12 @@ impl Drop for Progress {
     }
 }
 
+fn spinner(what: &'static str) -> ProgressBar {
+    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    let style = ProgressStyle::with_template(WAITING_TEMPLATE).expect("the template is well formed");
+    spinner.with_style(style).with_message(what)
+}
+
 fn bar(total: u64) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template(TEMPLATE).expect("the template is well formed");
@@ -59,7 +96,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_template_is_well_formed() {
+    fn the_templates_are_well_formed() {
+        spinner("waiting").set_draw_target(ProgressDrawTarget::hidden());
         let bar = bar(10);
         bar.set_draw_target(ProgressDrawTarget::hidden());
         bar.set_position(3);

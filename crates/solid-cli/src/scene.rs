@@ -4,19 +4,23 @@ use anyhow::{Result, ensure};
 use solid_scene::{Format, LoadOptions, Scene};
 
 use crate::args::SceneArgs;
-use crate::words;
+use crate::{progress, words};
 
 /// Loads the files into one scene, which must have an object: a check of nothing finds nothing.
 pub fn load(args: &SceneArgs) -> Result<Scene> {
-    let gltf = args.files.iter().any(|file| Format::of(file) == Some(Format::Gltf));
+    let there_is = |format| args.files.iter().any(|file| Format::of(file) == Some(format));
     ensure!(
-        gltf || args.animation.is_none(),
+        there_is(Format::Gltf) || args.animation.is_none(),
         "--animation chooses one of a glTF file; there is none among the files"
+    );
+    ensure!(
+        there_is(Format::Obj) || !args.split,
+        "--split divides an OBJ file into its groups; there is none among the files"
     );
     let mut options = LoadOptions::default();
     options.split = args.split;
     options.animation.clone_from(&args.animation);
-    let scene = Scene::load(&args.files, &options)?;
+    let scene = progress::while_waiting("reading the scene", || Scene::load(&args.files, &options))?;
     let files = || args.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ");
     ensure!(!scene.objects().is_empty(), "{}: there is no geometry; expected a node with a shape", files());
     Ok(scene)

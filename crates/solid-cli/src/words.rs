@@ -19,9 +19,9 @@ pub fn size(n: usize) -> u64 {
     n as u64
 }
 
-/// A time or duration in seconds, without the unit.
+/// A time or duration in seconds, without the unit: to the millisecond, as far as there are digits for it.
 pub fn seconds(time: f64) -> String {
-    format!("{time:.3}")
+    if time < 1e12 { format!("{time:.3}") } else { figure(time) }
 }
 
 /// A point, to four significant digits.

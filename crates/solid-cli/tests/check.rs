@@ -168,6 +168,17 @@ fn from_and_to_choose_the_frames() {
     desk.run("check a.obj --from 2 --to 1").assert_fails(&["--from is 2", "at 1"]);
 }
 
+/// No message and no table tells a number in hundreds of digits.
+#[test]
+fn times_of_any_size_are_legible() {
+    let desk = Desk::with_boxes();
+    desk.run("check a.obj --to 1e300").assert_fails(&["1e300 seconds at 30.0 frames per second"]);
+    desk.run("check a.obj --from 2e300 --to 1e300")
+        .assert_fails(&["--from is 2e300, after the end at 1e300"]);
+    let run = desk.run("check a.obj b.obj --from 1e300 --to 1e300");
+    assert!(run.assert_status(1).stdout.contains(" 1.000e300 "), "{}", run.stdout);
+}
+
 #[test]
 fn split_makes_each_group_an_object() {
     let desk = Desk::new().file("two.obj", "g left\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng right\nf 3 2 1\n");
@@ -177,6 +188,14 @@ fn split_makes_each_group_an_object() {
     };
     assert_eq!(names(desk.run("check two.obj --json -")).len(), 1);
     assert_eq!(names(desk.run("check two.obj --split --json -")), ["left", "right"]);
+    let desk = desk.file(
+        "triangle.stl",
+        "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n",
+    );
+    for command in ["check", "info"] {
+        desk.run(&format!("{command} triangle.stl --split")).assert_fails(&["--split divides an OBJ file"]);
+        assert_ne!(desk.run(&format!("{command} triangle.stl two.obj --split")).status, 2);
+    }
 }
 
 #[test]
@@ -254,7 +273,8 @@ fn devices_and_pipes_are_no_scenes() {
 #[test]
 fn an_output_that_cannot_be_written_is_an_error() {
     let desk = Desk::with_boxes();
-    desk.run("check a.obj b.obj --json nowhere/out.json").assert_fails(&["nowhere/out.json"]);
+    let run = desk.run("check a.obj b.obj --json nowhere/out.json");
+    run.assert_fails(&["nowhere/out.json: can't be written: there is no folder nowhere\n"]);
     desk.run("check a.obj b.obj --csv .").assert_fails(&[".: can't be written"]);
 }
 

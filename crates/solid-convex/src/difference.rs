@@ -77,6 +77,12 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
         Difference { offset: self.offset + v, ..*self }
     }
 
+    /// The image of the difference by a linear map.
+    pub fn mapped(&self, map: &DMat3) -> Self {
+        let (linear_a, linear_b) = (*map * self.linear_a, *map * self.linear_b);
+        Difference { linear_a, linear_b, offset: *map * self.offset, ..*self }
+    }
+
     /// A support point in the direction `-v`: where `v` points from `B` to `A`, the point that is least along `v`.
     /// Theorem 4.7 for each of the two objects.
     #[inline]

@@ -5,8 +5,9 @@ use glam::{DAffine3, DMat3, DVec3};
 use crate::{Polytope, Support};
 
 /// A placement turns balls into balls when its axes are as long as each other and at right angles up to this, relative to their
-/// length squared: what is left of a rotation and a scale when it is rounded. It is within the error that depths and distances
-/// are given with.
+/// length squared: what is left of a rotation and a scale when it is rounded. By Gershgorin's circles no length is then off the scale by more than
+/// one and a half of it, 6e-15 of a radius; the bounds of a depth leave 1.4e-14 of it open, and an error of a distance is far more. Placements that are more
+/// skewed, as products of many rotations are, lose no more than this closed form.
 const SIMILARITY_ERROR: f64 = 16.0 * f64::EPSILON;
 
 /// The core of an object; of one that is not rounded, or no longer round where it is placed, the object itself.

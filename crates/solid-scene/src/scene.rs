@@ -7,7 +7,7 @@ use solid3d::Shape;
 
 use crate::error::SceneError;
 use crate::load::{LoadOptions, load};
-use crate::part::Part;
+use crate::part::{Part, PartObject};
 use crate::pose::Pose;
 
 /// An animated scene.
@@ -15,6 +15,7 @@ use crate::pose::Pose;
 pub struct Scene {
     files: Vec<PathBuf>,
     objects: Vec<SceneObject>,
+    /// What is left of the files' shares, without their objects.
     parts: Vec<Part>,
 }
 
@@ -65,18 +66,12 @@ impl Scene {
     /// Loads files into one scene, in the order given.
     pub fn load<P: AsRef<Path>>(files: &[P], options: &LoadOptions) -> Result<Scene, SceneError> {
         let files: Vec<PathBuf> = files.iter().map(|file| file.as_ref().to_owned()).collect();
-        let parts = files.iter().map(|file| load(file, options)).collect::<Result<Vec<_>, _>>()?;
+        let mut parts = files.iter().map(|file| load(file, options)).collect::<Result<Vec<_>, _>>()?;
         let mut names = Names::default();
         let mut objects = Vec::new();
-        for (file, part) in parts.iter().enumerate() {
-            for object in &part.objects {
-                objects.push(SceneObject {
-                    name: names.unique(&object.name),
-                    shape: object.shape.clone(),
-                    file,
-                    path: object.path.clone(),
-                    degenerate: object.degenerate,
-                });
+        for (file, part) in parts.iter_mut().enumerate() {
+            for PartObject { name, shape, path, degenerate } in std::mem::take(&mut part.objects) {
+                objects.push(SceneObject { name: names.unique(&name), shape, file, path, degenerate });
             }
         }
         Ok(Scene { files, objects, parts })
@@ -114,9 +109,9 @@ impl Scene {
     pub fn sample(&self, time: f64, pose: &mut Pose) {
         pose.objects.resize_with(self.objects.len(), Default::default);
         let mut rest = pose.objects.as_mut_slice();
-        for part in &self.parts {
-            let (poses, others) = rest.split_at_mut(part.objects.len());
-            part.motion.sample(time, poses);
+        for objects in self.objects.chunk_by(|a, b| a.file == b.file) {
+            let (poses, others) = rest.split_at_mut(objects.len());
+            self.parts[objects[0].file].motion.sample(time, poses);
             rest = others;
         }
     }

@@ -215,7 +215,7 @@ impl Stage {
                 self.ignored.retain(|&pair| pair != ordered(a, b));
             }
             5 => {
-                let clearance = self.clearance * self.rng.random_range(0.8..1.25);
+                let clearance = self.typical_distance() * self.rng.random_range(0.8..1.25);
                 self.tell(|world| world.set_clearance(clearance).unwrap());
                 self.clearance = clearance;
             }
@@ -228,6 +228,15 @@ impl Stage {
         let pairs = (0..n).flat_map(move |i| (i + 1..n).map(move |j| (i, j)));
         let pairs = pairs.map(|(i, j)| (&self.things[i], &self.things[j]));
         pairs.filter(|(a, b)| !self.ignored.contains(&ordered(a.id, b.id)))
+    }
+
+    /// As a clearance it makes about half of the pairs near.
+    fn typical_distance(&self) -> f64 {
+        let of =
+            |(a, b): (&Thing, &Thing)| query::distance(&a.shape, &a.at, &b.shape, &b.at).unwrap().distance;
+        let mut distances: Vec<f64> = self.pairs().map(of).collect();
+        distances.sort_by(f64::total_cmp);
+        distances[distances.len() / 2]
     }
 
     /// What every world says, the same to the bit, against every pair; gives how many are near, of how many.
@@ -287,13 +296,8 @@ fn near_is_what_distance_says_of_every_pair() {
         for _ in 0..14 {
             stage.add();
         }
-        // So that about half of the pairs are near.
-        let of =
-            |(a, b): (&Thing, &Thing)| query::distance(&a.shape, &a.at, &b.shape, &b.at).unwrap().distance;
-        let mut distances: Vec<f64> = stage.pairs().map(of).collect();
-        distances.sort_by(f64::total_cmp);
-        stage.clearance = distances[distances.len() / 2];
-        let clearance = stage.clearance;
+        let clearance = stage.typical_distance();
+        stage.clearance = clearance;
         stage.tell(|world| world.set_clearance(clearance).unwrap());
         for _ in 0..60 {
             stage.change();

@@ -457,7 +457,7 @@ fn soups_obey_the_laws() {
         let (a, other) = (soup(&mut rng), soup(&mut rng));
         let Pair { b, .. } = random_pair(&mut rng, Regime::Random);
         let b = if case % 2 == 0 { other } else { common::try_shape_of(&b).unwrap_or(other) };
-        let places = [0, 1].map(|_| placement(&mut rng, 1.3));
+        let places = [0, 1].map(|_| placement(&mut rng, 0.8));
         let context = format!("case {case}: {} {:?} {} {:?}", a.kind(), places[0], b.kind(), places[1]);
         let size = size_of(&a, &places[0], &b, &places[1]);
         let found = contacts(&a, &places[0], &b, &places[1]);

@@ -234,7 +234,7 @@ impl Case {
         let count = |rng: &mut StdRng| log_uniform(rng, 20.0, 800.0) as u32;
         let (n, m) = (count(rng), count(rng));
         let (a, b) = (random_mesh(rng, n), random_mesh(rng, m));
-        Case::new(rng, a, b, 1.8)
+        Case::new(rng, a, b, 2.0)
     }
 
     fn closed_meshes(rng: &mut StdRng) -> Case {
@@ -312,7 +312,7 @@ fn curves_are_those_of_all_pairs_of_triangles() {
     println!("seed {seed}");
     let mut rng = seeded(seed);
     let mut segments = 0;
-    for i in 0..60 {
+    for i in 0..120 {
         let case = Case::meshes(&mut rng);
         for segment in case.curve().segments() {
             segments += 1;
@@ -384,7 +384,7 @@ fn complex_shapes_meet_where_their_boundaries_do() {
         let (n, m) = (count(&mut rng), count(&mut rng));
         let a = random_complex(&mut rng, n);
         let b = if rng.random() { random_complex(&mut rng, m) } else { random_mesh(&mut rng, m.max(20)) };
-        let mut case = Case::new(&mut rng, a, b, 1.0);
+        let mut case = Case::new(&mut rng, a, b, 0.7);
         // Without solid primitives the curve is empty if and only if nothing intersects.
         let surfaces = rng.random();
         if surfaces {

@@ -68,7 +68,7 @@ fn sign(bit: usize) -> f64 {
 /// The descriptions of a random geometry, with its reach.
 fn any(rng: &mut StdRng, scale: f64) -> (Vec<Placed>, f64) {
     let mut at = placement(rng, 1.0);
-    at.translation = in_cube(rng) * 1.4 * scale;
+    at.translation = in_cube(rng) * 1.1 * scale;
     let mut size = || scale * log_uniform(rng, 0.2, 2.0);
     let (x, y, z) = (size(), size(), size());
     let placed = match rng.random_range(0..3) {

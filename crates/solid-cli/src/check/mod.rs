@@ -23,7 +23,7 @@ use crate::rays::{self, NamedRay};
 use crate::record::{CsvColumns, CsvRecorder, JsonRecorder, Recorder};
 use crate::rules::{self, Objects, Rules};
 use crate::table::Style;
-use crate::{Verdict, complain, scene};
+use crate::{Verdict, complain, progress, scene};
 use clock::{Clock, Times};
 use motion::Motion;
 use player::Player;
@@ -49,7 +49,7 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     };
     let (bodies, warnings) = rules::bodies(&rules, &names(&scene));
     warnings.iter().for_each(|warning| complain("warning", warning));
-    let shapes = bodies::shapes(&scene, &bodies)?;
+    let shapes = progress::while_waiting("preparing the shapes", || bodies::shapes(&scene, &bodies))?;
     let tested = if args.continuous { solid3d::Motion::Swept } else { solid3d::Motion::Sampled };
     let mut stage = Stage::new(&scene, &shapes, motion, tested, timeline.time(0))?;
     let has_clearance = set_rules(&rules, args, &scene, &mut stage)?;

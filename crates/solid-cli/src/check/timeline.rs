@@ -22,13 +22,13 @@ impl Timeline {
     /// The frames from one time to another, both in seconds and included; `fps` is above 0.
     pub fn between(from: f64, to: f64, fps: f64) -> Result<Timeline> {
         if from > to {
-            bail!("--from is {from}, after the end at {to}; expected at most that");
+            bail!("--from is {from:?}, after the end at {to:?}; expected at most that");
         }
         let last = (to - from) * fps + FRAME_TOLERANCE;
         if last >= FRAMES_MAX as f64 {
             let seconds = to - from;
             bail!(
-                "{seconds} seconds at {fps} frames per second make more than {FRAMES_MAX} frames, the limit"
+                "{seconds:?} seconds at {fps:?} frames per second make more than {FRAMES_MAX} frames, the limit"
             );
         }
         Ok(Timeline { from, to, fps, frames: last as u64 + 1 })

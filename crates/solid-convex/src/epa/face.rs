@@ -131,4 +131,11 @@ impl Face {
         let (offset, blur) = (unit.dot(nearest), f64::INFINITY);
         Face { corners, twins, normal: unit, offset, slack, blur, seen: false, open: true }
     }
+
+    /// How many times a direction the way along it to the plane is; infinite where it goes inward, and where the plane is lost.
+    pub fn exit(&self, direction: DVec3) -> f64 {
+        let along = self.normal.dot(direction);
+        let known = along > 0.0 && self.slack < f64::INFINITY;
+        if known { self.offset / along } else { f64::INFINITY }
+    }
 }

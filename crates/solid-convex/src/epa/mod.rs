@@ -13,6 +13,7 @@
 //! - Two boxes, however placed, need no search: the facets of their difference are known.
 //! - Spheres and capsules, unless they are stretched, are points and segments with a radius: what is searched is the depth or the
 //!   distance of these, and both are found exactly.
+//! - Needles side by side are searched once more, in a space that is stretched across them.
 //! - Every direction that was looked along gives an upper bound, the nearest face a lower one. Both are reported, so that an
 //!   answer that had to stop early ([`VERTICES_MAX`]) says how good it is.
 
@@ -20,6 +21,7 @@ mod face;
 mod polytope;
 mod rounded;
 mod start;
+mod stretch;
 #[cfg(test)]
 mod tests;
 mod zonotope;
@@ -34,6 +36,7 @@ use crate::{Support, Witness};
 use face::Face;
 use polytope::Polytope;
 use start::start;
+use stretch::Stretch;
 
 /// The depth of curved objects is searched until its bounds are this near, relative to it: they need some five support points for
 /// each digit. That of polytopes is searched to the rounding error, for a few vertices more.
@@ -48,6 +51,10 @@ const EXPANSIONS_MAX: usize = 4 * VERTICES_MAX;
 
 /// The error of the height of a support point along a unit vector, whose coordinates sum to less than 2.
 const HEIGHT_ERROR: f64 = 2.0 * SUPPORT_ERROR;
+
+/// Bounds that are further apart than the tolerance of the search, times this, are so because planes of faces were lost in rounding, or because
+/// [`VERTICES_MAX`] ended it.
+const UNCERTAIN: f64 = 2.0;
 
 /// How deep two placed convex objects are in each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,11 +163,34 @@ where
     match start(difference, ended) {
         Ok(mut polytope) => {
             let found = expand(difference, &mut polytope);
+            let better = match found.is_certain(difference) {
+                true => None,
+                false => stretched(difference, polytope.vertices()),
+            };
             polytope.recycle();
-            found
+            better.filter(|better| better.uncertainty() < found.uncertainty()).unwrap_or(found)
         }
         Err(normal) => flat(difference, normal, ended),
     }
+}
+
+/// The same for a difference as thin as a needle, of which some points are known: see [`Stretch`].
+#[cold]
+#[inline(never)]
+fn stretched<A, B>(difference: &Difference<A, B>, points: &[SupportPoint]) -> Option<Nearest>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let (stretch, corners) = Stretch::across(difference, points)?;
+    let stretched = stretch.apply(difference);
+    let corners = corners.map(|p| stretched.point(p.a, p.b));
+    let mut polytope = Polytope::tetrahedron(&stretched, corners, Some(stretch))?;
+    let found = expand(&stretched, &mut polytope);
+    polytope.recycle();
+    let normal = stretch.normal(found.normal).normalize();
+    let height = normal.dot(difference.support_against(-normal).w);
+    Some(Nearest { height, normal, ..found })
 }
 
 /// The point of the boundary of `A - B` nearest to the origin.
@@ -176,6 +206,20 @@ struct Nearest {
 }
 
 impl Nearest {
+    /// How far its bounds are apart; no depth is below 0.
+    fn uncertainty(&self) -> f64 {
+        self.height.max(0.0) - self.lower.max(0.0)
+    }
+
+    /// Whether they are as near to each other as the search wants them.
+    fn is_certain<A, B>(&self, difference: &Difference<A, B>) -> bool
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        self.uncertainty() <= UNCERTAIN * tolerance(self.height, relative_tolerance(difference))
+    }
+
     /// The answer in world units, for two objects that are all within some distance of these; `radius` is the sum of both.
     fn penetration(&self, scale: f64, radius: f64) -> Penetration {
         let depth = (self.height + radius).max(0.0);
@@ -196,7 +240,7 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let relative = if difference.is_polytope() { 0.0 } else { DEPTH_TOLERANCE };
+    let relative = relative_tolerance(difference);
     let tolerance = |height: f64| tolerance(height, relative);
     let (mut height, mut normal) = (f64::INFINITY, DVec3::X);
     for _ in 0..EXPANSIONS_MAX {
@@ -227,11 +271,11 @@ where
 
 /// The point where the ray along a normal leaves the polytope, which is at a height less at most `beyond`, up to a margin.
 fn witness(polytope: &Polytope, normal: DVec3, height: f64, beyond: f64, margin: f64) -> Witness {
-    let target = normal * height;
+    let (direction, target) = polytope.ray(normal, height);
     let foot =
         |corners: [SupportPoint; 3]| over(&corners, target).unwrap_or_else(|| closest(&corners, target));
     let nearer = |x: &(f64, Witness), y: &(f64, Witness)| x.0.total_cmp(&y.0);
-    let across = polytope.faces_across(normal, margin).map(foot).min_by(nearer);
+    let across = polytope.faces_across(direction, margin).map(foot).min_by(nearer);
     let reach = beyond + margin;
     let found = across.filter(|(distance_squared, _)| *distance_squared <= reach * reach);
     // The planes of slivers can be anywhere: then their corners tell.
@@ -270,6 +314,15 @@ where
     let (above, below) = (height(normal), height(-normal));
     let (height, normal) = if below < above { (below, -normal) } else { (above, normal) };
     Nearest { height, lower: 0.0, normal, points: closest(ended, DVec3::ZERO).1 }
+}
+
+/// To what part of it a depth is searched.
+fn relative_tolerance<A, B>(difference: &Difference<A, B>) -> f64
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    if difference.is_polytope() { 0.0 } else { DEPTH_TOLERANCE }
 }
 
 /// How far above a face `A - B` may reach for the face to count as its boundary.

@@ -8,6 +8,7 @@ use glam::DVec3;
 use robust::orient3d;
 
 use super::face::{Face, HalfEdge};
+use super::stretch::Stretch;
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::coord;
@@ -22,6 +23,8 @@ pub(super) struct Polytope {
     open: BinaryHeap<Reverse<(u64, u32)>>,
     /// Faces that are at least this far from the origin are not to be looked across.
     limit: f64,
+    /// How the space of the vertices was stretched, if it was.
+    stretch: Option<Stretch>,
     horizon: Horizon,
 }
 
@@ -77,7 +80,11 @@ fn order(offset: f64) -> u64 {
 
 impl Polytope {
     /// The tetrahedron of four points; `None` when they are coplanar.
-    pub fn tetrahedron<A, B>(difference: &Difference<A, B>, points: [SupportPoint; 4]) -> Option<Self>
+    pub fn tetrahedron<A, B>(
+        difference: &Difference<A, B>,
+        points: [SupportPoint; 4],
+        stretch: Option<Stretch>,
+    ) -> Option<Self>
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
@@ -90,6 +97,7 @@ impl Polytope {
         };
         let mut polytope = SPARE.take().unwrap_or_default();
         polytope.clear();
+        polytope.stretch = stretch;
         polytope.vertices.extend(vertices);
         for (place, (corners, twins)) in (0..).zip(TETRAHEDRON) {
             polytope.put(difference, place, corners, twins);
@@ -111,6 +119,10 @@ impl Polytope {
 
     pub fn vertex_count(&self) -> usize {
         self.vertices.len()
+    }
+
+    pub fn vertices(&self) -> &[SupportPoint] {
+        &self.vertices
     }
 
     /// Whether a support point is a vertex already.
@@ -149,7 +161,11 @@ impl Polytope {
     pub fn radius(&self, enough: f64) -> f64 {
         let bound = |(index, face): (usize, &Face)| {
             let of_plane = face.offset - face.slack;
-            if of_plane < enough { of_plane.max(self.sliver_distance(index)) } else { of_plane }
+            if of_plane < enough && self.stretch.is_none() {
+                of_plane.max(self.sliver_distance(index))
+            } else {
+                of_plane
+            }
         };
         self.faces.iter().enumerate().map(bound).fold(f64::INFINITY, f64::min)
     }
@@ -176,14 +192,22 @@ impl Polytope {
         direction: DVec3,
         margin: f64,
     ) -> impl Iterator<Item = [SupportPoint; 3]> + '_ {
-        let leaves = move |face: &Face| {
-            let along = face.normal.dot(direction);
-            let known = along > 0.0 && face.slack < f64::INFINITY;
-            if known { face.offset / along } else { f64::INFINITY }
-        };
-        let first = self.faces.iter().map(leaves).fold(f64::INFINITY, f64::min);
-        let near = (0..self.faces.len()).filter(move |&i| leaves(&self.faces[i]) <= first + margin);
+        let latest = self.exit(direction) + margin;
+        let near = (0..self.faces.len()).filter(move |&i| self.faces[i].exit(direction) <= latest);
         near.map(|i| self.corners(i))
+    }
+
+    /// How many times a direction the way along it out of the polytope is.
+    fn exit(&self, direction: DVec3) -> f64 {
+        self.faces.iter().map(|face| face.exit(direction)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The direction of a normal, and where along it a plane that is at this height leaves the polytope. What is stretched is left on the ray itself:
+    /// the foot of a point beyond it would be aside of it, by far more than the point is beyond.
+    pub fn ray(&self, normal: DVec3, height: f64) -> (DVec3, DVec3) {
+        let Some(stretch) = &self.stretch else { return (normal, normal * height) };
+        let direction = stretch.point(stretch.normal(normal));
+        (direction, direction * self.exit(direction))
     }
 
     /// The corners of all faces.
@@ -318,7 +342,10 @@ impl Polytope {
         B: Support + ?Sized,
     {
         let points = corners.map(|i| &self.vertices[i as usize]);
-        let face = Face::new(difference, corners, points, twins);
+        let mut face = Face::new(difference, corners, points, twins);
+        if let Some(stretch) = &self.stretch {
+            face = stretch.measure(face);
+        }
         if face.offset < self.limit {
             self.open.push(Reverse((order(face.offset), place)));
         }

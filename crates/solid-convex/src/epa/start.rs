@@ -17,14 +17,14 @@ where
     B: Support + ?Sized,
 {
     if let [p, q, r, s] = *ended
-        && let Some(polytope) = Polytope::tetrahedron(difference, [p, q, r, s])
+        && let Some(polytope) = Polytope::tetrahedron(difference, [p, q, r, s], None)
     {
         return Ok(polytope);
     }
     let mut points = Points::new(ended);
     look_along(difference, &[DVec3::X, DVec3::Y, DVec3::Z], &mut points);
     let corners = spanned(difference, &mut points)?;
-    let Some(mut polytope) = Polytope::tetrahedron(difference, corners) else {
+    let Some(mut polytope) = Polytope::tetrahedron(difference, corners, None) else {
         unreachable!("a corner with a height off the others is not in their plane")
     };
     for &p in &*points {
@@ -113,7 +113,10 @@ where
 }
 
 /// The point of the greatest measure, the first of equals.
-fn furthest(points: &[SupportPoint], measure: impl Fn(&SupportPoint) -> f64) -> (SupportPoint, f64) {
+pub(super) fn furthest(
+    points: &[SupportPoint],
+    measure: impl Fn(&SupportPoint) -> f64,
+) -> (SupportPoint, f64) {
     let further = |best: (SupportPoint, f64), x: &SupportPoint| {
         let reach = measure(x);
         if reach > best.1 { (*x, reach) } else { best }

@@ -1,6 +1,8 @@
 //! Laws of the penetration depth. Random pairs of all kinds are judged by the oracle in `solid3d`'s tests.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use std::f64::consts::TAU;
+
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 
 use super::polytope::Polytope;
 use super::start::start;
@@ -274,6 +276,60 @@ fn boxes_are_as_deep_as_the_search_says() {
     }
     assert!((count * 3 / 10..count * 7 / 10).contains(&deep), "{deep} of {count}: not representative");
     assert!(answered * 10 >= deep * 9, "{answered} of {deep} in closed form");
+}
+
+/// The corners of a prism along z, of length 1, over a section.
+fn prism(section: &[DVec2]) -> Vec<DVec3> {
+    section.iter().flat_map(|p| [-0.5, 0.5].map(|height| p.extend(height))).collect()
+}
+
+/// How deep two polygons in a plane are in each other, both counterclockwise: some side of the two is the one that they are to be parted along.
+fn depth_of_sections(a: &[DVec2], b: &[DVec2]) -> f64 {
+    let sides = |polygon: &[DVec2], sign: f64| -> Vec<DVec2> {
+        let next = polygon.iter().cycle().skip(1);
+        polygon.iter().zip(next).map(|(p, q)| (*p - *q).perp().normalize() * sign).collect()
+    };
+    let reach = |polygon: &[DVec2], normal: DVec2| {
+        polygon.iter().map(|p| normal.dot(*p)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let normals = sides(a, 1.0).into_iter().chain(sides(b, -1.0));
+    normals.map(|normal| reach(a, normal) + reach(b, -normal)).fold(f64::INFINITY, f64::min)
+}
+
+/// Two needles side by side: their depth is that of their sections, however thin these are. What the coordinates round by is all that it
+/// may be off, and what the bounds leave open.
+#[test]
+fn parallel_needles_are_as_deep_as_their_sections() {
+    for thickness in [1e-3, 1e-6, 1e-8, 1e-9, 1e-10, 1e-11] {
+        let mut deep = 0;
+        for k in 0..200 {
+            let part = |step: f64| (f64::from(k) * step).fract();
+            let section = |corners: u32, turn: f64, middle: DVec2| -> Vec<DVec2> {
+                let angle = |i: u32| TAU * (f64::from(i) + 0.4 * turn) / f64::from(corners);
+                let corner = |i| middle + DVec2::from_angle(angle(i)) * DVec2::new(1.0, 0.3 + turn);
+                (0..corners).map(|i| corner(i) * thickness).collect()
+            };
+            let away = DVec2::new(part(0.7549) - 0.3, part(0.5698) - 0.3) * 2.0;
+            let (a, b) =
+                (section(3 + k % 5, part(0.618), DVec2::ZERO), section(3 + k % 3, part(0.414), away));
+            let expected = depth_of_sections(&a, &b);
+            let at = placement(k);
+            let slid = at * DAffine3::from_translation(DVec3::Z * (part(0.236) - 0.5));
+            let corners = [&a, &b].map(|section| prism(section));
+            let [needle_a, needle_b] = corners.each_ref().map(|corners| Points::new(corners).unwrap());
+            let found = penetration(&needle_a, &at, &needle_b, &slid);
+            if expected < 0.01 * thickness {
+                continue;
+            }
+            deep += 1;
+            let found = found.unwrap();
+            let error = 1e-14;
+            assert!((found.depth - expected).abs() <= error, "{thickness}, {k}: {found:?}, not {expected}");
+            assert!(found.upper - found.lower <= 10.0 * error, "{thickness}, {k}: {found:?}");
+            assert!(found.lower - error <= expected && expected <= found.upper + error, "{k}: {found:?}");
+        }
+        assert!((60..=180).contains(&deep), "{deep} of 200: not representative");
+    }
 }
 
 /// A support mapping that is none: it must not hang nor crash whoever asks it.

@@ -6,6 +6,9 @@ use crate::fault::Result;
 /// The deepest node: objects keep the path from their root, so that depth costs memory.
 pub(super) const DEPTH_MAX: usize = 256;
 
+/// Nodes in the paths of all objects together: a file of a few bytes a node could make [`DEPTH_MAX`] times as many.
+pub(super) const PATHS_MAX: usize = 16_000_000;
+
 /// The nodes as a forest.
 #[derive(Debug)]
 pub(super) struct Graph {

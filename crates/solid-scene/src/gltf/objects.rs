@@ -9,7 +9,7 @@ use solid3d::Shape;
 
 use super::animation::Animation;
 use super::document::Document;
-use super::graph::Graph;
+use super::graph::{Graph, PATHS_MAX};
 use super::local::Local;
 use super::mesh::{self, Geometry};
 use super::motion::{Deformation, GltfMotion, Moved};
@@ -47,6 +47,8 @@ struct Reader<'a> {
     /// The shapes of meshes that nothing deforms, and how many of their primitives are degenerate.
     shapes: HashMap<usize, (Shape, usize)>,
     objects: Vec<PartObject>,
+    /// Nodes in the paths of these.
+    in_paths: usize,
     motion: GltfMotion,
     warnings: Vec<String>,
 }
@@ -55,7 +57,17 @@ impl<'a> Reader<'a> {
     fn new(document: &'a Document, motion: GltfMotion, warnings: Vec<String>) -> Self {
         let worlds = motion.worlds(0.0);
         let (geometries, skins, shapes) = Default::default();
-        Reader { document, worlds, geometries, skins, shapes, objects: Vec::new(), motion, warnings }
+        Reader {
+            document,
+            worlds,
+            geometries,
+            skins,
+            shapes,
+            objects: Vec::new(),
+            in_paths: 0,
+            motion,
+            warnings,
+        }
     }
 
     /// Makes an object of a node that has a mesh.
@@ -77,6 +89,12 @@ impl<'a> Reader<'a> {
             self.warnings.push(format!("`{name}` is flat at time 0: its placement is singular"));
         }
         let path = self.motion.graph.path(index);
+        self.in_paths += path.len();
+        if self.in_paths > PATHS_MAX {
+            return Err(
+                format!("the paths from the roots to the objects have more than {PATHS_MAX} nodes").into()
+            );
+        }
         self.objects.push(PartObject { name, shape, path, degenerate });
         let deformation = changes.then_some(deformation);
         self.motion.objects.push(Moved { node: index, in_world: skinned, deformation });

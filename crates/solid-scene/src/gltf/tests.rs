@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use solid3d::ShapeKind;
 
-use super::graph::DEPTH_MAX;
+use super::graph::{DEPTH_MAX, PATHS_MAX};
 use super::parse;
 use crate::part::Part;
 use crate::pose::ObjectPose;
@@ -293,6 +293,21 @@ fn depth_has_a_limit() {
     assert_eq!(file.parse().unwrap().objects[0].path.len(), DEPTH_MAX);
     file.0["nodes"] = chain(DEPTH_MAX + 1);
     assert_eq!(file.refused(), "node 256 is deeper than 256 nodes");
+}
+
+/// A few bytes a node make no kilobyte of memory each without end.
+#[test]
+fn paths_have_a_limit() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    let leaves = PATHS_MAX / DEPTH_MAX + 1;
+    let chain = DEPTH_MAX - 2;
+    let below = |i: usize| json!({"children": [i + 1]});
+    let last = json!({"children": (chain + 1..=chain + leaves).collect::<Vec<_>>()});
+    let nodes = (0..chain).map(below).chain([last]).chain((0..leaves).map(|_| json!({"mesh": mesh})));
+    file.0["nodes"] = nodes.collect();
+    let message = format!("the paths from the roots to the objects have more than {PATHS_MAX} nodes");
+    assert_eq!(file.refused(), format!("node {}: {message}", chain + leaves));
 }
 
 #[test]

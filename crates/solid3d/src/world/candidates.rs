@@ -8,10 +8,11 @@ use glam::DVec3;
 
 use super::arena::slot_of;
 use super::findings::{FindingId, Findings};
+use super::lapsed::Lapsed;
 use super::near::{Near, Nearness};
 use super::pair_map::{PairMap, Place};
 use super::stirred::Staleness;
-use super::{Collision, Contact, ObjectId, World};
+use super::{Contact, ObjectId, World};
 use crate::broad::room::push;
 use crate::broad::{PairChange, PairId};
 use crate::threads::for_each_part;
@@ -70,7 +71,7 @@ pub(super) struct Candidates {
     /// How many matter.
     pub count: u64,
     /// The collisions of candidates that were forgotten since the last test.
-    lapsed: Vec<FindingId>,
+    pub lapsed: Lapsed,
     /// What the last search for near pairs said, as far as it holds; as long as that search needed.
     nearness: Vec<Nearness>,
 }
@@ -96,19 +97,8 @@ impl Candidates {
     pub fn end(&mut self, pair: PairId) {
         if let Some(candidate) = self.slots.remove(pair) {
             self.count -= u64::from(candidate.matters);
-            self.lapsed.extend(candidate.found);
+            candidate.found.into_iter().for_each(|found| self.lapsed.add(found));
         }
-    }
-
-    /// Takes the collisions out of the findings that have lapsed and are concerned.
-    pub fn take_lapsed(&mut self, findings: &mut Findings, is_concerned: impl Fn(&Collision) -> bool) {
-        self.lapsed.retain(|&found| {
-            let lapses = is_concerned(findings.collision(found));
-            if lapses {
-                findings.remove(found);
-            }
-            !lapses
-        });
     }
 
     /// Has a candidate examined by the next test.

@@ -9,6 +9,7 @@ mod collision;
 mod contacts;
 mod event;
 mod findings;
+mod lapsed;
 mod motion;
 mod near;
 mod object;
@@ -181,7 +182,7 @@ impl World {
         self.forget_responses(id, object.pair_responses);
         let Self { broad, candidates, findings, stirred, .. } = self;
         broad.for_each_pair_of(proxy(id), &mut |pair, _| candidates.end(pair));
-        candidates.take_lapsed(findings, |collision| collision.a == id || collision.b == id);
+        candidates.lapsed.take_of(id, findings);
         broad.remove(proxy(id));
         stirred.vacate(proxy(id));
         self.stale = true;

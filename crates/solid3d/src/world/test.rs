@@ -210,7 +210,7 @@ impl World {
     /// Examines the candidates about which something changed; gives how many.
     fn examine_changed(&mut self) -> u64 {
         self.refresh();
-        self.candidates.take_lapsed(&mut self.findings, |_| true);
+        self.candidates.lapsed.take_all(&mut self.findings);
         let before = self.statistics.examined;
         let mut places = std::mem::take(&mut self.to_examine);
         self.candidates.take_queue(&mut places);
