@@ -219,9 +219,9 @@ impl Simplex {
         // those of the others, and still its sign decides.
         let around = [[i, j, k], [j, k, i], [k, i, j]][self.nearest_of([i, j, k])];
         let [p, q, r] = around.map(|i| self.w(i));
-        match within_face([p, q, r]) {
+        match within_face([p, q, r], SLIVER_SINE_SQUARED) {
             Within::Face(v, weights) => return Feature { v, indices: around, weights, len: 3 },
-            Within::Outside => {}
+            Within::Beyond(_) => {}
             Within::Sliver => {
                 let weights = weights([p, q, r], 1.0, DVec3::ZERO);
                 if weights.iter().all(|&weight| weight > 0.0) {
@@ -331,19 +331,20 @@ pub(crate) fn within_edge([p, q]: [DVec3; 2]) -> Result<(DVec3, [f64; 2]), usize
 pub(crate) enum Within {
     /// Inside of it: the point, and the weights of the corners.
     Face(DVec3, [f64; 3]),
-    /// Not inside of it.
-    Outside,
+    /// Beyond the edge opposite this corner: of two such edges, the one that is further away, on which the closest point is if it is no corner.
+    Beyond(usize),
     /// Not known: the face is too thin for the usual means.
     Sliver,
 }
 
-/// The point of a face closest to the origin, to which its first corner should be the nearest.
+/// The point of a face closest to the origin, to which its first corner should be the nearest. It is a sliver if the squared sine of the angle there
+/// is at most this: the error of what is found is that of rounding over the sine.
 #[inline(always)]
-pub(crate) fn within_face([p, q, r]: [DVec3; 3]) -> Within {
+pub(crate) fn within_face([p, q, r]: [DVec3; 3], sliver_sine_squared: f64) -> Within {
     let (pq, pr) = (q - p, r - p);
     let n = pq.cross(pr);
     let n_squared = n.length_squared();
-    if n_squared <= SLIVER_SINE_SQUARED * pq.length_squared() * pr.length_squared() {
+    if n_squared <= sliver_sine_squared * pq.length_squared() * pr.length_squared() {
         return Within::Sliver;
     }
     // -p = y pq + z pr + an offset along n; all times n^2.
@@ -354,8 +355,32 @@ pub(crate) fn within_face([p, q, r]: [DVec3; 3]) -> Within {
         let inverse = 1.0 / n_squared;
         Within::Face(n * (n.dot(p) * inverse), [x * inverse, y * inverse, z * inverse])
     } else {
-        Within::Outside
+        Within::Beyond(least([
+            x * x.abs() / (r - q).length_squared(),
+            y * y.abs() / pr.length_squared(),
+            z * z.abs() / pq.length_squared(),
+        ]))
     }
+}
+
+/// The corner of a tetrahedron opposite the face that has the origin furthest outside, by on which side of each of its [`FACES`] it is: on that face the
+/// closest point is, if it is inside of one, since from no face's plane the origin is further away than from the tetrahedron.
+#[inline(always)]
+pub(crate) fn opposite_of_furthest([p, q, r, s]: [DVec3; 4], sides: [f64; 4]) -> usize {
+    let squares =
+        [(q, r, s), (p, r, s), (p, q, s), (p, q, r)].map(|(p, q, r)| (q - p).cross(r - p).length_squared());
+    let [pqs, qrs, rps, pqr] = sides.map(|side| side * side.abs());
+    least([qrs / squares[0], rps / squares[1], pqs / squares[2], pqr / squares[3]])
+}
+
+/// The index of the least number.
+#[inline(always)]
+fn least<const N: usize>(numbers: [f64; N]) -> usize {
+    let mut index = 0;
+    for k in 1..N {
+        index = if numbers[k] < numbers[index] { k } else { index };
+    }
+    index
 }
 
 /// On which side of each of the [`FACES`] of a tetrahedron the origin is, and the least magnitude of these and of the volume: for a
@@ -438,4 +463,47 @@ fn closest(features: impl Iterator<Item = Feature>) -> Option<Feature> {
 
 pub(crate) fn coord(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }
+}
+
+#[cfg(test)]
+mod tests {
+    use solid_oracle::generate::seeded;
+
+    use super::*;
+    use crate::testing::in_cube;
+
+    /// Law: what the closest point is said to be beyond has it, when it is inside of a face of a tetrahedron, or of an edge of a face.
+    #[test]
+    fn the_furthest_plane_has_the_closest_point() {
+        let mut rng = seeded(61);
+        let (mut on_faces, mut on_edges) = (0, 0);
+        for case in 0..4000 {
+            let corners = [(); 4].map(|()| in_cube(&mut rng) + 0.4 * DVec3::X);
+            let [p, q, r, s] = corners;
+            let (sides, _) = sides_of_origin(corners);
+            let inside = |corner: usize| {
+                let face = [[q, r, s], [p, r, s], [p, q, s], [p, q, r]][corner];
+                match within_face(face, 0.0) {
+                    Within::Face(v, _) => {
+                        corners.iter().all(|&w| v.dot(w) >= v.length_squared() * (1.0 - 1e-9))
+                    }
+                    _ => false,
+                }
+            };
+            if let Some(corner) = (0..4).find(|&corner| inside(corner)) {
+                assert_eq!(opposite_of_furthest(corners, sides), corner, "{case}: {corners:?}");
+                on_faces += 1;
+            }
+            if let Within::Beyond(corner) = within_face([p, q, r], 0.0) {
+                let nearest = [[q, r], [p, r], [p, q]].map(|edge| within_edge(edge).map(|(v, _)| v));
+                let inside = (0..3).find(|&i| {
+                    let others = [p, q, r];
+                    nearest[i].is_ok_and(|v| v.dot(others[i]) >= v.length_squared() * (1.0 - 1e-9))
+                });
+                assert!(inside.is_none_or(|inside| inside == corner), "{case}: {corners:?}");
+                on_edges += usize::from(inside.is_some());
+            }
+        }
+        assert!(on_faces > 400 && on_edges > 400, "{on_faces} and {on_edges} of 4000: not representative");
+    }
 }

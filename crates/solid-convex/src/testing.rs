@@ -1,6 +1,8 @@
 //! What the tests of several modules ask about.
 
 use glam::{DAffine3, DQuat, DVec3};
+use rand::Rng;
+use rand::rngs::StdRng;
 
 use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
 
@@ -22,4 +24,9 @@ pub fn placement(i: u32) -> DAffine3 {
         DQuat::from_xyzw(part(0.618) - 0.5, part(0.414) - 0.5, part(0.732) - 0.5, part(0.236) + 0.1);
     let translation = DVec3::new(part(0.7549), part(0.5698), part(0.3247)) * 1.6 - 0.8;
     DAffine3::from_rotation_translation(rotation.normalize(), translation)
+}
+
+/// A vector in the cube from -1 to 1.
+pub fn in_cube(rng: &mut StdRng) -> DVec3 {
+    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)))
 }

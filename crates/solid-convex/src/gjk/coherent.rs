@@ -8,7 +8,7 @@ use super::distance::{Answer, Measure, Measured, measure};
 use super::intersection::CACHED_GAP_MIN;
 use super::lean::{self, Lean, Search, Sure, Task};
 use super::pairs::{Pair, Pairs};
-use super::{Closest, ClosestInWorld, Witness, closest_points, same_feature};
+use super::{Closest, ClosestInWorld, Witness, closest_points, nearby_feature};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::simd::dispatch;
 use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
@@ -44,7 +44,7 @@ pub struct Coherent<'a, A: ?Sized, B: ?Sized> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Memory {
     /// An axis that separated the objects, from `B` to `A`; zero for none. Space: world.
-    axis: DVec3,
+    pub(super) axis: DVec3,
     /// For how long the last sure answer is.
     clock: Clock,
     /// Four whose tetrahedron of differences contained the origin, or up to three whose hull of differences had the point closest to it.
@@ -260,6 +260,7 @@ impl Memory {
     ///     assert!((found.distance - (right.translation.x - 1.0)).abs() < 1e-12);
     /// }
     /// ```
+    #[inline]
     pub fn quickly_closest(
         &mut self,
         a: &Polytope,
@@ -267,9 +268,33 @@ impl Memory {
         b: &Polytope,
         placement_b: &DAffine3,
     ) -> Option<ClosestInWorld> {
-        let pairs = &self.pairs;
-        let still = dispatch!(simd => same_feature::closest(simd, pairs, (a, placement_a), (b, placement_b)));
-        still.or_else(|| lean::run_in_world(a, placement_a, b, placement_b, Renew { memory: self }))
+        dispatch!(move simd => {
+            match nearby_feature::closest(simd, self, (a, placement_a), (b, placement_b)) {
+                None => self.search_closest(a, placement_a, b, placement_b),
+                found => found,
+            }
+        })
+    }
+
+    /// The same by a search, which is out of the way of the kernel.
+    #[cold]
+    #[inline(never)]
+    fn search_closest(
+        &mut self,
+        a: &Polytope,
+        placement_a: &DAffine3,
+        b: &Polytope,
+        placement_b: &DAffine3,
+    ) -> Option<ClosestInWorld> {
+        lean::run_in_world(a, placement_a, b, placement_b, Renew { memory: self })
+    }
+
+    /// The pairs, to be changed: what is known otherwise is forgotten.
+    #[inline(always)]
+    pub(super) fn pairs_to_change(&mut self) -> &mut Pairs {
+        self.clock.stop();
+        self.axis = DVec3::ZERO;
+        &mut self.pairs
     }
 
     /// The tetrahedron of the four kept pairs, when it still contains the origin: then no axis separates the objects.

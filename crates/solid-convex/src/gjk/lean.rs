@@ -18,7 +18,8 @@ use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportP
 use crate::polytope_difference::{PolytopeDifference, Scanned, in_world, is_plain};
 use crate::simd::{self, Level, dispatch};
 use crate::simplex::{
-    Simplex, VOLUME_ERROR, Within, sides_of_origin, weights_of_origin, within_edge, within_face,
+    SLIVER_SINE_SQUARED, Simplex, VOLUME_ERROR, Within, sides_of_origin, weights_of_origin, within_edge,
+    within_face,
 };
 use crate::{Polytope, Support};
 
@@ -107,13 +108,14 @@ impl Lean {
                 let i = if squares[1] < squares[0] { 1 } else { 0 };
                 let i = if squares[2] < squares[i] { 2 } else { i };
                 let [j, k] = [[1, 2], [2, 0], [0, 1]][i];
-                match within_face([self.points[i].w, self.points[j].w, self.points[k].w]) {
+                match within_face([self.points[i].w, self.points[j].w, self.points[k].w], SLIVER_SINE_SQUARED)
+                {
                     Within::Face(v, [x, y, z]) => {
                         let mut weights = [0.0; 3];
                         (weights[i], weights[j], weights[k]) = (x, y, z);
                         (v, weights)
                     }
-                    Within::Outside | Within::Sliver => return None,
+                    Within::Beyond(_) | Within::Sliver => return None,
                 }
             }
             _ => return None,

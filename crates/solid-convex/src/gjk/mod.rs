@@ -19,8 +19,8 @@ mod descent;
 mod distance;
 mod intersection;
 mod lean;
+mod nearby_feature;
 mod pairs;
-mod same_feature;
 #[cfg(test)]
 mod tests;
 

@@ -15,7 +15,7 @@ pub(super) struct Pair {
 /// Four points of an object by coordinate, for vector instructions. Space: local.
 pub(super) type Points = [[f64; 4]; 3];
 
-/// Up to four pairs; the points of those that are missing are zero.
+/// Up to four pairs; the points of those that are missing are finite.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pairs {
     pub a: Points,
@@ -50,8 +50,29 @@ impl Pairs {
     /// All four, also those that are missing.
     #[inline]
     pub fn all(&self) -> [Pair; 4] {
-        let point = |points: &Points, k: usize| DVec3::new(points[0][k], points[1][k], points[2][k]);
         [0, 1, 2, 3].map(|k| Pair { a: point(&self.a, k), b: point(&self.b, k) })
+    }
+
+    /// Sets how many there are.
+    #[inline(always)]
+    pub fn set_len(&mut self, len: usize) {
+        self.len = len as u8;
+    }
+}
+
+/// One of four points.
+#[inline(always)]
+pub(super) fn point(points: &Points, k: usize) -> DVec3 {
+    DVec3::new(points[0][k], points[1][k], points[2][k])
+}
+
+/// Sets one of four points. In whole vectors, so that reading them does not wait for parts.
+#[inline(always)]
+pub(super) fn put<S: Simd>(simd: S, points: &mut Points, k: usize, p: DVec3) {
+    let is_there = f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]).simd_eq(f64x4::splat(simd, k as f64));
+    for axis in 0..3 {
+        let row = f64x4::simd_from(simd, points[axis]);
+        is_there.select(f64x4::splat(simd, p[axis]), row).store_slice(&mut points[axis]);
     }
 }
 

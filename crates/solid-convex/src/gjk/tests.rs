@@ -13,7 +13,7 @@ use super::{
 };
 use crate::difference::Difference;
 use crate::simd;
-use crate::testing::{placement, shapes};
+use crate::testing::{in_cube, placement, shapes};
 use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
 
 #[test]
@@ -133,11 +133,6 @@ fn points_just_off_the_side_of_a_cone_are_separate() {
             assert!((distance - gap).abs() < 1e-14, "{k}: {distance:e}, not {gap:e}");
         }
     }
-}
-
-/// A vector in the cube from -1 to 1.
-fn in_cube(rng: &mut StdRng) -> DVec3 {
-    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)))
 }
 
 /// A shape of any kind, half of them flat or thin, down to a billionth.

@@ -70,12 +70,18 @@ impl PairCache {
 
     /// What [`distance`](super::distance) says, with the same error, but not always the same bits.
     pub fn distance(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<Distance> {
-        let Self { a, b, memory, scratch } = self;
-        if let (Some(of_a), Some(of_b)) = (a.polytope(), b.polytope())
-            && let Some(found) = memory.quickly_closest(of_a, placement_a, of_b, placement_b)
+        if let (Some(a), Some(b)) = (self.a.polytope(), self.b.polytope())
+            && let Some(found) = self.memory.quickly_closest(a, placement_a, b, placement_b)
         {
             return Ok(found.into());
         }
+        self.distance_at_length(placement_a, placement_b)
+    }
+
+    /// The same, where nothing was said yet.
+    #[inline(never)]
+    fn distance_at_length(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<Distance> {
+        let Self { a, b, memory, scratch } = self;
         let (on_a, on_b) =
             (Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b });
         if let Some(closest) = pair::quickly_closest(on_a, on_b) {

@@ -127,7 +127,7 @@ impl Polytope {
         along: [DVec3; 2],
     ) -> [DVec3; 2] {
         // Those that are mapped are many.
-        let [on_a, on_b] = if a.rows.are_few() && b.rows.are_few() {
+        let [on_a, on_b] = if Polytope::are_few([a, b]) {
             Rows::furthest_of_both(simd, [&a.rows, &b.rows], along)
         } else {
             [a.furthest_of_many(simd, along[0]), b.furthest_of_many(simd, along[1])]
@@ -135,15 +135,27 @@ impl Polytope {
         [a.point_at(on_a), b.point_at(on_b)]
     }
 
-    /// The products of those with their directions.
+    /// The products of those with their directions; and the points themselves, unless they [`are_few`](Polytope::are_few).
     #[inline(always)]
-    pub(crate) fn greatest_of_both<S: Simd>(simd: S, [a, b]: [&Polytope; 2], along: [DVec3; 2]) -> [f64; 2] {
-        if a.rows.are_few() && b.rows.are_few() {
+    pub(crate) fn greatest_of_both<S: Simd>(
+        simd: S,
+        [a, b]: [&Polytope; 2],
+        along: [DVec3; 2],
+        furthest: &mut [DVec3; 2],
+    ) -> [f64; 2] {
+        if Polytope::are_few([a, b]) {
             return Rows::greatest_of_both(simd, [&a.rows, &b.rows], along);
         }
         let on_a = a.point_at(a.furthest_of_many(simd, along[0]));
         let on_b = b.point_at(b.furthest_of_many(simd, along[1]));
+        *furthest = [on_a, on_b];
         [on_a.dot(along[0]), on_b.dot(along[1])]
+    }
+
+    /// Whether the points of both are so few that all products stay in registers.
+    #[inline(always)]
+    pub(crate) fn are_few([a, b]: [&Polytope; 2]) -> bool {
+        a.rows.are_few() && b.rows.are_few()
     }
 
     #[inline(always)]
