@@ -1,6 +1,6 @@
 //! Collisions of the last test whose pairs are no longer candidates.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::ObjectId;
 use super::findings::{FindingId, Findings};
@@ -14,7 +14,7 @@ pub(super) struct Lapsed {
     /// `None` for those that went with an object.
     findings: Vec<Option<FindingId>>,
     /// Of the first so many `findings`, where those of an object are.
-    of_object: HashMap<ObjectId, Vec<usize>>,
+    of_object: BTreeMap<ObjectId, Vec<usize>>,
     listed: usize,
 }
 
