@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use fearless_simd::Simd;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::gjk::Glance;
 use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_squares};
 use solid_convex::{Closest, Witness};
@@ -245,7 +245,9 @@ impl<'a> View<'a> {
         let center = if cuboid == 1 { -self.offset } else { self.offset };
         let stretch_squared = self.squares[cuboid];
         let half = half * stretch_squared;
-        let center = self.at[cuboid].matrix3.mul_transpose_vec3(center);
+        let DMat3 { x_axis, y_axis, z_axis } = self.at[cuboid].matrix3;
+        // Of the matrix, transposed; glam's product is not always inlined, and is then called without vectors.
+        let center = DVec3::new(x_axis.dot(center), y_axis.dot(center), z_axis.dot(center));
         CenterAndBox { center, on_box: center.clamp(-half, half), stretch_squared }
     }
 }
