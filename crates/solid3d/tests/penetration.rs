@@ -81,7 +81,8 @@ impl Tally {
         }
     }
 
-    fn finish(self, what: &str, hits: std::ops::RangeInclusive<usize>) {
+    /// `certain_min`: of so many percent of the pairs that meet the oracle must be certain.
+    fn finish(self, what: &str, hits: std::ops::RangeInclusive<usize>, certain_min: usize) {
         println!("{what}: {self:?}");
         let Tally { tested, hits: hit, judged, wide, worst, .. } = self;
         let certain = tested - hit + judged;
@@ -90,7 +91,7 @@ impl Tally {
             "{what}: {judged} of {certain} is not representative"
         );
         assert!(
-            judged * 4 >= hit * 3,
+            judged * 100 >= hit * certain_min,
             "{what}: the oracle must be certain of most, not of {judged} of {hit}"
         );
         assert!(worst <= 1.0, "{what}: {worst} times the stated error");
@@ -150,7 +151,9 @@ fn run_from(seed: u64, regime: Regime, hits: std::ops::RangeInclusive<usize>) {
     each_pair(regime, seed, PAIRS, |_, pair, shapes, context| {
         tally.judge(pair, shapes, &format!("{context}: {pair:?}"));
     });
-    tally.finish(&format!("{regime:?}, seed {seed}"), hits);
+    // Of slivers it is certain of 79.7 percent with some seeds.
+    let certain_min = if regime == Regime::Sliver { 75 } else { 80 };
+    tally.finish(&format!("{regime:?}, seed {seed}"), hits, certain_min);
 }
 
 #[test]
@@ -208,7 +211,7 @@ fn needles_along_each_other() {
             let shapes = [&pair.a, &pair.b].map(|shape| common::try_shape_of(shape).unwrap());
             tally.judge(&pair, shapes.each_ref(), &format!("needles of {thickness}, {i}: {pair:?}"));
         }
-        tally.finish(&format!("needles of {thickness:e}"), 30..=75);
+        tally.finish(&format!("needles of {thickness:e}"), 30..=75, 80);
     }
 }
 
