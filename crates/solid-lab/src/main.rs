@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use solid_lab::document;
 use solid_lab::experiments::{self, Experiment, Report, Settings};
@@ -41,6 +42,9 @@ enum Command {
     Peers {
         #[command(flatten)]
         measuring: Measuring,
+        /// Groups of cases; all if none is named
+        #[arg(value_name = "GROUP", value_parser = PossibleValuesParser::new(peers::groups()))]
+        only: Vec<String>,
         /// Write the rows as JSON
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
@@ -87,14 +91,14 @@ fn main() -> Result<()> {
             run(&name, &Settings { effort, seed: measuring.seed, out_dir: out }, docs.as_deref())?;
             if name == "all" {
                 let chart = docs.as_ref().map(|docs| docs.join("peers.svg"));
-                compare(measuring, None, chart.as_deref(), docs.as_deref())?;
+                compare(measuring, &[], None, chart.as_deref(), docs.as_deref())?;
                 one_and_two(measuring, docs.as_deref())?;
             }
             Ok(())
         }
-        Command::Peers { measuring, json, chart } => {
+        Command::Peers { measuring, only, json, chart } => {
             threads::stay_on_one()?;
-            compare(measuring, json.as_deref(), chart.as_deref(), None)
+            compare(measuring, &only, json.as_deref(), chart.as_deref(), None)
         }
         Command::Threads { measuring, docs } => one_and_two(measuring, docs.as_deref()),
     }
@@ -143,13 +147,14 @@ fn differences(report: &Report) -> usize {
 
 fn compare(
     measuring: Measuring,
+    only: &[String],
     json: Option<&Path>,
     chart: Option<&Path>,
     docs: Option<&Path>,
 ) -> Result<()> {
     eprintln!("seed {}", measuring.seed);
     let start = Instant::now();
-    let report = peers::run(effort(measuring), measuring.seed, |name| {
+    let report = peers::run(effort(measuring), measuring.seed, only, |name| {
         eprintln!("{:5.1} s: {name}", start.elapsed().as_secs_f64());
     });
     println!("{}", peers::table(&report));

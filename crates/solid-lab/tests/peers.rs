@@ -7,7 +7,7 @@ use solid_lab::peers::{Effort, Kind, Peer, TARGETS, draw, run, shortfalls, table
 #[test]
 fn every_case_runs_and_every_target_has_its_row() {
     println!("seed {SEED}");
-    let report = run(Effort::Smoke, SEED, |_| {});
+    let report = run(Effort::Smoke, SEED, &[], |_| {});
 
     for row in &report.rows {
         let figures = [row.ours, row.theirs].into_iter().flatten();

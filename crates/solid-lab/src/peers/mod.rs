@@ -30,10 +30,17 @@ pub use spread::Spread;
 pub use table::{shortfalls, table};
 pub use targets::{TARGETS, Target};
 
-/// Measures everything. `progress` is told the name of each group of cases before its turn.
-pub fn run(effort: Effort, seed: u64, mut progress: impl FnMut(&str)) -> Report {
+/// The names of the groups of cases.
+pub fn groups() -> impl Iterator<Item = &'static str> {
+    cases::ALL.iter().map(|&(name, _)| name)
+}
+
+/// Measures the cases of some [`groups`], of all if none is named. `progress` is told the name of each group before its turn.
+pub fn run(effort: Effort, seed: u64, only: &[String], mut progress: impl FnMut(&str)) -> Report {
     let mut bench = Bench::new(effort, seed);
-    for (name, case) in cases::ALL {
+    for (name, case) in
+        cases::ALL.iter().filter(|(name, _)| only.is_empty() || only.iter().any(|o| o == name))
+    {
         progress(name);
         case(&mut bench);
     }

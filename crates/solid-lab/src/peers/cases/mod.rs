@@ -18,13 +18,13 @@ type Case = fn(&mut Bench);
 
 /// All of them, with their names.
 pub const ALL: [(&str, Case); 8] = [
-    ("convex pairs", convex::measure),
-    ("primitive pairs", primitives::measure),
-    ("mesh pairs", meshes::measure),
-    ("meshes and convex shapes", mesh_convex::measure),
+    ("convex-pairs", convex::measure),
+    ("primitive-pairs", primitives::measure),
+    ("mesh-pairs", meshes::measure),
+    ("mesh-and-convex", mesh_convex::measure),
     ("rays", rays::measure),
-    ("build, refit, memory", lifecycle::measure),
-    ("broad phase", broad::measure),
+    ("build-refit-memory", lifecycle::measure),
+    ("broad-phase", broad::measure),
     ("simulation", simulation::measure),
 ];
 
