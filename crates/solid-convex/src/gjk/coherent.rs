@@ -1,5 +1,6 @@
 //! The same two objects, asked again and again: frame coherence.
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 
 use super::clock::Clock;
@@ -269,17 +270,31 @@ impl Memory {
         placement_b: &DAffine3,
     ) -> Option<ClosestInWorld> {
         dispatch!(move simd => {
-            match nearby_feature::closest(simd, self, (a, placement_a), (b, placement_b)) {
+            match self.nearby_closest(simd, (a, placement_a), (b, placement_b)) {
                 None => self.search_closest(a, placement_a, b, placement_b),
                 found => found,
             }
         })
     }
 
+    /// What [`quickly_closest`](Memory::quickly_closest) finds near to what was found last, as a part of a kernel; else `None`, and
+    /// [`search_closest`](Memory::search_closest) is to be asked.
+    #[inline(always)]
+    #[doc(hidden)]
+    pub fn nearby_closest<S: Simd>(
+        &mut self,
+        simd: S,
+        a: (&Polytope, &DAffine3),
+        b: (&Polytope, &DAffine3),
+    ) -> Option<ClosestInWorld> {
+        nearby_feature::closest(simd, self, a, b)
+    }
+
     /// The same by a search, which is out of the way of the kernel.
     #[cold]
     #[inline(never)]
-    fn search_closest(
+    #[doc(hidden)]
+    pub fn search_closest(
         &mut self,
         a: &Polytope,
         placement_a: &DAffine3,

@@ -70,18 +70,26 @@ impl PairCache {
 
     /// What [`distance`](super::distance) says, with the same error, but not always the same bits.
     pub fn distance(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<Distance> {
-        if let (Some(a), Some(b)) = (self.a.polytope(), self.b.polytope())
-            && let Some(found) = self.memory.quickly_closest(a, placement_a, b, placement_b)
-        {
-            return Ok(found.into());
-        }
-        self.distance_at_length(placement_a, placement_b)
+        dispatch!(move simd => {
+            // Written once, where the caller has it: what is copied by wider words than it was written in is waited for.
+            if let (Some(a), Some(b)) = (self.a.polytope(), self.b.polytope())
+                && let Some(found) = self.memory.nearby_closest(simd, (a, placement_a), (b, placement_b))
+            {
+                return Ok(found.into());
+            }
+            self.distance_at_length(placement_a, placement_b)
+        })
     }
 
-    /// The same, where nothing was said yet.
+    /// The same, where the last answer does not lead to the next.
     #[inline(never)]
     fn distance_at_length(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<Distance> {
         let Self { a, b, memory, scratch } = self;
+        if let (Some(a), Some(b)) = (a.polytope(), b.polytope())
+            && let Some(found) = memory.search_closest(a, placement_a, b, placement_b)
+        {
+            return Ok(found.into());
+        }
         let (on_a, on_b) =
             (Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b });
         if let Some(closest) = pair::quickly_closest(on_a, on_b) {
