@@ -111,7 +111,7 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
     /// The point of the difference that a point of each object makes.
     #[inline(always)]
     pub fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
-        SupportPoint { w: self.linear_a * a - (self.linear_b * b + self.offset), a, b }
+        SupportPoint { w: (self.linear_a * a - self.linear_b * b) - self.offset, a, b }
     }
 
     /// `y.w - x.w`, from the differences of the local points: the error is relative to the edge, not to the positions.

@@ -136,8 +136,8 @@ impl<S: Simd> MinkowskiDifference for PolytopeDifference<'_, S> {
     #[inline(always)]
     fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
         let (simd, [linear_a, linear_b]) = (self.simd, &self.linear);
-        let at_b = combination(simd, &linear_b.columns, b) + self.offset;
-        SupportPoint { w: point(combination(simd, &linear_a.columns, a) - at_b), a, b }
+        let between = combination(simd, &linear_a.columns, a) - combination(simd, &linear_b.columns, b);
+        SupportPoint { w: point(between - self.offset), a, b }
     }
 
     #[inline(always)]
