@@ -23,6 +23,11 @@ impl<'a, S: Support + ?Sized> Core<'a, S> {
         Core { object, scale: if rounded { similarity(&placement.matrix3) } else { None } }
     }
 
+    /// What it is the core of.
+    pub fn object(&self) -> &'a S {
+        self.object
+    }
+
     /// World units.
     pub fn radius(&self) -> f64 {
         self.scale.map_or(0.0, |scale| scale * self.object.core_radius())

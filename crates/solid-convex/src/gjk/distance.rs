@@ -2,10 +2,10 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::Witness;
 use super::descent::{Descent, End, Goal, descend_robustly};
 use super::lean::{self, Lean, Search, Sure, Task};
 use super::pairs::Pair;
+use super::{TOUCHING_ERROR, Witness, intersects};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::rounded::Core;
 use crate::{Polytope, Support};
@@ -340,5 +340,14 @@ where
         points.on_a -= part * core_a.to_surface(placement_a, axis);
         points.on_b += part * core_b.to_surface(placement_b, axis);
     }
-    Some(Closest { distance: (between - radii).max(0.0), points })
+    let mut distance = (between - radii).max(0.0);
+    let size_max = 2.0 / Difference::new(core_a, placement_a, core_b, placement_b).scale();
+    // What rounding leaves of a gap between surfaces that touch is none.
+    if distance > 0.0
+        && distance <= TOUCHING_ERROR * size_max
+        && intersects(core_a.object(), placement_a, core_b.object(), placement_b)
+    {
+        distance = 0.0;
+    }
+    Some(Closest { distance, points })
 }

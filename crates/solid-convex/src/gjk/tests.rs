@@ -41,9 +41,10 @@ fn swapping_negates_the_axis() {
     assert!((375..875).contains(&separated), "{separated} of 1250: not representative");
 }
 
-/// Also where they just touch: from a place where they meet to one where they do not, bit by bit.
+/// Where objects just touch, from a place where they meet to one where they do not, bit by bit: swapping them changes no outcome, and of those
+/// that meet the distance is 0.
 #[test]
-fn swapping_changes_no_outcome_where_they_touch() {
+fn touching_is_the_same_either_way_round_and_for_distances() {
     let all = shapes();
     let (mut cases, mut hits) = (0, 0);
     for (i, a) in all.iter().enumerate() {
@@ -67,6 +68,8 @@ fn swapping_changes_no_outcome_where_they_touch() {
                         (intersection(&**a, &at_a, &**b, &at_b), intersection(&**b, &at_b, &**a, &at_a));
                     let apart = |outcome: &Outcome| outcome.witness().is_none();
                     assert_eq!(apart(&outcome), apart(&swapped), "{i} {j} {k}: {outcome:?}, {swapped:?}");
+                    let distance = closest_points(&**a, &at_a, &**b, &at_b).distance;
+                    assert!(apart(&outcome) || distance == 0.0, "{i} {j} {k}: {outcome:?}, {distance:e}");
                     cases += 1;
                     hits += usize::from(!apart(&outcome));
                 }

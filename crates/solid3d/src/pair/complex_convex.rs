@@ -331,7 +331,12 @@ pub(super) fn closest_within(
     };
     complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut best, traversal, &mut approach);
     let (primitive, closest) = approach.answer?;
-    let closest = closest.unwrap_or_else(|| closest_to(complex, primitive, convex));
+    let mut closest = closest.unwrap_or_else(|| closest_to(complex, primitive, convex));
+    // Of primitives as near as each other, another may be the one that touches.
+    let may_touch = closest.distance > 0.0 && closest.distance * frame.scale <= 2.0 * gjk::TOUCHING_ERROR;
+    if may_touch && intersects(complex, convex, scratch) {
+        closest.distance = 0.0;
+    }
     (closest.distance <= bound).then_some(closest)
 }
 

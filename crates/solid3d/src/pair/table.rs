@@ -139,10 +139,28 @@ pub(crate) fn axis(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<DVec3>
     }
     const ROW: Row<Option<DVec3>> = Row {
         convex_convex: convex_convex::axis,
-        complex_convex: |a, b, scratch| convex_convex::axis((&a.0.hull(), a.1), b, scratch),
-        complex_complex: |a, b, scratch| convex_convex::axis((&a.0.hull(), a.1), (&b.0.hull(), b.1), scratch),
+        complex_convex: |a, b, scratch| {
+            axis_of_hulls((&a.0.hull(), a.1), b, scratch, |scratch| complex_convex::intersects(a, b, scratch))
+        },
+        complex_complex: |a, b, scratch| {
+            let hulls = [a.0.hull(), b.0.hull()];
+            axis_of_hulls((&hulls[0], a.1), (&hulls[1], b.1), scratch, |scratch| {
+                complex_complex::intersects(a, b, scratch)
+            })
+        },
     };
     ROW.apply(a, b, scratch)
+}
+
+/// A separating axis of convex hulls, unless what they are hulls of is so near that it counts as touching.
+fn axis_of_hulls(
+    a: PlacedConvex,
+    b: PlacedConvex,
+    scratch: &mut Scratch,
+    intersect: impl FnOnce(&mut Scratch) -> bool,
+) -> Option<DVec3> {
+    let axis = convex_convex::axis(a, b, scratch)?;
+    (gjk::separates(axis, a.0, a.1, b.0, b.1) || !intersect(scratch)).then_some(axis)
 }
 
 /// How deep they are in each other.
