@@ -20,11 +20,12 @@ use solid3d::{Error, Shape, ShapeKind, glam};
 const PASSES: RayOptions = RayOptions { faces: Faces::Both, from_inside: FromInside::Passes };
 const BY_DEFAULT: RayOptions = RayOptions { faces: Faces::Both, from_inside: FromInside::Hits };
 
-/// A shape of about unit size.
+/// A shape of about unit size; some hulls are flat.
 fn some_shape(rng: &mut StdRng, case: u32) -> Shape {
     match case % 4 {
         0 => random_mesh(rng, 60).shape(),
         1 => random_complex(rng, 60).shape(),
+        2 if case % 8 == 2 => Shape::convex_hull(&[(); 3].map(|()| in_cube(rng))).unwrap(),
         _ => shape_of(&random_shape(rng, 1.0)),
     }
 }

@@ -64,8 +64,9 @@ fn report(hits: &mut Hits, primitive: u32, enter: Option<End>, leave: impl FnOnc
         end.is_some()
     };
     let entered = add(hits, enter, false);
-    // A ray leaves later than it enters.
+    // A ray leaves later than it enters, also what is so thin that rounding would turn that round.
     if faces != Faces::Front && hits.until >= 0.0 && (!entered || hits.wanted == Wanted::All) {
-        add(hits, leave(), true);
+        let least = enter.map_or(f64::NEG_INFINITY, |(t, _)| t);
+        add(hits, leave().map(|(t, normal)| (t.max(least), normal)), true);
     }
 }
