@@ -34,8 +34,8 @@ fn shape(rng: &mut StdRng) -> Shape {
     }
 }
 
-/// Two shapes that intersect have no distance, however they are asked, nor an axis that separates them; and two of which neither has facets of
-/// its own intersect either way round.
+/// Two shapes that intersect have no distance, however they are asked, nor an axis that separates them; and convex shapes intersect either way
+/// round.
 #[test]
 fn shapes_that_touch_have_no_distance_and_no_axis() {
     let mut rng = seeded(71);

@@ -6,8 +6,9 @@
 //!
 //! **How exact.** Relative to the size of the data (the sum of the two shapes' extents and of the distance between
 //! their local origins), answers are right beyond 1e-12, at any size: scaling everything by a power of two changes no
-//! answer. Within it, shapes may count as touching, and touching shapes intersect; [`distance`] may then be 0 for shapes
-//! that [`intersects`] keeps apart. See
+//! answer. Within it, shapes may count as touching, and touching shapes intersect. Of shapes for which [`intersects`] is true the
+//! [`distance`] is 0, always; it may also be 0 for some that it keeps apart. Which of two convex shapes is the first changes no
+//! answer; of meshes it may, where they touch up to the rounding of positions. See
 //! [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR).
 
 mod cast;
