@@ -8,6 +8,8 @@
 //! AVX-512 machines run the AVX2 code: eight lanes are what the trees have, and arg-max over vertices is no faster with
 //! sixteen. SSE2 alone runs the scalar code, which the compiler vectorises by itself. Each further copy of the kernels would
 //! cost seconds of everybody's build.
+//!
+//! [`prefetch`], which asks for memory ahead, is no vector, but as much of the machine: the one `unsafe` here.
 
 use std::any::TypeId;
 use std::sync::OnceLock;
@@ -112,6 +114,35 @@ pub(crate) fn is_scalar<S: fearless_simd::Simd>() -> bool {
 pub fn vectorize<R>(wide: Wide, kernel: impl FnOnce() -> R) -> R {
     fearless_simd::Simd::vectorize(wide, kernel)
 }
+
+/// Asks for the memory of something to which a walk may soon come, where the architecture has an instruction for that: it is then on its
+/// way, while else one place is waited for after the other. It changes no answer.
+#[inline(always)]
+#[doc(hidden)]
+pub fn prefetch<T: ?Sized>(value: &T) {
+    /// What memory comes by, in bytes.
+    const LINE: usize = 64;
+    let first = std::ptr::from_ref(value).cast::<i8>();
+    for offset in (0..size_of_val(value)).step_by(LINE) {
+        prefetch_line(first.wrapping_add(offset));
+    }
+}
+
+#[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse", not(miri)))]
+#[expect(unsafe_code, reason = "there is no safe way to this instruction")]
+#[inline(always)]
+fn prefetch_line(address: *const i8) {
+    #[cfg(target_arch = "x86")]
+    use std::arch::x86::{_MM_HINT_T0, _mm_prefetch};
+    #[cfg(target_arch = "x86_64")]
+    use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+    // SAFETY: the machine has the instruction, for which this is compiled; it gives nothing, and faults on no address.
+    unsafe { _mm_prefetch::<_MM_HINT_T0>(address) }
+}
+
+#[cfg(not(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse", not(miri))))]
+#[inline(always)]
+fn prefetch_line(_: *const i8) {}
 
 static LEVEL: OnceLock<Level> = OnceLock::new();
 

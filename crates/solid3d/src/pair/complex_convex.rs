@@ -219,6 +219,13 @@ struct Meeting<'s> {
 
 impl NearLeaves for Meeting<'_> {
     #[inline(always)]
+    fn prefetch(&self, leaf: &Leaf) {
+        if let Some((_, images)) = &self.glance {
+            images.prefetch(leaf);
+        }
+    }
+
+    #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, limit: &mut f64) {
         self.end = self.glance(simd, leaf).unwrap_or_else(
             #[inline(always)]
@@ -366,6 +373,13 @@ struct Approach<'s> {
 }
 
 impl NearLeaves for Approach<'_> {
+    #[inline(always)]
+    fn prefetch(&self, leaf: &Leaf) {
+        if let Some(images) = self.images {
+            images.prefetch(leaf);
+        }
+    }
+
     #[inline(always)]
     fn raise<S: Simd>(&self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
         if let Some(gaps) = self.gaps.as_ref().filter(|_| !matches!(self.direct, Direct::Round(_))) {

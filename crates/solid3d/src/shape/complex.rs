@@ -187,8 +187,8 @@ impl Complex {
     pub fn images(&self) -> Option<&LeafImages> {
         let found = self.images.get_or_init(|| {
             let triangles = self.triangles()?;
-            let corners = |primitive: u32| triangles[primitive as usize].map(|i| self.vertices[i as usize]);
-            Some(Arc::new(LeafImages::new(&self.tree, corners)))
+            let triangle = |primitive: u32| triangles[primitive as usize];
+            Some(Arc::new(LeafImages::new(&self.tree, &self.vertices, triangle)))
         });
         found.as_deref()
     }

@@ -3,7 +3,8 @@
 //! To go from the order of the tree to a triangle, and from there to its corners, waits for memory three times; here the
 //! triangles of a leaf stand beside each other, in lanes, each corner in one word. Its coordinates are whole numbers from 0 to
 //! [`STEPS`], those of a grid over the box of the leaf, which is known when the leaf is visited: 12 bytes a triangle. What is told from an
-//! image must hold for all triangles that have it; what cannot be told, the triangles themselves tell.
+//! image must hold for all triangles that have it; what cannot be told, the triangles themselves tell. The indices of their corners stand
+//! right behind, for as many bytes again, so that one wait is left.
 //!
 //! # The error
 //!
@@ -18,6 +19,7 @@ use std::ops::Range;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, i32x8, u32x8};
 use glam::DVec3;
+use solid_convex::simd;
 
 #[cfg(test)]
 use super::nearest::Boxes;
@@ -36,11 +38,14 @@ const AXIS_BITS: u32 = 10;
 /// Corners of a triangle.
 const CORNERS: usize = 3;
 
+/// What stands for a triangle: the words of its corners, and their indices.
+const WORDS: usize = 2 * CORNERS;
+
 /// The images of the leaves of a tree over triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LeafImages {
-    /// Those of a leaf that begins at `start` in the order begin at `CORNERS * start`: all first corners, all second ones, all
-    /// third ones. At the end is room for a vector that begins at the last.
+    /// Those of a leaf that begins at `start` in the order begin at `WORDS * start`: all first corners, all second ones, all
+    /// third ones; then the indices of each triangle. At the end is room for a vector that begins at the last.
     words: Vec<u32>,
 }
 
@@ -69,16 +74,19 @@ pub(crate) struct Image<'t> {
 pub(crate) struct ImageCorner<S: Simd>(u32x8<S>);
 
 impl LeafImages {
-    /// Of a tree, given the corners of its primitives, around which its boxes are. Cost: `O(n)`.
-    pub fn new(tree: &Tree, triangle: impl Fn(u32) -> [DVec3; CORNERS]) -> Self {
-        let mut words = vec![0; CORNERS * tree.len() + LEAF_SIZE - 1];
+    /// Of a tree, given the corners of its primitives by their indices, around which its boxes are. Cost: `O(n)`.
+    pub fn new(tree: &Tree, vertices: &[DVec3], triangle: impl Fn(u32) -> [u32; CORNERS]) -> Self {
+        let mut words = vec![0; WORDS * tree.len() + LEAF_SIZE - 1];
         for leaf in tree.leaves() {
             let grid = Grid::new(&tree.normal, &leaf);
-            let columns = &mut words[CORNERS * leaf.start..];
+            let count = leaf.primitives.len();
+            let (columns, indices) = words[WORDS * leaf.start..].split_at_mut(CORNERS * count);
             for (lane, &primitive) in leaf.primitives.iter().enumerate() {
-                for (corner, point) in triangle(primitive).into_iter().enumerate() {
-                    columns[corner * leaf.primitives.len() + lane] = grid.nearest(point);
+                let corners = triangle(primitive);
+                for (corner, index) in corners.into_iter().enumerate() {
+                    columns[corner * count + lane] = grid.nearest(vertices[index as usize]);
                 }
+                indices[CORNERS * lane..][..CORNERS].copy_from_slice(&corners);
             }
         }
         LeafImages { words }
@@ -87,7 +95,13 @@ impl LeafImages {
     /// The image of a leaf of their tree.
     #[inline(always)]
     pub fn of<'t>(&'t self, leaf: &Leaf<'t>) -> Image<'t> {
-        Image { leaf: *leaf, words: &self.words[CORNERS * leaf.start..] }
+        Image { leaf: *leaf, words: &self.words[WORDS * leaf.start..] }
+    }
+
+    /// Asks for the memory of the image of a leaf, which may soon be looked at.
+    #[inline(always)]
+    pub fn prefetch(&self, leaf: &Leaf) {
+        simd::prefetch(&self.words[WORDS * leaf.start..][..WORDS * leaf.primitives.len()]);
     }
 
     /// The memory that they own, in bytes.
@@ -161,6 +175,13 @@ impl Image<'_> {
         (min, (max - min) * (1.0 / f64::from(STEPS)))
     }
 
+    /// The indices of the corners of the triangle in a lane.
+    #[inline(always)]
+    pub fn indices(&self, lane: usize) -> [u32; CORNERS] {
+        let from = CORNERS * (self.leaf.primitives.len() + lane);
+        *self.words[from..].first_chunk().expect("a leaf has all words of its triangles")
+    }
+
     /// The images of one corner of all triangles.
     #[inline(always)]
     pub fn corner<S: Simd>(&self, simd: S, corner: usize) -> ImageCorner<S> {
@@ -195,6 +216,9 @@ mod tests {
         let mut found = Vec::new();
         for leaf in tree.leaves() {
             let image = images.of(&leaf);
+            for (lane, &i) in leaf.primitives.iter().enumerate() {
+                assert_eq!(image.indices(lane), [3 * i, 3 * i + 1, 3 * i + 2]);
+            }
             let mut all = levels().map(|level| {
                 let mut steps = [[[0.0f32; 8]; 3]; 3];
                 dispatch!(level, simd => {
@@ -245,7 +269,7 @@ mod tests {
                 .collect();
             let boxes: Vec<Aabb> = triangles.iter().map(|corners| Aabb::of_points(*corners)).collect();
             let tree = Tree::build(&boxes);
-            let images = LeafImages::new(&tree, |primitive| triangles[primitive as usize]);
+            let images = LeafImages::new(&tree, triangles.as_flattened(), |i| [3 * i, 3 * i + 1, 3 * i + 2]);
             let found = images_of(&tree, &images);
             assert_eq!(found.len(), count);
             for (primitive, corners, grid) in found {

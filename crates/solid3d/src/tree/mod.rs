@@ -90,9 +90,10 @@ pub(crate) use slabs::{Facing, Slabs};
 pub use traversal::{Counters, Traversal};
 
 use crate::Aabb;
-use node::{Child, Node};
+use node::{Child, Kind, Node};
 pub(crate) use normal::Normal;
 use packed::PackedBox;
+use solid_convex::simd;
 
 /// A hierarchy of bounding boxes over primitives `0..n`.
 ///
@@ -202,6 +203,16 @@ impl Tree {
         match place.split() {
             None => Child::inner(0),
             Some((node, lane)) => self.nodes[node].child[lane],
+        }
+    }
+
+    /// Asks for the memory of a child at a place, to which a walk may soon come: of a node; of a leaf `of_leaf` does so.
+    #[inline(always)]
+    fn prefetch(&self, (child, place): (Child, Place), of_leaf: impl FnOnce(&Leaf)) {
+        match child.kind() {
+            Kind::Empty => {}
+            Kind::Inner(node) => simd::prefetch(&self.nodes[node]),
+            Kind::Leaf(range) => of_leaf(&self.leaf_at(place, range)),
         }
     }
 

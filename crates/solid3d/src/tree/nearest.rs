@@ -36,6 +36,10 @@ pub(crate) trait NearLeaves {
     #[inline(always)]
     fn raise<S: Simd>(&self, _simd: S, _boxes: &Boxes, _bounds: &mut [f64; WIDTH]) {}
 
+    /// Asks for the memory of a leaf that the walk may come to.
+    #[inline(always)]
+    fn prefetch(&self, _leaf: &Leaf) {}
+
     /// Called with the leaves that may hold something nearer than `best`; lowers it.
     fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, best: &mut f64);
 }
@@ -160,6 +164,11 @@ impl Tree {
                     }
                     let from = stack.len();
                     for lane in bits(near) {
+                        self.prefetch(
+                            (node.child[lane], Place::lane(index, lane)),
+                            #[inline(always)]
+                            |leaf| visitor.prefetch(leaf),
+                        );
                         push_unless_far(entry(lane), *best, stack, from);
                     }
                 }

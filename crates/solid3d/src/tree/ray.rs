@@ -27,6 +27,10 @@ use crate::Aabb;
 
 /// What is done with the leaves along a ray, in vectors of the level of instructions that the walk runs on.
 pub(crate) trait RayLeaves {
+    /// Asks for the memory of a leaf that the walk may come to.
+    #[inline(always)]
+    fn prefetch(&self, _leaf: &Leaf) {}
+
     /// Called with the leaves that the ray may meet up to `until`; lowers it.
     fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, until: &mut f64);
 }
@@ -239,7 +243,13 @@ impl Tree {
                     }
                     let from = stack.len();
                     for lane in bits(hits) {
-                        push_unless_far(entry(lane), f32::INFINITY, stack, from);
+                        let next = entry(lane);
+                        self.prefetch(
+                            next.1,
+                            #[inline(always)]
+                            |leaf| visitor.prefetch(leaf),
+                        );
+                        push_unless_far(next, f32::INFINITY, stack, from);
                     }
                 }
             }

@@ -55,19 +55,26 @@ struct Meeting<'s, 'r> {
 
 impl RayLeaves for Meeting<'_, '_> {
     #[inline(always)]
+    fn prefetch(&self, leaf: &Leaf) {
+        if let Some((_, images)) = &self.images {
+            images.prefetch(leaf);
+        }
+    }
+
+    #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, left: &mut f64) {
         let Meeting { complex, at, ray, images, hits, primitive_tests } = self;
         **primitive_tests += leaf.primitives.len() as u64;
         match (images, complex.triangles()) {
-            (Some((glance, images)), Some(triangles)) => {
-                for lane in bits(glance.candidates(simd, &images.of(leaf)) & leaf.lanes()) {
-                    let primitive = leaf.primitives[lane];
-                    let triangle = triangles[primitive as usize].map(|i| complex.vertices()[i as usize]);
-                    ray.meet(&triangle, primitive, hits);
+            (Some((glance, images)), _) => {
+                let image = images.of(leaf);
+                for lane in bits(glance.candidates(simd, &image) & leaf.lanes()) {
+                    let triangle = image.indices(lane).map(|i| complex.vertices()[i as usize]);
+                    ray.meet(&triangle, leaf.primitives[lane], hits);
                 }
             }
-            (_, Some(triangles)) => ray.meet_leaf(complex.vertices(), triangles, leaf.primitives, hits),
-            (_, None) => {
+            (None, Some(triangles)) => ray.meet_leaf(complex.vertices(), triangles, leaf.primitives, hits),
+            (None, None) => {
                 for &primitive in leaf.primitives {
                     ray.meet_primitive((complex, at), primitive, hits);
                 }

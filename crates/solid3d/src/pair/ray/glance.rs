@@ -166,7 +166,7 @@ mod tests {
             triangles.iter_mut().flatten().for_each(|corner| *corner = (*corner + far) * size);
             let boxes: Vec<Aabb> = triangles.iter().map(|corners| Aabb::of_points(*corners)).collect();
             let tree = Tree::build(&boxes);
-            let images = LeafImages::new(&tree, |primitive| triangles[primitive as usize]);
+            let images = LeafImages::new(&tree, triangles.as_flattened(), |i| [3 * i, 3 * i + 1, 3 * i + 2]);
             // At a corner, at an edge, or just beside; at a point inside, or in the box.
             let aimed = triangles[rng.random_range(0..count)];
             let [a, b, c] = aimed;
