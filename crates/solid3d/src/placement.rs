@@ -34,31 +34,34 @@ fn checked_at_length(placement: &DAffine3) -> Result<&DAffine3> {
 }
 
 /// Whether two placements are the same to the bit, of zeros too.
+#[inline]
 pub(crate) fn is_same(a: &DAffine3, b: &DAffine3) -> bool {
-    let (a, b) = (a.to_cols_array(), b.to_cols_array());
-    // No branches: what is asked about has moved, as a rule, in its last entries alone or in all.
-    a.iter().zip(&b).fold(0, |differs, (x, y)| differs | (x.to_bits() ^ y.to_bits())) == 0
+    let differ = |a: DVec3, b: DVec3| {
+        (a.x.to_bits() ^ b.x.to_bits()) | (a.y.to_bits() ^ b.y.to_bits()) | (a.z.to_bits() ^ b.z.to_bits())
+    };
+    let (of_a, of_b) = (&a.matrix3, &b.matrix3);
+    let linear = differ(of_a.x_axis, of_b.x_axis)
+        | differ(of_a.y_axis, of_b.y_axis)
+        | differ(of_a.z_axis, of_b.z_axis);
+    linear | differ(a.translation, b.translation) == 0
 }
 
 /// Whether a placement is so ordinary that a few products show it to be good: a third of the time.
 #[inline]
 fn plainly_good(placement: &DAffine3) -> bool {
-    /// Squares of lengths between which no product below overflows or loses digits.
-    const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
-    /// Far above the square of `VOLUME_MIN`, by more than the rounding errors of the products.
+    /// Sums of the squares of all entries between which no product below overflows or loses digits. Where the volume is plain too, no axis
+    /// is shorter than a billionth of the longest.
+    const PLAIN_SQUARES: RangeInclusive<f64> = 1e-40..=1e40;
+    /// Far above the square of `VOLUME_MIN`, by more than the rounding errors of the products. The sum of the squares of three lengths is no less
+    /// than the root, of the third degree, of their product.
     const PLAIN_VOLUME_SQUARED: f64 = 1e-18;
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
-    let [xx, yy, zz] = [x, y, z].map(DVec3::length_squared);
+    let squares = (x * x + y * y + z * z).element_sum();
     let volume = x.cross(y).dot(z);
-    let DVec3 { x, y, z } = placement.translation.abs();
-    // No branches.
-    PLAIN_SQUARES.contains(&xx)
-        & PLAIN_SQUARES.contains(&yy)
-        & PLAIN_SQUARES.contains(&zz)
-        & (volume * volume > PLAIN_VOLUME_SQUARED * xx * yy * zz)
-        & (x <= MAGNITUDE_MAX)
-        & (y <= MAGNITUDE_MAX)
-        & (z <= MAGNITUDE_MAX)
+    // No branches; all is false of what is no number.
+    PLAIN_SQUARES.contains(&squares)
+        & (volume * volume > PLAIN_VOLUME_SQUARED * (squares * squares * squares))
+        & (placement.translation.length_squared() <= MAGNITUDE_MAX * MAGNITUDE_MAX)
 }
 
 /// The unit vector along an axis, without overflow or underflow on the way; `None` for one that is too short.
@@ -90,6 +93,9 @@ pub(crate) fn row_norm(linear: &DMat3) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
     use super::*;
 
     #[test]
@@ -100,6 +106,30 @@ mod tests {
             let product = placement.matrix3 * inverse_linear(&placement.matrix3);
             assert!(product.abs_diff_eq(DMat3::IDENTITY, 1e-15), "{product}");
         }
+    }
+
+    /// Law: what is plainly good is good by the longer look too; and most of what is ordinary is plainly good.
+    #[test]
+    fn what_is_plainly_good_is_good() {
+        let mut rng = seeded(814);
+        let (mut plain, mut good, cases) = (0, 0, 10_000);
+        for case in 0..cases {
+            let mut axis = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+            let (x, y, to) = (axis(), axis(), axis());
+            // In half of the cases the third axis is nearly in the plane of the others, in some nearly as far as may be.
+            let flatness = 10f64.powi(-(case % 16));
+            let z = if case % 2 == 0 { axis() } else { x - y + flatness * axis() };
+            let scales = [1.0, 1e-19, 1e-21, 1e19, 1e21, 1e-90, 1e90, 0.0];
+            let mut scale = || scales[rng.random_range(0..4 * scales.len()).saturating_sub(3 * scales.len())];
+            let placement =
+                DAffine3::from_cols(x * scale(), y * scale(), z * scale(), to * scale() * scale());
+            let is_good = checked_at_length(&placement).is_ok();
+            assert!(is_good || !plainly_good(&placement), "{placement}");
+            good += usize::from(is_good);
+            plain += usize::from(plainly_good(&placement));
+        }
+        assert!(3 * cases < 10 * good as i32 && 10 * good as i32 <= 9 * cases, "{good} of {cases} are good");
+        assert!(3 * plain > good && plain < good, "{plain} of {good} are plainly good");
     }
 
     #[test]

@@ -113,6 +113,20 @@ impl Task for Verdict {
     }
 }
 
+/// The same, with the axis.
+struct Axis;
+
+impl Task for Axis {
+    type Found = (Sure, DVec3);
+
+    #[inline(always)]
+    fn run(self, difference: &impl MinkowskiDifference) -> (Sure, DVec3) {
+        let mut lean = Lean::default();
+        SEARCH.descend(&mut lean, difference);
+        (lean.sure, lean.v)
+    }
+}
+
 /// Whether two placed convex objects have a point in common: exactly when [`intersection`] does not say
 /// [`Separated`](Outcome::Separated), for less work.
 ///
@@ -178,16 +192,25 @@ where
     if balls::decide(a, placement_a, b, placement_b) == Some(true) {
         return None;
     }
-    let lean = lean::run(a, placement_a, b, placement_b, SEARCH);
-    match lean.sure {
-        Sure::Separated => Some(lean.v.normalize()),
-        Sure::Inside => None,
-        Sure::Nothing | Sure::Near(_) | Sure::Beyond => {
-            match robust_intersection(&Difference::new(a, placement_a, b, placement_b)) {
-                Outcome::Separated { axis } => Some(axis),
-                Outcome::Touching(_) | Outcome::Intersecting(_) => None,
-            }
+    match lean::run(a, placement_a, b, placement_b, Axis) {
+        (Sure::Separated, v) => Some(v.normalize()),
+        (Sure::Inside, _) => None,
+        (Sure::Nothing | Sure::Near(_) | Sure::Beyond, _) => {
+            robust_axis(&Difference::new(a, placement_a, b, placement_b))
         }
+    }
+}
+
+/// Out of the way of those pairs, nearly all, of which a lean descent was sure.
+#[cold]
+fn robust_axis<A, B>(difference: &Difference<A, B>) -> Option<DVec3>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    match robust_intersection(difference) {
+        Outcome::Separated { axis } => Some(axis),
+        Outcome::Touching(_) | Outcome::Intersecting(_) => None,
     }
 }
 

@@ -136,6 +136,9 @@ pub(crate) fn meeting_primitives(
 /// Whether the axis of an earlier frame clearly separates two convex shapes; the answer of [`intersection`] is then
 /// the same. See [`gjk::separates`].
 pub(crate) fn still_separated(axis: DVec3, a: Placed, b: Placed) -> bool {
+    if let (Some(on_a), Some(on_b)) = (a.shape.polytope(), b.shape.polytope()) {
+        return gjk::separates(axis, on_a, a.placement, on_b, b.placement);
+    }
     match (a.shape.class(), b.shape.class()) {
         (Class::Convex(on_a), Class::Convex(on_b)) => {
             gjk::separates(axis, on_a, a.placement, on_b, b.placement)

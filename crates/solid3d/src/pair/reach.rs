@@ -1,6 +1,7 @@
 //! How far a placed shape reaches.
 
 use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::simd::dispatch;
 use solid_convex::{Support, gjk};
 
 use super::Placed;
@@ -13,17 +14,28 @@ const BOUNDS_MARGIN: f64 = 4.0 * gjk::TOUCHING_ERROR;
 
 /// A box of the world around a placed shape. For a complex shape, around its tree's root box (thesis, section 6.3.4).
 pub(crate) fn world_bounds(placed: Placed) -> Aabb {
-    let (linear, translation) = (&placed.placement.matrix3, placed.placement.translation);
-    let bounds = match placed.shape.class() {
+    let DAffine3 { matrix3: linear, translation } = placed.placement;
+    if let Some(polytope) = placed.shape.polytope() {
+        // In one kernel: what is written by vectors and read by numbers is waited for.
+        return dispatch!(simd => enclosing(polytope.image_bounds_by(simd, linear), *translation));
+    }
+    let Aabb { min, max } = match placed.shape.class() {
         Class::Convex(convex) => convex_bounds(convex, linear),
         Class::Complex(complex) => complex.bounds().transformed(&DAffine3::from_mat3(*linear)),
     };
-    let extent = bounds.min.abs().max(bounds.max.abs()).max_element();
+    enclosing([min, max], *translation)
+}
+
+/// A box around a shape that is placed, from the least and the greatest coordinates of its image under the linear map.
+#[inline(always)]
+fn enclosing([min, max]: [DVec3; 2], translation: DVec3) -> Aabb {
+    let extent = min.abs().max(max.abs()).max_element();
     let margin = bounds_margin(extent + 1e-3 * translation.abs().max_element());
-    Aabb::new(bounds.min + translation, bounds.max + translation).inflated(margin)
+    Aabb::new(min + translation - margin, max + translation + margin)
 }
 
 /// How much a world box is grown that has this part in the size of the data.
+#[inline(always)]
 pub(super) fn bounds_margin(size: f64) -> f64 {
     BOUNDS_MARGIN * size
 }

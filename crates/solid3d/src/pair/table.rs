@@ -96,8 +96,14 @@ pub(crate) fn intersection(a: Placed, b: Placed, scratch: &mut Scratch) -> Relat
 
 /// What [`intersection`] says without a common point: `None` of shapes that intersect.
 pub(crate) fn separation(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<Separation> {
+    let separated = |axis: Option<DVec3>| axis.map(|axis| Separation { axis: Some(axis) });
+    // Of known types, without a call through a table of functions.
+    if let (Some(on_a), Some(on_b)) = (a.shape.polytope(), b.shape.polytope()) {
+        scratch.primitive_tests += 1;
+        return separated(gjk::separating_axis(on_a, a.placement, on_b, b.placement));
+    }
     if let (Some((on_a, on_b)), None) = (convex(a, b), a.shape.simple().and(b.shape.simple())) {
-        return convex_convex::axis(on_a, on_b, scratch).map(|axis| Separation { axis: Some(axis) });
+        return separated(convex_convex::axis(on_a, on_b, scratch));
     }
     match intersection(a, b, scratch) {
         Relation::Separated { axis } => Some(Separation { axis }),

@@ -237,7 +237,7 @@ impl World {
         stirred.sort();
         broad.update_with(stirred.elsewhere(), &|slot| {
             let object = objects.at(slot).expect("what is elsewhere is in the world");
-            clearances.grown(object.bounds())
+            clearances.grown(|| object.bounds())
         });
         broad.flush();
     }

@@ -39,10 +39,12 @@ impl Clearances {
     }
 
     /// A box, grown so that it overlaps that of another object wherever the two are nearer than their clearance.
-    pub fn grown(&self, bounds: Aabb) -> Aabb {
-        if self.most == 0.0 {
-            return bounds;
-        }
+    #[inline]
+    pub fn grown(&self, bounds: impl FnOnce() -> Aabb) -> Aabb {
+        if self.most == 0.0 { bounds() } else { self.grown_by_half(bounds()) }
+    }
+
+    fn grown_by_half(&self, bounds: Aabb) -> Aabb {
         let Aabb { min, max } = bounds.inflated(self.most * (0.5 + GROWTH_ERROR));
         // To the next numbers outside, for the sums are rounded.
         Aabb::new(min.map(f64::next_down), max.map(f64::next_up))

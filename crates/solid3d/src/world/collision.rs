@@ -23,6 +23,18 @@ pub struct Collision {
     pub contact: Contact,
 }
 
+impl Collision {
+    /// Becomes a copy of another. Of most nothing more is known than that they are: then little is moved.
+    #[inline]
+    pub(super) fn take_from(&mut self, other: &Collision) {
+        if let (Contact::Simple, Contact::Simple) = (&self.contact, &other.contact) {
+            (self.a, self.b, self.when) = (other.a, other.b, other.when);
+        } else {
+            self.clone_from(other);
+        }
+    }
+}
+
 /// What is known of a collision, by the response of the pair. Cheap to clone.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

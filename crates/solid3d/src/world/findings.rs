@@ -84,12 +84,17 @@ impl Findings {
         const MANY: usize = 1 << 10;
         /// No more parts than this: each finds its first collision by a walk along the blocks.
         const PARTS_MAX: usize = 64;
-        let (a, b, when, contact) = (ObjectId::default(), ObjectId::default(), When::Now, Contact::Simple);
-        collisions.resize(self.len(), Collision { a, b, when, contact });
+        let plain = || Collision {
+            a: ObjectId::default(),
+            b: ObjectId::default(),
+            when: When::Now,
+            contact: Contact::Simple,
+        };
+        collisions.resize_with(self.len(), plain);
         let part_len = self.len().div_ceil(PARTS_MAX).max(MANY / 4);
         for_each_part(collisions, part_len, MANY, |i, part| {
             for (to, (_, id)) in part.iter_mut().zip(self.order.iter_from(i * part_len)) {
-                to.clone_from(self.collision(id));
+                to.take_from(self.collision(id));
             }
         });
     }

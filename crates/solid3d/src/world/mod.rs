@@ -168,7 +168,7 @@ impl World {
             });
         }
         let object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
-        let bounds = self.clearances.grown(object.bounds());
+        let bounds = self.clearances.grown(|| object.bounds());
         let id = self.objects.insert(object);
         self.added += 1;
         self.stale = true;
@@ -263,9 +263,7 @@ impl World {
     pub fn proceed(&mut self) {
         let mut displaced = std::mem::take(&mut self.displaced);
         for id in displaced.drain(..) {
-            if self.contains(id) {
-                self.end_frame_of(id);
-            }
+            self.end_frame_of(id);
         }
         self.displaced = displaced;
         self.findings.proceed();
@@ -279,8 +277,10 @@ impl World {
         Ok(())
     }
 
+    /// Ends the frame of an object that is in the world; else nothing.
+    #[inline]
     fn end_frame_of(&mut self, id: ObjectId) {
-        let object = &mut self.objects[id];
+        let Some(object) = self.objects.get_mut(id) else { return };
         let had_way = object.has_way();
         object.proceed();
         self.stir(id, if had_way { Staleness::Bounds } else { Staleness::Previous });

@@ -55,6 +55,18 @@ impl Default for Extra {
     }
 }
 
+impl Extra {
+    /// What is now, of this shape, becomes the previous frame.
+    fn proceed(&mut self, shape: &Shape) {
+        self.deformation = STILL;
+        if let Some(old) = self.previous_shape.take()
+            && old.is_deformation_of(shape)
+        {
+            self.spare = Some(old);
+        }
+    }
+}
+
 impl Object {
     pub fn new(
         rank: u8,
@@ -122,9 +134,13 @@ impl Object {
     }
 
     /// Whether there is a way from the previous frame to be tested.
+    #[inline]
     pub fn has_way(&self) -> bool {
-        let moved = || self.placement != *self.previous_placement() || self.was_deformed();
-        self.motion == Motion::Swept && self.displaced && moved()
+        self.motion == Motion::Swept && self.displaced && self.has_moved()
+    }
+
+    fn has_moved(&self) -> bool {
+        self.placement != *self.previous_placement() || self.was_deformed()
     }
 
     /// Sets whether its way is tested. Cost: linear in a shape that deformed.
@@ -153,14 +169,16 @@ impl Object {
     }
 
     /// The box for the broad phase: it contains the object on its way.
+    #[inline]
     pub fn bounds(&self) -> Aabb {
-        if self.has_way() {
-            moving_bounds(&self.moving(), |placed| self.bounds_of(placed))
-        } else {
-            self.bounds_of(self.placed())
-        }
+        if self.has_way() { self.bounds_on_way() } else { self.bounds_of(self.placed()) }
     }
 
+    fn bounds_on_way(&self) -> Aabb {
+        moving_bounds(&self.moving(), |placed| self.bounds_of(placed))
+    }
+
+    #[inline]
     fn bounds_of(&self, placed: Placed) -> Aabb {
         let radius = self.extra.as_ref().and_then(|extra| extra.radius);
         let fixed = radius.and_then(|radius| fixed_bounds(placed.placement, radius));
@@ -168,6 +186,7 @@ impl Object {
     }
 
     /// Notes that it leaves the place and the shape of the previous frame, before it does.
+    #[inline]
     pub fn displace(&mut self) {
         if !std::mem::replace(&mut self.displaced, true) {
             match &mut self.previous_placement {
@@ -178,6 +197,7 @@ impl Object {
     }
 
     /// Takes another place; it is displaced.
+    #[inline]
     pub fn set_placement(&mut self, placement: DAffine3) {
         self.displace();
         self.placement = placement;
@@ -216,14 +236,11 @@ impl Object {
     }
 
     /// What is now becomes the previous frame.
+    #[inline]
     pub fn proceed(&mut self) {
         self.displaced = false;
-        self.note_deformation();
-        if let Some(extra) = &mut self.extra
-            && let Some(old) = extra.previous_shape.take()
-            && old.is_deformation_of(&self.shape)
-        {
-            extra.spare = Some(old);
+        if let Some(extra) = &mut self.extra {
+            extra.proceed(&self.shape);
         }
     }
 

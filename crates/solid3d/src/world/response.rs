@@ -51,7 +51,15 @@ impl ResponseTable {
     }
 
     /// The response for a pair, of which `first` comes first.
+    #[inline]
     pub fn of(&self, first: ObjectId, second: ObjectId) -> Response {
+        if self.objects.is_empty() && self.pairs.is_empty() {
+            return self.default;
+        }
+        self.looked_up(first, second)
+    }
+
+    fn looked_up(&self, first: ObjectId, second: ObjectId) -> Response {
         let pair = if self.pairs.is_empty() { None } else { self.pairs.get(&ordered(first, second)) };
         let object = || self.objects.get(first).or_else(|| self.objects.get(second));
         pair.or_else(object).copied().unwrap_or(self.default)

@@ -30,16 +30,20 @@ pub(super) struct Stirred {
 
 impl Stirred {
     /// Notes what of an object is out of date.
+    #[inline]
     pub fn stir(&mut self, slot: Proxy, what: Staleness) {
-        let at = slot as usize;
-        if at >= self.staleness.len() {
-            resize(&mut self.staleness, at + 1, Staleness::Fresh);
-        }
-        let staleness = &mut self.staleness[at];
+        let Some(staleness) = self.staleness.get_mut(slot as usize) else { return self.stir_new(slot, what) };
         if *staleness == Staleness::Fresh {
             push(&mut self.slots, slot);
         }
         *staleness = what.max(*staleness);
+    }
+
+    /// The same in a slot that is beyond those stirred before.
+    #[cold]
+    fn stir_new(&mut self, slot: Proxy, what: Staleness) {
+        resize(&mut self.staleness, slot as usize + 1, Staleness::Fresh);
+        self.stir(slot, what);
     }
 
     pub fn of(&self, slot: Proxy) -> Staleness {

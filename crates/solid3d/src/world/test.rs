@@ -23,13 +23,6 @@ pub struct TestProgress {
 }
 
 /// What examining a candidate gave.
-#[derive(Debug, Default)]
-struct Examined {
-    verdict: Verdict,
-    work: Statistics,
-}
-
-/// What is kept of it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Verdict {
     /// Whether its response is not to ignore it.
@@ -190,11 +183,12 @@ impl World {
         self.refresh();
         let (a, b) = self.in_order(a, b);
         let mut described = Vec::new();
-        let Self { objects, responses, caching, workers, .. } = self;
+        let Self { objects, responses, caching, workers, statistics, .. } = self;
         let examiner = Examiner { objects, responses, caching: *caching };
-        let Examined { verdict, work } = examiner.examine(a, b, None, workers.own(), &mut described);
+        let verdict = examiner.examine(a, b, None, workers.own(), &mut described, statistics);
         let found = verdict.outcome.found(|| described.pop());
-        self.statistics += Statistics { candidates: 1, collisions: u64::from(found.is_some()), ..work };
+        statistics.candidates += 1;
+        statistics.collisions += u64::from(found.is_some());
         Ok(found.map(|(when, contact)| Collision { a, b, when, contact }))
     }
 
@@ -280,13 +274,12 @@ impl Examiner<'_> {
     fn renew(&self, place: Place, candidate: &mut Option<Candidate>, news: &mut News, scratch: &mut Scratch) {
         let candidate = candidate.as_mut().expect("what waits to be examined is a candidate");
         let &mut Candidate { a, b, axis, found, .. } = candidate;
-        let Examined { verdict, work } = self.examine(a, b, axis, scratch, &mut news.described);
-        let Verdict { matters, outcome, axis } = verdict;
+        let Verdict { matters, outcome, axis } =
+            self.examine(a, b, axis, scratch, &mut news.described, &mut news.work);
         candidate.axis = axis;
         let was_plain = std::mem::replace(&mut candidate.is_plain, outcome == Outcome::Plain);
         news.matter += u64::from(matters);
         news.mattered += u64::from(std::mem::replace(&mut candidate.matters, matters));
-        news.work += work;
         let is_as_it_was = match (found, outcome) {
             (None, outcome) => outcome == Outcome::Apart,
             (Some(_), outcome) => was_plain && outcome == Outcome::Plain,
@@ -298,7 +291,7 @@ impl Examiner<'_> {
     }
 
     /// Whether two objects collide, of which `a` comes first; a function of the two, their response and the axis alone. What more is
-    /// known of a collision is put into `described`.
+    /// known of a collision is put into `described`, and the work is added to that done before.
     fn examine(
         &self,
         a: ObjectId,
@@ -306,12 +299,13 @@ impl Examiner<'_> {
         axis: Option<DVec3>,
         scratch: &mut Scratch,
         described: &mut Vec<(When, Contact)>,
-    ) -> Examined {
+        work: &mut Statistics,
+    ) -> Verdict {
         let response = self.responses.of(a, b);
         if response == Response::Ignore {
-            return Examined::default();
+            return Verdict::default();
         }
-        let mut work = Statistics { examined: 1, ..Statistics::default() };
+        work.examined += 1;
         let (a, b) = (&self.objects[a], &self.objects[b]);
         let way = (a.has_way() || b.has_way()).then(|| [a.moving(), b.moving()]);
         let still_separated = |&axis: &DVec3| match &way {
@@ -320,24 +314,22 @@ impl Examiner<'_> {
         };
         let cached = axis.filter(|_| self.caching);
         if let Some(axis) = cached.filter(still_separated) {
-            work.cache_hits = 1;
-            return Examined {
-                verdict: Verdict { matters: true, outcome: Outcome::Apart, axis: Some(axis) },
-                work,
-            };
+            work.cache_hits += 1;
+            return Verdict { matters: true, outcome: Outcome::Apart, axis: Some(axis) };
         }
         let before = scratch.work();
         let (outcome, axis) = match (now([a, b], response, scratch, described), &way) {
             (Now::Collide(outcome), _) => (outcome, None),
             (Now::Apart { axis }, None) => (Outcome::Apart, axis),
             (Now::Apart { .. }, Some(way)) => {
-                work.sweeps = 1;
+                work.sweeps += 1;
                 on_the_way([a, b], way, response, scratch, described)
             }
         };
         let after = scratch.work();
-        (work.box_tests, work.primitive_tests) = (after.0 - before.0, after.1 - before.1);
-        Examined { verdict: Verdict { matters: true, outcome, axis: axis.filter(|_| self.caching) }, work }
+        work.box_tests += after.0 - before.0;
+        work.primitive_tests += after.1 - before.1;
+        Verdict { matters: true, outcome, axis: axis.filter(|_| self.caching) }
     }
 }
 

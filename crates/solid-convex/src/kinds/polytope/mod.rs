@@ -166,6 +166,16 @@ impl Polytope {
         }
     }
 
+    /// The [`image_bounds`](Support::image_bounds), for kernels that they are a part of.
+    #[doc(hidden)]
+    #[inline(always)]
+    pub fn image_bounds_by<S: Simd>(&self, simd: S, linear: &DMat3) -> [DVec3; 2] {
+        if self.points.len() > IMAGE_MAX && self.map.is_some() {
+            return bounds_by_supports(self, linear);
+        }
+        self.rows.image_bounds(simd, linear)
+    }
+
     /// The points.
     pub fn points(&self) -> &[DVec3] {
         &self.points
@@ -179,10 +189,7 @@ impl Support for Polytope {
     }
 
     fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
-        if self.points.len() > IMAGE_MAX && self.map.is_some() {
-            return bounds_by_supports(self, linear);
-        }
-        dispatch!(simd => self.rows.image_bounds(simd, linear))
+        dispatch!(simd => self.image_bounds_by(simd, linear))
     }
 
     fn as_polytope(&self) -> Option<&Polytope> {

@@ -1,9 +1,10 @@
 use std::ops::ControlFlow;
 
+use slotmap::SecondaryMap;
 use solid3d::broad::{BroadPhase, DynamicTree};
 use solid3d::glam::{DAffine3, DVec3};
 use solid3d::query::{PairCache, Ray, RayOptions};
-use solid3d::{Aabb, ObjectId, Response, Shape, World, WorldOptions, query};
+use solid3d::{Aabb, Collision, ObjectId, Response, Shape, World, WorldOptions, query};
 
 use super::{AllPairs, Boxes, Coherent, Depths, Library, Primitives, Rays, Simulator};
 use crate::inputs::{ICollide, Mesh, Polyhedron, Pose, Primitive};
@@ -138,11 +139,12 @@ impl Boxes for DynamicTree {
     }
 }
 
-/// A world, its objects by number, and their numbers.
+/// A world, its objects by number, their numbers, and the collisions of the last frame, whose memory is used again.
 pub struct Objects {
     world: World,
     ids: Vec<ObjectId>,
-    numbers: std::collections::HashMap<ObjectId, u32>,
+    numbers: SecondaryMap<ObjectId, u32>,
+    collisions: Vec<Collision>,
 }
 
 impl Simulator for Ours {
@@ -159,16 +161,17 @@ impl Simulator for Ours {
             .map(|(pose, shape)| world.add(shape, pose.affine()).expect("the poses are valid"))
             .collect();
         let numbers = ids.iter().copied().zip(0..).collect();
-        Objects { world, ids, numbers }
+        Objects { world, ids, numbers, collisions: Vec::new() }
     }
 
-    fn frame(Objects { world, ids, numbers }: &mut Objects, poses: &[DAffine3]) -> Vec<(u32, u32)> {
+    fn frame(objects: &mut Objects, poses: &[DAffine3]) -> Vec<(u32, u32)> {
+        let Objects { world, ids, numbers, collisions } = objects;
         for (id, pose) in ids.iter().zip(poses) {
             world.set_placement(*id, *pose).expect("the poses are valid");
         }
-        let found = world.test();
+        world.test_into(collisions);
         world.proceed();
-        found.iter().map(|collision| (numbers[&collision.a], numbers[&collision.b])).collect()
+        collisions.iter().map(|collision| (numbers[collision.a], numbers[collision.b])).collect()
     }
 }
 

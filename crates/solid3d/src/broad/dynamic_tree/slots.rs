@@ -253,11 +253,14 @@ impl Slots<'_> {
         notes: &mut Notes,
         moved_max: usize,
     ) -> Option<usize> {
-        const AT_A_TIME: usize = 64;
+        const AT_A_TIME: usize = 16;
         let mut boxes = [(0, Aabb::EMPTY); AT_A_TIME];
         for (first, some) in (0..).step_by(AT_A_TIME).zip(proxies.chunks(AT_A_TIME)) {
             let boxes = &mut boxes[..some.len()];
-            boxes.iter_mut().zip(some).for_each(|(to, &proxy)| *to = (proxy, bounds(proxy)));
+            for (to, &proxy) in boxes.iter_mut().zip(some) {
+                to.0 = proxy;
+                to.1 = bounds(proxy);
+            }
             let refused = dispatch!(simd => self.update_each(simd, boxes, notes, moved_max));
             if let Some(refused) = refused {
                 return Some(first + refused);
