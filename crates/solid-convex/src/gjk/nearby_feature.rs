@@ -76,7 +76,7 @@ pub(super) fn closest<S: Simd>(
         if memory.pairs.len() == 4 {
             return (square <= error * error).then(
                 #[inline(always)]
-                || corners.closest(simd, 0.0, weights, [at_a, at_b]),
+                || corners.closest(simd, (0.0, v), weights, at_a),
             );
         }
         let along = [at_a.matrix3.mul_transpose_vec3(-v), at_b.matrix3.mul_transpose_vec3(v)];
@@ -87,7 +87,7 @@ pub(super) fn closest<S: Simd>(
             if moved {
                 memory.axis = v / distance;
             }
-            return Some(corners.closest(simd, distance, weights, [at_a, at_b]));
+            return Some(corners.closest(simd, (distance, v), weights, at_a));
         }
         let (nearer, far) = (square - least, JUMP_MIN / SUPPORT_ERROR * error);
         if (least > 0.0) & (nearer * nearer > far * far * square) {
@@ -116,9 +116,7 @@ fn squares_if_plain<S: Simd>(simd: S, placements: [&DAffine3; 2]) -> Option<[f64
 struct Corners {
     /// The points of `A`, less its translation.
     on_a: Points,
-    /// The points of `B`, less its translation.
-    on_b: Points,
-    /// Their differences.
+    /// From those of `B`.
     w: Points,
 }
 
@@ -136,10 +134,9 @@ impl Corners {
     #[inline(always)]
     fn new<S: Simd>(simd: S, pairs: &Pairs, [at_a, at_b]: [&DAffine3; 2], offset: DVec3) -> Corners {
         let (on_a, on_b) = (images(simd, &at_a.matrix3, &pairs.a), images(simd, &at_b.matrix3, &pairs.b));
-        let mut corners = Corners { on_a: Points::default(), on_b: Points::default(), w: Points::default() };
+        let mut corners = Corners { on_a: Points::default(), w: Points::default() };
         for i in 0..3 {
             on_a[i].store_slice(&mut corners.on_a[i]);
-            on_b[i].store_slice(&mut corners.on_b[i]);
             (on_a[i] - (on_b[i] + f64x4::splat(simd, offset[i]))).store_slice(&mut corners.w[i]);
         }
         corners
@@ -188,7 +185,6 @@ impl Corners {
         put(simd, &mut pairs.a, at, pair.a);
         put(simd, &mut pairs.b, at, pair.b);
         put(simd, &mut self.on_a, at, on_a);
-        put(simd, &mut self.on_b, at, on_b);
         put(simd, &mut self.w, at, on_a - (on_b + offset));
         pairs.set_len(at + 1);
     }
@@ -197,28 +193,24 @@ impl Corners {
     #[inline(always)]
     fn remove<S: Simd>(&mut self, simd: S, pairs: &mut Pairs, corner: usize) {
         let last = pairs.len() - 1;
-        for points in [&mut self.on_a, &mut self.on_b, &mut self.w, &mut pairs.a, &mut pairs.b] {
+        for points in [&mut self.on_a, &mut self.w, &mut pairs.a, &mut pairs.b] {
             let p = point(points, last);
             put(simd, points, corner, p);
         }
         pairs.set_len(last);
     }
 
-    /// The closest points, at their distance, with their weights.
+    /// The closest points, at their distance and with the way from that of `B`, by the weights of the corners.
     #[inline(always)]
     fn closest<S: Simd>(
         &self,
         simd: S,
-        distance: f64,
+        (distance, v): (f64, DVec3),
         weights: [f64; 4],
-        [at_a, at_b]: [&DAffine3; 2],
+        at_a: &DAffine3,
     ) -> ClosestInWorld {
-        let weights = f64x4::simd_from(simd, weights);
-        ClosestInWorld {
-            distance,
-            point_on_a: combination(simd, &self.on_a, weights) + at_a.translation,
-            point_on_b: combination(simd, &self.on_b, weights) + at_b.translation,
-        }
+        let point_on_a = combination(simd, &self.on_a, f64x4::simd_from(simd, weights)) + at_a.translation;
+        ClosestInWorld { distance, point_on_a, point_on_b: point_on_a - v }
     }
 }
 
