@@ -2,11 +2,11 @@
 
 use fearless_simd::Simd;
 use glam::DVec3;
-use solid_convex::simd::{self, Level, dispatch, level};
+use solid_convex::simd::{Level, dispatch, level};
 
 use super::crossing::{Crossing, Folded, Probe};
 use super::eights::{Image, overlaps};
-use super::lanes::{bits, overlapping_probe};
+use super::lanes::overlapping_probe;
 use super::node::{Kind, WIDTH};
 use super::packed::PackedBox;
 use super::relative::Relative;
@@ -91,8 +91,6 @@ fn walk<B, S: Simd>(
     let Traversal { counters, pairs: stack, .. } = traversal;
     stack.begin([Place::ROOT; 2]);
     let wants_first = visitor.wants_first();
-    // Of what a first pair is sought in, most is never looked at.
-    let asks_ahead = !wants_first && a.nodes.len() + b.nodes.len() >= NODES_MANY;
     // Of the boxes tested last: several in a row are often the same.
     let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
     while let Some([at_a, at_b]) = stack.pop(simd, wants_first) {
@@ -127,32 +125,12 @@ fn walk<B, S: Simd>(
                 siblings.of_both(node_a, node_b);
                 overlaps(simd, lanes_a, lanes_b, images, &a.box_at(at_a), &mut siblings.left);
                 counters.box_tests += u64::from(siblings.left.tested.count_ones());
-                if asks_ahead {
-                    prefetch_children(a, b, [node_a, node_b], siblings.left.hits);
-                }
                 stack.push();
             }
             Step::Nothing => {}
         }
     }
     ControlFlow::Continue(())
-}
-
-/// So many nodes do not stay in the caches next to the processor. For fewer, asking for them took 4 % of the time.
-const NODES_MANY: usize = 2048;
-
-/// Asks for the memory of the children of two nodes that may overlap: a bit for each lane of `a`, for each lane of `b`.
-#[inline(never)] // into the walks, most of which have no need of it
-fn prefetch_children(a: &Tree, b: &Tree, [node_a, node_b]: [usize; 2], overlaps: u64) {
-    let of_b = overlaps.to_le_bytes();
-    let of_a = of_b.into_iter().fold(0, |lanes, row| lanes | row);
-    let prefetch = |tree: &Tree, node: usize, lane: usize| {
-        tree.prefetch((tree.nodes[node].child[lane], Place::lane(node, lane)), |leaf| {
-            simd::prefetch(leaf.primitives)
-        });
-    };
-    bits(of_a).for_each(|lane| prefetch(a, node_a, lane));
-    (0..WIDTH).filter(|&lane| of_b[lane] != 0).for_each(|lane| prefetch(b, node_b, lane));
 }
 
 /// A pair of subtrees.
