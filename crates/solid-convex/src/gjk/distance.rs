@@ -340,14 +340,13 @@ where
         points.on_a -= part * core_a.to_surface(placement_a, axis);
         points.on_b += part * core_b.to_surface(placement_b, axis);
     }
-    let mut distance = (between - radii).max(0.0);
-    let size_max = 2.0 / Difference::new(core_a, placement_a, core_b, placement_b).scale();
     // What rounding leaves of a gap between surfaces that touch is none.
-    if distance > 0.0
-        && distance <= TOUCHING_ERROR * size_max
-        && intersects(core_a.object(), placement_a, core_b.object(), placement_b)
-    {
-        distance = 0.0;
-    }
+    let size_max = || 2.0 / Difference::new(core_a, placement_a, core_b, placement_b).scale();
+    let touch = |gap: f64| {
+        gap <= TOUCHING_ERROR * size_max()
+            && intersects(core_a.object(), placement_a, core_b.object(), placement_b)
+    };
+    let gap = between - radii;
+    let distance = if gap <= 0.0 || touch(gap) { 0.0 } else { gap };
     Some(Closest { distance, points })
 }

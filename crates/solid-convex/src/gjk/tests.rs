@@ -348,12 +348,14 @@ fn the_lean_descent_says_what_the_robust_one_says() {
                         Sure::Near(mu) => {
                             let Some((v, _)) = wide.closest_point() else { continue };
                             let (found, slow) = (v.length(), slow.v.length());
-                            // Else nobody is told.
-                            if !goal.is_within_tolerance(found, mu) {
-                                continue;
-                            }
+                            let given_out = goal.is_within_tolerance(found, mu);
+                            assert!(mu - slow < 1e-11, "{i} {j} {k}: {slow:e}, at least {mu:e}");
+                            assert!(
+                                !given_out || (found - mu).abs() < 1e-11,
+                                "{i} {j} {k}: {found:e}, at least {mu:e}"
+                            );
                             assert!((found - slow).abs() < 1e-11, "{i} {j} {k}: {found:e}, {slow:e}");
-                            measured += 1;
+                            measured += usize::from(given_out);
                         }
                         Sure::Beyond | Sure::Nothing => {}
                     }
