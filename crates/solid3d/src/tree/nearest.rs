@@ -239,13 +239,8 @@ fn bound_lanes_on<S: Simd>(
 /// Puts an entry back below those that are nearer, at most as many as a node has: nodes that were opened since may hold what is farther.
 #[inline(always)]
 fn defer<T: Copy>(entry: (f64, T), stack: &mut Vec<(f64, T)>) {
-    stack.push(entry);
-    let mut at = stack.len() - 1;
-    let end = at.saturating_sub(WIDTH - 1);
-    while at > end && stack[at - 1].0 < entry.0 {
-        stack.swap(at - 1, at);
-        at -= 1;
-    }
+    let end = stack.len().saturating_sub(WIDTH - 1);
+    insert(entry, stack, end, |bound| bound < entry.0);
 }
 
 /// Adds an entry nearer than `best` to those from `from` on, of which the nearest comes last.
@@ -259,15 +254,28 @@ pub(super) fn push_unless_far<K: Copy + PartialOrd, T: Copy>(
     stack: &mut Vec<(K, T)>,
     from: usize,
 ) {
-    if entry.0 >= best {
-        return;
+    if entry.0 < best {
+        insert(entry, stack, from, |bound| bound <= entry.0);
     }
+}
+
+/// Puts an entry below those at the top that are `nearer`, but for what is below `end`.
+#[inline(always)]
+fn insert<K: Copy, T: Copy>(
+    entry: (K, T),
+    stack: &mut Vec<(K, T)>,
+    end: usize,
+    nearer: impl Fn(K) -> bool,
+) {
     stack.push(entry);
     let mut at = stack.len() - 1;
-    while at > from && stack[at - 1].0 <= entry.0 {
-        stack.swap(at - 1, at);
+    while at > end && nearer(stack[at - 1].0) {
+        // Number by number: those just written apart, and then read as one, as a swap does, are waited for.
+        let (bound, what) = stack[at - 1];
+        stack[at] = (bound, what);
         at -= 1;
     }
+    stack[at] = entry;
 }
 
 #[cfg(test)]
