@@ -2,7 +2,9 @@
 
 use std::ops::RangeInclusive;
 
+use fearless_simd::{Simd, f64x2, prelude::*};
 use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::simd::dispatch;
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, unit_scale};
 
 use crate::bounds::abs;
@@ -16,7 +18,11 @@ const VOLUME_MIN: f64 = 1e-12;
 /// The placement itself when it can be used: finite, in range, and not singular.
 #[inline]
 pub(crate) fn checked(placement: &DAffine3) -> Result<&DAffine3> {
-    if plainly_good(placement) { Ok(placement) } else { checked_at_length(placement) }
+    if dispatch!(simd => plainly_good(simd, placement)) {
+        Ok(placement)
+    } else {
+        checked_at_length(placement)
+    }
 }
 
 #[inline(never)]
@@ -47,21 +53,32 @@ pub(crate) fn is_same(a: &DAffine3, b: &DAffine3) -> bool {
 }
 
 /// Whether a placement is so ordinary that a few products show it to be good: a third of the time.
-#[inline]
-fn plainly_good(placement: &DAffine3) -> bool {
+///
+/// It is read by pairs of numbers from its beginning, as it was last written where it was handed over as a copy: what is written so and read in
+/// other pairs is waited for.
+#[inline(always)]
+fn plainly_good<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) -> bool {
     /// Sums of the squares of all entries between which no product below overflows or loses digits. Where the volume is plain too, no axis
     /// is shorter than a billionth of the longest.
     const PLAIN_SQUARES: RangeInclusive<f64> = 1e-40..=1e40;
     /// Far above the square of `VOLUME_MIN`, by more than the rounding errors of the products. The sum of the squares of three lengths is no less
     /// than the root, of the third degree, of their product.
     const PLAIN_VOLUME_SQUARED: f64 = 1e-18;
-    let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
-    let squares = (x * x + y * y + z * z).element_sum();
-    let volume = x.cross(y).dot(z);
+    let columns: &[f64; 9] = matrix3.as_ref();
+    let pair = |first: usize| f64x2::from_slice(simd, &columns[first..first + 2]);
+    // x_axis = (a0, a1, b0), y_axis = (b1, c0, c1), z_axis = (d0, d1, e).
+    let [a, b, c, d] = [pair(0), pair(2), pair(4), pair(6)];
+    let e = columns[8];
+    let sums = a * a + b * b + (c * c + d * d);
+    let squares = sums.as_slice()[0] + sums.as_slice()[1] + e * e;
+    let (a, b, c, d) = (a.as_slice(), b.as_slice(), c.as_slice(), d.as_slice());
+    let volume = a[0] * (c[0] * e - c[1] * d[1])
+        + a[1] * (c[1] * d[0] - b[1] * e)
+        + b[0] * (b[1] * d[1] - c[0] * d[0]);
     // No branches; all is false of what is no number.
     PLAIN_SQUARES.contains(&squares)
         & (volume * volume > PLAIN_VOLUME_SQUARED * (squares * squares * squares))
-        & (placement.translation.length_squared() <= MAGNITUDE_MAX * MAGNITUDE_MAX)
+        & (translation.length_squared() <= MAGNITUDE_MAX * MAGNITUDE_MAX)
 }
 
 /// The unit vector along an axis, without overflow or underflow on the way; `None` for one that is too short.
@@ -94,9 +111,17 @@ pub(crate) fn row_norm(linear: &DMat3) -> f64 {
 #[cfg(test)]
 mod tests {
     use rand::Rng;
+    use solid_convex::simd::levels;
     use solid_oracle::generate::seeded;
 
     use super::*;
+
+    /// On every level, which must say the same.
+    fn is_plain(placement: &DAffine3) -> bool {
+        let [scalar, wide] = levels().map(|level| dispatch!(level, simd => plainly_good(simd, placement)));
+        assert_eq!(scalar, wide, "{placement}");
+        scalar
+    }
 
     #[test]
     fn scales_alone_are_never_singular() {
@@ -124,9 +149,9 @@ mod tests {
             let placement =
                 DAffine3::from_cols(x * scale(), y * scale(), z * scale(), to * scale() * scale());
             let is_good = checked_at_length(&placement).is_ok();
-            assert!(is_good || !plainly_good(&placement), "{placement}");
+            assert!(is_good || !is_plain(&placement), "{placement}");
             good += usize::from(is_good);
-            plain += usize::from(plainly_good(&placement));
+            plain += usize::from(is_plain(&placement));
         }
         assert!(3 * cases < 10 * good as i32 && 10 * good as i32 <= 9 * cases, "{good} of {cases} are good");
         assert!(3 * plain > good && plain < good, "{plain} of {good} are plainly good");

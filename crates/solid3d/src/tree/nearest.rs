@@ -261,12 +261,7 @@ pub(super) fn push_unless_far<K: Copy + PartialOrd, T: Copy>(
 
 /// Puts an entry below those at the top that are `nearer`, but for what is below `end`.
 #[inline(always)]
-fn insert<K: Copy, T: Copy>(
-    entry: (K, T),
-    stack: &mut Vec<(K, T)>,
-    end: usize,
-    nearer: impl Fn(K) -> bool,
-) {
+fn insert<K: Copy, T: Copy>(entry: (K, T), stack: &mut Vec<(K, T)>, end: usize, nearer: impl Fn(K) -> bool) {
     stack.push(entry);
     let mut at = stack.len() - 1;
     while at > end && nearer(stack[at - 1].0) {
