@@ -34,6 +34,9 @@ use crate::bounds::Aabb;
 /// Memory is proportional to the greatest proxy ever used. At most [`PROXY_MAX`].
 pub type Proxy = u32;
 
+/// Writes the boxes of some proxies beside them: some at a time, so that what it prepares serves several.
+pub type BoundsOf<'a> = dyn Fn(&mut [(Proxy, Aabb)]) + Sync + 'a;
+
 /// The greatest proxy: both engines keep one bit of the word for themselves, and the tree three more for its lanes.
 pub const PROXY_MAX: Proxy = (1 << 28) - 1;
 
@@ -124,15 +127,21 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
     /// let unit_at = |x: f64| Aabb::new(DVec3::splat(x), DVec3::splat(x + 1.0));
     /// let mut broad = DynamicTree::default();
     /// broad.insert_many(&[(0, unit_at(0.0)), (1, unit_at(2.0)), (2, unit_at(4.0))]);
-    /// broad.update_with(&[1, 2], &|proxy| unit_at(0.5 * f64::from(proxy)));
+    /// broad.update_with(&[1, 2], &|boxes| {
+    ///     boxes.iter_mut().for_each(|(proxy, bounds)| *bounds = unit_at(0.5 * f64::from(*proxy)));
+    /// });
     /// broad.flush();
     /// assert_eq!(broad.sorted_pairs(), [(0, 1), (0, 2), (1, 2)]);
     /// ```
     ///
     /// # Panics
     /// As [`update_many`](Self::update_many).
-    fn update_with(&mut self, proxies: &[Proxy], bounds: &(dyn Fn(Proxy) -> Aabb + Sync)) {
-        proxies.iter().for_each(|&proxy| self.update(proxy, bounds(proxy)));
+    fn update_with(&mut self, proxies: &[Proxy], bounds: &BoundsOf) {
+        for &proxy in proxies {
+            let mut one = [(proxy, Aabb::EMPTY)];
+            bounds(&mut one);
+            self.update(proxy, one[0].1);
+        }
     }
 
     /// Takes a box out; its proxy may be used again at once.

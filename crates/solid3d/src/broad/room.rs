@@ -21,8 +21,17 @@ pub(crate) fn room<T>(vector: &mut Vec<T>, len: usize) {
 #[inline]
 pub(crate) fn push<T>(vector: &mut Vec<T>, element: T) {
     if vector.len() == vector.capacity() {
-        room(vector, vector.len() + 1);
+        push_to_full(vector, element);
+    } else {
+        vector.push(element);
     }
+}
+
+/// The same to a full vector: apart, so that nothing is prepared for it where there is room.
+#[cold]
+#[inline(never)]
+fn push_to_full<T>(vector: &mut Vec<T>, element: T) {
+    room(vector, vector.len() + 1);
     vector.push(element);
 }
 

@@ -340,7 +340,9 @@ fn many_at_once_are_as_one_by_one() {
                         let (once, again) = boxes.split_at(BOXES as usize);
                         let proxies: Vec<Proxy> = once.iter().map(|(proxy, _)| *proxy).collect();
                         let bounds: BTreeMap<Proxy, Aabb> = once.iter().copied().collect();
-                        broad.update_with(&proxies, &|proxy| bounds[&proxy]);
+                        broad.update_with(&proxies, &|boxes| {
+                            boxes.iter_mut().for_each(|(proxy, to)| *to = bounds[proxy])
+                        });
                         broad.update_many(again);
                     }
                 }
@@ -388,7 +390,9 @@ fn many_boxes_with_a_bad_one_are_refused() {
             }
             let told = std::panic::AssertUnwindSafe(|| match how {
                 _ if insert => broad.insert_many(&bad),
-                Told::With => broad.update_with(&proxies, &|proxy| bad[proxy as usize].1),
+                Told::With => broad.update_with(&proxies, &|boxes| {
+                    boxes.iter_mut().for_each(|(proxy, to)| *to = bad[*proxy as usize].1)
+                }),
                 _ => broad.update_many(&bad),
             });
             let refused = std::panic::catch_unwind(told).unwrap_err();

@@ -1,5 +1,6 @@
 //! How far a placed shape reaches.
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::simd::dispatch;
 use solid_convex::{Support, gjk};
@@ -14,11 +15,26 @@ const BOUNDS_MARGIN: f64 = 4.0 * gjk::TOUCHING_ERROR;
 
 /// A box of the world around a placed shape. For a complex shape, around its tree's root box (thesis, section 6.3.4).
 pub(crate) fn world_bounds(placed: Placed) -> Aabb {
+    let mut bounds = Aabb::EMPTY;
+    dispatch!(simd => world_bounds_into(simd, placed, &mut bounds));
+    bounds
+}
+
+/// The [`world_bounds`], for kernels that they are a part of: put where they are to be.
+#[inline(always)]
+pub(crate) fn world_bounds_into<S: Simd>(simd: S, placed: Placed, bounds: &mut Aabb) {
     let DAffine3 { matrix3: linear, translation } = placed.placement;
-    if let Some(polytope) = placed.shape.polytope() {
+    match placed.shape.polytope() {
         // In one kernel: what is written by vectors and read by numbers is waited for.
-        return dispatch!(simd => enclosing(polytope.image_bounds_by(simd, linear), *translation));
+        Some(polytope) => *bounds = enclosing(polytope.image_bounds_by(simd, linear), *translation),
+        None => *bounds = others_world_bounds(placed),
     }
+}
+
+/// The same of what is no polytope.
+#[inline(never)]
+fn others_world_bounds(placed: Placed) -> Aabb {
+    let DAffine3 { matrix3: linear, translation } = placed.placement;
     let Aabb { min, max } = match placed.shape.class() {
         Class::Convex(convex) => convex_bounds(convex, linear),
         Class::Complex(complex) => complex.bounds().transformed(&DAffine3::from_mat3(*linear)),

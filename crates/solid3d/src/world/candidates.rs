@@ -5,6 +5,7 @@
 //! into the queue, which the next test examines. So the cost of a test follows what changed.
 
 use glam::DVec3;
+use solid_convex::simd::dispatch;
 
 use super::arena::slot_of;
 use super::findings::{FindingId, Findings};
@@ -235,9 +236,12 @@ impl World {
     fn update_broad(&mut self) {
         let Self { broad, objects, stirred, clearances, .. } = self;
         stirred.sort();
-        broad.update_with(stirred.elsewhere(), &|slot| {
-            let object = objects.at(slot).expect("what is elsewhere is in the world");
-            clearances.grown(|| object.bounds())
+        broad.update_with(stirred.elsewhere(), &|boxes| {
+            dispatch!(simd => for (slot, bounds) in &mut *boxes {
+                let object = objects.at(*slot).expect("what is elsewhere is in the world");
+                object.bounds_into(simd, bounds);
+            });
+            clearances.grow(boxes.iter_mut().map(|(_, bounds)| bounds));
         });
         broad.flush();
     }

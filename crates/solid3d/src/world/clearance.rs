@@ -38,16 +38,16 @@ impl Clearances {
         self.pairs.get(&(a.min(b), a.max(b))).copied().unwrap_or(self.default)
     }
 
-    /// A box, grown so that it overlaps that of another object wherever the two are nearer than their clearance.
-    #[inline]
-    pub fn grown(&self, bounds: impl FnOnce() -> Aabb) -> Aabb {
-        if self.most == 0.0 { bounds() } else { self.grown_by_half(bounds()) }
-    }
-
-    fn grown_by_half(&self, bounds: Aabb) -> Aabb {
-        let Aabb { min, max } = bounds.inflated(self.most * (0.5 + GROWTH_ERROR));
-        // To the next numbers outside, for the sums are rounded.
-        Aabb::new(min.map(f64::next_down), max.map(f64::next_up))
+    /// Grows boxes so that each overlaps that of another object wherever the two are nearer than their clearance.
+    pub fn grow<'a>(&self, boxes: impl IntoIterator<Item = &'a mut Aabb>) {
+        if self.most == 0.0 {
+            return;
+        }
+        for bounds in boxes {
+            let Aabb { min, max } = bounds.inflated(self.most * (0.5 + GROWTH_ERROR));
+            // To the next numbers outside, for the sums are rounded.
+            *bounds = Aabb::new(min.map(f64::next_down), max.map(f64::next_up));
+        }
     }
 
     fn set(&mut self, a: ObjectId, b: ObjectId, clearance: f64, is_there: impl Fn(ObjectId) -> bool) {

@@ -37,6 +37,7 @@ pub use response::Response;
 pub use statistics::Statistics;
 pub use test::TestProgress;
 
+use crate::broad::room::push;
 use crate::broad::{BroadPhase, PROXY_MAX};
 use crate::error::{Error, Result};
 use crate::placement;
@@ -168,7 +169,8 @@ impl World {
             });
         }
         let object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
-        let bounds = self.clearances.grown(|| object.bounds());
+        let mut bounds = object.bounds();
+        self.clearances.grow([&mut bounds]);
         let id = self.objects.insert(object);
         self.added += 1;
         self.stale = true;
@@ -312,18 +314,26 @@ impl World {
     }
 
     /// Notes that an object in the world is not where the broad phase and the previous frame have it.
+    #[inline]
     fn touch(&mut self, id: ObjectId, was_displaced: bool) {
         if !was_displaced {
             if self.displaced.len() > 2 * self.objects.len() {
-                // Most of them were removed; without `proceed` nothing else would forget them.
-                self.displaced.retain(|&id| self.objects.contains_key(id));
+                self.forget_removed();
             }
-            self.displaced.push(id);
+            push(&mut self.displaced, id);
         }
         self.stir(id, Staleness::Bounds);
     }
 
+    /// Forgets which of the displaced were removed, where most were: without `proceed` nothing else would.
+    #[cold]
+    #[inline(never)]
+    fn forget_removed(&mut self) {
+        self.displaced.retain(|&id| self.objects.contains_key(id));
+    }
+
     /// Notes what of an object in the world is out of date.
+    #[inline]
     fn stir(&mut self, id: ObjectId, what: Staleness) {
         self.stirred.stir(proxy(id), what);
         self.stale = true;

@@ -1,12 +1,14 @@
 //! An object: an instance of a shape at a place.
 
+use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
+use solid_convex::simd::dispatch;
 
 use super::{Boxes, Motion};
 use crate::bounds::Aabb;
 use crate::error::Result;
 use crate::pair::swept::{Moving, deformation, moving_bounds};
-use crate::pair::{Placed, fixed_bounds, world_bounds};
+use crate::pair::{Placed, fixed_bounds, world_bounds, world_bounds_into};
 use crate::shape::Shape;
 
 slotmap::new_key_type! {
@@ -57,6 +59,7 @@ impl Default for Extra {
 
 impl Extra {
     /// What is now, of this shape, becomes the previous frame.
+    #[inline(never)]
     fn proceed(&mut self, shape: &Shape) {
         self.deformation = STILL;
         if let Some(old) = self.previous_shape.take()
@@ -139,6 +142,7 @@ impl Object {
         self.motion == Motion::Swept && self.displaced && self.has_moved()
     }
 
+    #[inline(never)]
     fn has_moved(&self) -> bool {
         self.placement != *self.previous_placement() || self.was_deformed()
     }
@@ -169,20 +173,32 @@ impl Object {
     }
 
     /// The box for the broad phase: it contains the object on its way.
-    #[inline]
     pub fn bounds(&self) -> Aabb {
-        if self.has_way() { self.bounds_on_way() } else { self.bounds_of(self.placed()) }
+        let mut bounds = Aabb::EMPTY;
+        dispatch!(simd => self.bounds_into(simd, &mut bounds));
+        bounds
     }
 
-    fn bounds_on_way(&self) -> Aabb {
-        moving_bounds(&self.moving(), |placed| self.bounds_of(placed))
+    /// The same, in a kernel that finds those of many: put where it is to be, since what is written by numbers and copied by vectors is
+    /// waited for.
+    #[inline(always)]
+    pub fn bounds_into<S: Simd>(&self, simd: S, bounds: &mut Aabb) {
+        if self.has_way() || self.extra.is_some() {
+            *bounds = self.unusual_bounds();
+        } else {
+            world_bounds_into(simd, self.placed(), bounds);
+        }
     }
 
-    #[inline]
-    fn bounds_of(&self, placed: Placed) -> Aabb {
+    /// Of an object on its way, or with a box of a fixed size.
+    #[inline(never)]
+    fn unusual_bounds(&self) -> Aabb {
         let radius = self.extra.as_ref().and_then(|extra| extra.radius);
-        let fixed = radius.and_then(|radius| fixed_bounds(placed.placement, radius));
-        fixed.unwrap_or_else(|| world_bounds(placed))
+        let bounds_of = |placed: Placed| {
+            let fixed = radius.and_then(|radius| fixed_bounds(placed.placement, radius));
+            fixed.unwrap_or_else(|| world_bounds(placed))
+        };
+        if self.has_way() { moving_bounds(&self.moving(), bounds_of) } else { bounds_of(self.placed()) }
     }
 
     /// Notes that it leaves the place and the shape of the previous frame, before it does.
@@ -191,9 +207,15 @@ impl Object {
         if !std::mem::replace(&mut self.displaced, true) {
             match &mut self.previous_placement {
                 Some(previous) => **previous = self.placement,
-                None => self.previous_placement = Some(Box::new(self.placement)),
+                None => self.displace_first(),
             }
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn displace_first(&mut self) {
+        self.previous_placement = Some(Box::new(self.placement));
     }
 
     /// Takes another place; it is displaced.

@@ -41,6 +41,7 @@ impl Stirred {
 
     /// The same in a slot that is beyond those stirred before.
     #[cold]
+    #[inline(never)]
     fn stir_new(&mut self, slot: Proxy, what: Staleness) {
         resize(&mut self.staleness, slot as usize + 1, Staleness::Fresh);
         self.stir(slot, what);

@@ -33,7 +33,7 @@ mod tree;
 use super::boxes::Boxes;
 use super::pair_lists::PairLists;
 use super::room::{resize_on_threads, room};
-use super::{BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid};
+use super::{BoundsOf, BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid};
 use crate::bounds::Aabb;
 use crate::threads::both;
 use build::Builder;
@@ -322,10 +322,11 @@ impl BroadPhase for DynamicTree {
         }
     }
 
-    fn update_with(&mut self, proxies: &[Proxy], bounds: &(dyn Fn(Proxy) -> Aabb + Sync)) {
+    fn update_with(&mut self, proxies: &[Proxy], bounds: &BoundsOf) {
         if let Some(refused) = self.move_many(Told::MovedTo(proxies, bounds)) {
-            let proxy = proxies[refused];
-            self.refuse_update(proxy, &bounds(proxy));
+            let mut one = [(proxies[refused], Aabb::EMPTY)];
+            bounds(&mut one);
+            self.refuse_update(one[0].0, &one[0].1);
         }
     }
 

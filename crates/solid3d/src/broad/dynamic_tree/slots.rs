@@ -16,7 +16,7 @@ use crate::broad::boxes::{Row, of_row, row};
 #[cfg(feature = "rayon")]
 use crate::broad::room::extend;
 use crate::broad::room::{push, room};
-use crate::broad::{Proxy, is_valid};
+use crate::broad::{BoundsOf, Proxy, is_valid};
 #[cfg(feature = "rayon")]
 use crate::threads::{first_part_where, share};
 use fearless_simd::Simd;
@@ -215,7 +215,7 @@ pub(super) enum Told<'a> {
     /// They are moved.
     Moved(&'a [(Proxy, Aabb)]),
     /// They are moved to where a function says.
-    MovedTo(&'a [Proxy], &'a (dyn Fn(Proxy) -> Aabb + Sync)),
+    MovedTo(&'a [Proxy], &'a BoundsOf<'a>),
 }
 
 impl Told<'_> {
@@ -249,7 +249,7 @@ impl Slots<'_> {
     fn update_to(
         &mut self,
         proxies: &[Proxy],
-        bounds: impl Fn(Proxy) -> Aabb,
+        bounds: &BoundsOf,
         notes: &mut Notes,
         moved_max: usize,
     ) -> Option<usize> {
@@ -259,8 +259,8 @@ impl Slots<'_> {
             let boxes = &mut boxes[..some.len()];
             for (to, &proxy) in boxes.iter_mut().zip(some) {
                 to.0 = proxy;
-                to.1 = bounds(proxy);
             }
+            bounds(boxes);
             let refused = dispatch!(simd => self.update_each(simd, boxes, notes, moved_max));
             if let Some(refused) = refused {
                 return Some(first + refused);
