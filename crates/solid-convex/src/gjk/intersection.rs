@@ -215,16 +215,17 @@ where
 }
 
 /// Whether an axis separates by so large a gap that it may answer alone.
-struct Separates {
-    axis: DVec3,
+struct Separates<'a> {
+    /// Where it is kept: of a copy, the kernel would wait for what was just written.
+    axis: &'a DVec3,
 }
 
-impl Task for Separates {
+impl Task for Separates<'_> {
     type Found = bool;
 
     #[inline(always)]
     fn run(self, difference: &impl MinkowskiDifference) -> bool {
-        clearly_separates(self.axis, difference.support_against(self.axis).w)
+        clearly_separates(*self.axis, difference.support_against(*self.axis).w)
     }
 }
 
@@ -243,7 +244,7 @@ pub(super) const CACHED_GAP_MIN: f64 = 1.0 / (1u64 << 26) as f64;
 ///
 /// `true` is certain, and [`intersection`] then says [`Separated`](Outcome::Separated); `false` says nothing. The zero
 /// axis separates nothing.
-pub fn separates<A, B>(axis: DVec3, a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3) -> bool
+pub fn separates<A, B>(axis: &DVec3, a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3) -> bool
 where
     A: Support + ?Sized,
     B: Support + ?Sized,

@@ -28,7 +28,7 @@ fn swapping_negates_the_axis() {
                 match (outcome, swapped) {
                     (Outcome::Separated { axis }, Outcome::Separated { .. }) => {
                         separated += 1;
-                        assert!(separates(-axis, &**b, &at_b, &**a, &at_a), "{axis} the other way round");
+                        assert!(separates(&-axis, &**b, &at_b, &**a, &at_a), "{axis} the other way round");
                     }
                     (Outcome::Separated { .. }, _) | (_, Outcome::Separated { .. }) => {
                         panic!("{outcome:?}, {swapped:?}")
@@ -89,11 +89,11 @@ fn what_a_cached_axis_separates_is_separated() {
     for k in 0..2_000 {
         let axis = placement(k).translation;
         let (at_a, at_b) = (placement(3 * k), placement(5 * k + 1));
-        if separates(axis, &a, &at_a, &b, &at_b) {
+        if separates(&axis, &a, &at_a, &b, &at_b) {
             held += 1;
             assert!(matches!(intersection(&a, &at_a, &b, &at_b), Outcome::Separated { .. }));
         }
-        assert!(!separates(DVec3::ZERO, &a, &at_a, &b, &at_b), "no axis is no answer");
+        assert!(!separates(&DVec3::ZERO, &a, &at_a, &b, &at_b), "no axis is no answer");
     }
     assert!(held > 50, "{held}");
 }

@@ -135,7 +135,7 @@ pub(crate) fn meeting_primitives(
 
 /// Whether the axis of an earlier frame clearly separates two convex shapes; the answer of [`intersection`] is then
 /// the same. See [`gjk::separates`].
-pub(crate) fn still_separated(axis: DVec3, a: Placed, b: Placed) -> bool {
+pub(crate) fn still_separated(axis: &DVec3, a: Placed, b: Placed) -> bool {
     if let (Some(on_a), Some(on_b)) = (a.shape.polytope(), b.shape.polytope()) {
         return gjk::separates(axis, on_a, a.placement, on_b, b.placement);
     }

@@ -166,7 +166,7 @@ fn axis_of_hulls(
     intersect: impl FnOnce(&mut Scratch) -> bool,
 ) -> Option<DVec3> {
     let axis = convex_convex::axis(a, b, scratch)?;
-    (gjk::separates(axis, a.0, a.1, b.0, b.1) || !intersect(scratch)).then_some(axis)
+    (gjk::separates(&axis, a.0, a.1, b.0, b.1) || !intersect(scratch)).then_some(axis)
 }
 
 /// How deep they are in each other.

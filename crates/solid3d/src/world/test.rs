@@ -28,7 +28,6 @@ struct Verdict {
     /// Whether its response is not to ignore it.
     matters: bool,
     outcome: Outcome,
-    axis: Option<DVec3>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -185,7 +184,7 @@ impl World {
         let mut described = Vec::new();
         let Self { objects, responses, caching, workers, statistics, .. } = self;
         let examiner = Examiner { objects, responses, caching: *caching };
-        let verdict = examiner.examine(a, b, None, workers.own(), &mut described, statistics);
+        let verdict = examiner.examine(a, b, &mut None, workers.own(), &mut described, statistics);
         let found = verdict.outcome.found(|| described.pop());
         statistics.candidates += 1;
         statistics.collisions += u64::from(found.is_some());
@@ -273,10 +272,9 @@ impl Examiner<'_> {
     /// Examines a candidate, and keeps what is of it alone; the rest is news.
     fn renew(&self, place: Place, candidate: &mut Option<Candidate>, news: &mut News, scratch: &mut Scratch) {
         let candidate = candidate.as_mut().expect("what waits to be examined is a candidate");
-        let &mut Candidate { a, b, axis, found, .. } = candidate;
-        let Verdict { matters, outcome, axis } =
+        let &mut Candidate { a, b, ref mut axis, found, .. } = candidate;
+        let Verdict { matters, outcome } =
             self.examine(a, b, axis, scratch, &mut news.described, &mut news.work);
-        candidate.axis = axis;
         let was_plain = std::mem::replace(&mut candidate.is_plain, outcome == Outcome::Plain);
         news.matter += u64::from(matters);
         news.mattered += u64::from(std::mem::replace(&mut candidate.matters, matters));
@@ -290,35 +288,36 @@ impl Examiner<'_> {
         }
     }
 
-    /// Whether two objects collide, of which `a` comes first; a function of the two, their response and the axis alone. What more is
-    /// known of a collision is put into `described`, and the work is added to that done before.
+    /// Whether two objects collide, of which `a` comes first; a function of the two, their response and the axis alone, in place of which
+    /// that is put which separates them now. What more is known of a collision is put into `described`, and the work is added to that
+    /// done before.
     fn examine(
         &self,
         a: ObjectId,
         b: ObjectId,
-        axis: Option<DVec3>,
+        axis: &mut Option<DVec3>,
         scratch: &mut Scratch,
         described: &mut Vec<(When, Contact)>,
         work: &mut Statistics,
     ) -> Verdict {
         let response = self.responses.of(a, b);
         if response == Response::Ignore {
+            *axis = None;
             return Verdict::default();
         }
         work.examined += 1;
         let (a, b) = (&self.objects[a], &self.objects[b]);
         let way = (a.has_way() || b.has_way()).then(|| [a.moving(), b.moving()]);
-        let still_separated = |&axis: &DVec3| match &way {
+        let still_separated = |axis: &DVec3| match &way {
             None => pair::still_separated(axis, a.placed(), b.placed()),
-            Some([a, b]) => swept::still_separated(axis, a, b),
+            Some([a, b]) => swept::still_separated(*axis, a, b),
         };
-        let cached = axis.filter(|_| self.caching);
-        if let Some(axis) = cached.filter(still_separated) {
+        if self.caching && axis.as_ref().is_some_and(still_separated) {
             work.cache_hits += 1;
-            return Verdict { matters: true, outcome: Outcome::Apart, axis: Some(axis) };
+            return Verdict { matters: true, outcome: Outcome::Apart };
         }
         let before = scratch.work();
-        let (outcome, axis) = match (now([a, b], response, scratch, described), &way) {
+        let (outcome, found) = match (now([a, b], response, scratch, described), &way) {
             (Now::Collide(outcome), _) => (outcome, None),
             (Now::Apart { axis }, None) => (Outcome::Apart, axis),
             (Now::Apart { .. }, Some(way)) => {
@@ -329,7 +328,8 @@ impl Examiner<'_> {
         let after = scratch.work();
         work.box_tests += after.0 - before.0;
         work.primitive_tests += after.1 - before.1;
-        Verdict { matters: true, outcome, axis: axis.filter(|_| self.caching) }
+        *axis = found.filter(|_| self.caching);
+        Verdict { matters: true, outcome }
     }
 }
 

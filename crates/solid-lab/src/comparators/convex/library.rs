@@ -17,7 +17,7 @@ impl ConvexTest for Library {
     fn intersects(&mut self, pair: &Pair, memory: &mut Memory) -> bool {
         self.counters.tests += 1;
         let Pair { a, placement_a, b, placement_b } = *pair;
-        if memory.axis != DVec3::ZERO && gjk::separates(memory.axis, a, placement_a, b, placement_b) {
+        if memory.axis != DVec3::ZERO && gjk::separates(&memory.axis, a, placement_a, b, placement_b) {
             return false;
         }
         match gjk::intersection(a, placement_a, b, placement_b) {

@@ -54,7 +54,7 @@ fn closed_forms_say_what_gjk_says() {
                 }
                 match intersection(placed[0], placed[1]) {
                     Some(Relation::Separated { axis: Some(axis) }) => {
-                        assert!(gjk::separates(axis, support(a), &at_a, support(b), &at_b), "{axis}");
+                        assert!(gjk::separates(&axis, support(a), &at_a, support(b), &at_b), "{axis}");
                         assert!((axis.length() - 1.0).abs() < 1e-14);
                     }
                     Some(Relation::Common(points)) => {
