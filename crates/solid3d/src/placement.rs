@@ -94,6 +94,20 @@ pub(crate) fn inverse_linear(linear: &DMat3) -> DMat3 {
     if *linear == DMat3::IDENTITY {
         return DMat3::IDENTITY;
     }
+    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis].map(|axis| axis.abs().max_element());
+    if x.min(y).min(z) >= PLAIN_LENGTH_MIN && x.max(y).max(z) <= PLAIN_LENGTH_MAX {
+        return linear.inverse();
+    }
+    scaled_inverse(linear)
+}
+
+/// The lengths of axes between which no product of the inverse overflows or loses digits: it then has the same bits without scaling.
+const PLAIN_LENGTH_MIN: f64 = 1e-30;
+const PLAIN_LENGTH_MAX: f64 = 1e30;
+
+/// The inverse by axes of about unit length.
+#[inline(never)]
+fn scaled_inverse(linear: &DMat3) -> DMat3 {
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *linear;
     // With L = U D, D powers of two near the lengths of the axes, by which all products are exact: L^-1 = D^-1 U^-1.
     let [a, b, c] = [x, y, z].map(|axis| unit_scale(axis.abs().max_element()));
@@ -130,6 +144,20 @@ mod tests {
             assert!(checked(&placement).is_ok(), "{scale}");
             let product = placement.matrix3 * inverse_linear(&placement.matrix3);
             assert!(product.abs_diff_eq(DMat3::IDENTITY, 1e-15), "{product}");
+        }
+    }
+
+    /// Law: of axes of ordinary lengths the inverse has the same bits with and without scaling.
+    #[test]
+    fn scaling_changes_no_bit_of_an_inverse() {
+        let mut rng = seeded(815);
+        for case in 0..10_000 {
+            let mut axis = || {
+                let size = 10f64.powi(if case % 2 == 0 { 0 } else { rng.random_range(-28..=28) });
+                size * DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)))
+            };
+            let linear = DMat3::from_cols(axis(), axis(), axis());
+            assert_eq!(inverse_linear(&linear), scaled_inverse(&linear), "{linear}");
         }
     }
 

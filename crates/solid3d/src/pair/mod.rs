@@ -57,7 +57,7 @@ pub(crate) use surface::{SurfacePoint, surface_point};
 pub use swept::Path;
 pub(crate) use table::{
     axis, closest, closest_within, convex_closest_within, convex_intersects, intersection, intersects,
-    penetration, separation,
+    intersects_by_class, penetration, separation,
 };
 
 use crate::placement::inverse_linear;

@@ -42,15 +42,18 @@ pub(crate) fn intersects(a: Placed, b: Placed, scratch: &mut Scratch) -> bool {
             scratch.primitive_tests += 1;
             answer
         }
-        None => {
-            const ROW: Row<bool> = Row {
-                convex_convex: |a, b, _| convex_convex::intersects(a, b),
-                complex_convex: complex_convex::intersects,
-                complex_complex: complex_complex::intersects,
-            };
-            ROW.apply(a, b, scratch)
-        }
+        None => intersects_by_class(a, b, scratch),
     }
+}
+
+/// The same of shapes for which nothing more particular is known: one of them is complex at least.
+pub(crate) fn intersects_by_class(a: Placed, b: Placed, scratch: &mut Scratch) -> bool {
+    const ROW: Row<bool> = Row {
+        convex_convex: |a, b, _| convex_convex::intersects(a, b),
+        complex_convex: complex_convex::intersects,
+        complex_complex: complex_complex::intersects,
+    };
+    ROW.apply(a, b, scratch)
 }
 
 /// What [`intersects`] says of convex shapes, for which no working memory is needed; `None` for others.

@@ -85,7 +85,7 @@ fn intersects_at_length(&[a, b]: &[Placed; 2], seen: Glance) -> Result<bool> {
     }
     let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
     let answer = pair::convex_intersects(a, b);
-    Ok(answer.unwrap_or_else(|| Scratch::with(|scratch| pair::intersects(a, b, scratch))))
+    Ok(answer.unwrap_or_else(|| Scratch::with(|scratch| pair::intersects_by_class(a, b, scratch))))
 }
 
 /// A point that two placed shapes have in common, in the world; `None` when they do not intersect.

@@ -13,14 +13,16 @@
 //! added to |F| h). [`MARGIN`] is 8u, and counts sum |F| twice. What underflows loses less than [`UNDERFLOW`].
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8};
+use fearless_simd::{Simd, f32x8, mask32x8};
 use glam::DVec3;
+use solid_convex::simd::part;
 
 use super::crossing::{Folded, MARGIN, UNDERFLOW, row_sums};
 use super::lanes::{LANES, bits, lanes, splat};
 use super::node::{Node, WIDTH};
 use super::normal::round_down;
 use super::packed::PackedBox;
+use super::siblings::Deepest;
 
 /// Up to here nothing overflows, even where an empty lane reaches 1e30; beyond it, boxes are looked at one by one.
 const MAP_MAX: f64 = 1e6;
@@ -99,25 +101,26 @@ pub(super) struct Overlaps {
     pub tested: u32,
     /// The pairs that may overlap, as bits: eight for each lane of `b`, one for each of `a`.
     pub hits: u64,
+    /// Which of them overlaps deepest, if that was found with them and is not yet asked for.
+    pub deepest: Option<u8>,
     /// In the same order, how far those of `a` are apart from those of `b` on their own axes, below zero by how far they overlap; of
     /// lanes that were tested.
     pub gaps: [[f32; WIDTH]; WIDTH],
 }
 
-/// The boxes of a node of `a` against those of one of `b`, given the images of `b` in `a` and the reverse, and the box around those of `a`.
-#[inline(never)] // nor into each walk: on the scalar level, optimising these then takes minutes
+/// The boxes of a node of `a` against those of one of `b`, given the images of `b` in `a` and the reverse, and the box around those of `a`;
+/// and which of them overlaps deepest, if that is wanted.
+#[inline(always)]
 pub(super) fn overlaps<S: Simd>(
     simd: S,
     a: &Node,
     b: &Node,
     images: &[Image; 2],
     around_a: &PackedBox,
+    wants_deepest: bool,
     overlaps: &mut Overlaps,
 ) {
-    simd.vectorize(
-        #[inline(always)]
-        || overlaps_on(simd, a, b, images, around_a, overlaps),
-    );
+    part!(simd => overlaps_on(simd, a, b, images, around_a, wants_deepest, overlaps));
 }
 
 #[inline(always)]
@@ -127,16 +130,23 @@ fn overlaps_on<S: Simd>(
     b: &Node,
     [b_in_a, a_in_b]: &[Image; 2],
     around_a: &PackedBox,
+    wants_deepest: bool,
     overlaps: &mut Overlaps,
 ) {
     let (of_a, of_b) = (Eight::new(simd, a, a_in_b), OneByOne::new(simd, b, b_in_a));
     overlaps.tested = of_b.near(simd, around_a);
     overlaps.hits = 0;
+    let mut deepest = Deepest::new(simd);
     for lane in bits(overlaps.tested) {
-        let (hits, gaps) = of_a.overlapping(simd, &of_b, lane);
+        let (apart, gaps) = of_a.apart(simd, &of_b, lane);
+        let hits = !(apart.to_bitmask() as u32) & LANES;
         overlaps.hits |= u64::from(hits) << (WIDTH * lane);
-        overlaps.gaps[lane] = gaps;
+        if wants_deepest {
+            overlaps.gaps[lane] = gaps.to_array();
+            deepest.take(simd, lane, !apart, gaps);
+        }
     }
+    overlaps.deepest = if wants_deepest { Some(deepest.place()) } else { None };
 }
 
 /// The eight boxes of a node, ready to be held against boxes of another tree.
@@ -164,10 +174,10 @@ impl<S: Simd> Eight<S> {
         Eight { own, image: image.of(simd, node) }
     }
 
-    /// The lanes that may overlap box `lane` of the others, as bits; and how far each is apart from it on its own axes, below
-    /// zero by how far it overlaps.
+    /// The lanes that do not overlap box `lane` of the others; and how far each is apart from it on its own axes, below zero by how far it
+    /// overlaps.
     #[inline(always)]
-    fn overlapping(&self, simd: S, others: &OneByOne, lane: usize) -> (u32, [f32; WIDTH]) {
+    fn apart(&self, simd: S, others: &OneByOne, lane: usize) -> (mask32x8<S>, f32x8<S>) {
         let mut gaps = [splat(simd, 0.0); 3];
         let mut other_gaps = gaps;
         for axis in 0..3 {
@@ -180,8 +190,7 @@ impl<S: Simd> Eight<S> {
         }
         let gap = gaps[0].max(gaps[1]).max(gaps[2]);
         let other_gap = other_gaps[0].max(other_gaps[1]).max(other_gaps[2]);
-        let apart = gap.max(other_gap).simd_gt(splat(simd, 0.0));
-        (!(apart.to_bitmask() as u32) & LANES, gap.to_array())
+        (gap.max(other_gap).simd_gt(splat(simd, 0.0)), gap)
     }
 }
 
@@ -242,9 +251,17 @@ mod tests {
             let images = [of_b, of_a].map(|folded| Image::new(&folded).expect("the map is of moderate size"));
             let [a, b] = &nodes;
             let all = levels().map(|level| {
-                let mut found = Overlaps::default();
-                dispatch!(level, simd => overlaps(simd, a, b, &images, &a.union(), &mut found));
-                found
+                dispatch!(level, simd => {
+                    let [mut found, mut unordered] = [Overlaps::default(); 2];
+                    overlaps(simd, a, b, &images, &a.union(), true, &mut found);
+                    overlaps(simd, a, b, &images, &a.union(), false, &mut unordered);
+                    assert_eq!((unordered.hits, unordered.deepest), (found.hits, None));
+                    if found.hits != 0 {
+                        let sought = Overlaps { deepest: None, ..found }.take_deepest(simd);
+                        assert_eq!(found.deepest.map(usize::from), Some(sought), "round {round}");
+                    }
+                    found
+                })
             });
             assert!(all[1] == all[0], "round {round}: {all:?}");
             for (j, hit) in all[0].hits.to_le_bytes().map(u32::from).into_iter().enumerate() {

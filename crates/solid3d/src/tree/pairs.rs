@@ -10,6 +10,7 @@ use super::lanes::overlapping_probe;
 use super::node::{Kind, WIDTH};
 use super::packed::PackedBox;
 use super::relative::Relative;
+use super::siblings::Subtree;
 use super::{Place, Traversal, Tree};
 use std::cell::OnceCell;
 use std::ops::ControlFlow;
@@ -89,41 +90,45 @@ fn walk<B, S: Simd>(
 ) -> ControlFlow<B> {
     let (a, b) = (duel.a, duel.b);
     let Traversal { counters, pairs: stack, .. } = traversal;
-    stack.begin([Place::ROOT; 2]);
+    let Pair { extent_a, extent_b, .. } = duel.roots();
+    stack.begin([Subtree::root(extent_a), Subtree::root(extent_b)]);
     let wants_first = visitor.wants_first();
     // Of the boxes tested last: several in a row are often the same.
-    let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
-    while let Some([at_a, at_b]) = stack.pop(simd, wants_first) {
-        let step = duel.step_at(
-            at_a,
-            at_b,
-            #[inline(always)]
-            || [extent(&a.box_at(at_a)), extent(&b.box_at(at_b))],
-        );
-        match step {
+    let (mut in_a, mut in_b) = (Tested::default(), Tested::default());
+    while let Some(subtrees) = stack.pop(simd, wants_first) {
+        let [of_a, of_b] = &subtrees;
+        match duel.step_of(&subtrees) {
             Step::Leaves(leaf_a, leaf_b) => {
                 counters.leaf_visits += 1;
                 visitor.visit(simd, leaf_a, leaf_b)?;
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let probe = of_b.probe(simd, duel.b_to_a(), b, at_b);
-                let found = overlapping_probe(simd, &a.nodes[node], duel.b_to_a(), probe);
-                stack.above().of_a(node, at_b, found);
+                let (node_a, probe) = (&a.nodes[node], in_b.probe(simd, duel.b_to_a(), b, of_b.place));
+                let found = overlapping_probe(simd, node_a, duel.b_to_a(), probe);
+                stack.above().of_a(simd, (node, node_a), of_b, found);
                 stack.push();
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let probe = of_a.probe(simd, duel.a_to_b(), a, at_a);
-                let found = overlapping_probe(simd, &b.nodes[node], duel.a_to_b(), probe);
-                stack.above().of_b(node, at_a, found);
+                let (node_b, probe) = (&b.nodes[node], in_a.probe(simd, duel.a_to_b(), a, of_a.place));
+                let found = overlapping_probe(simd, node_b, duel.a_to_b(), probe);
+                stack.above().of_b(simd, (node, node_b), of_a, found);
                 stack.push();
             }
             Step::OpenBoth(node_a, node_b, images) => {
                 let (lanes_a, lanes_b) = (&a.nodes[node_a], &b.nodes[node_b]);
                 let siblings = stack.above();
-                siblings.of_both(node_a, node_b);
-                overlaps(simd, lanes_a, lanes_b, images, &a.box_at(at_a), &mut siblings.left);
+                siblings.of_both(simd, (node_a, lanes_a), (node_b, lanes_b));
+                overlaps(
+                    simd,
+                    lanes_a,
+                    lanes_b,
+                    images,
+                    &a.box_at(of_a.place),
+                    wants_first,
+                    &mut siblings.left,
+                );
                 counters.box_tests += u64::from(siblings.left.tested.count_ones());
                 stack.push();
             }
@@ -279,26 +284,22 @@ impl<'t> Duel<'t> {
     /// each other all at once.
     #[inline(always)]
     pub fn step(&self, pair: &Pair) -> Step<'_, 't> {
-        self.step_at(
-            pair.a,
-            pair.b,
-            #[inline(always)]
-            || [pair.extent_a, pair.extent_b],
-        )
+        self.step_of(&[
+            Subtree { place: pair.a, child: self.a.child_at(pair.a), extent: pair.extent_a },
+            Subtree { place: pair.b, child: self.b.child_at(pair.b), extent: pair.extent_b },
+        ])
     }
 
-    /// The same of two places, given how to find the sizes of the boxes there.
+    /// The same of two subtrees.
     #[inline(always)]
-    fn step_at(&self, at_a: Place, at_b: Place, extents: impl Fn() -> [f32; 2]) -> Step<'_, 't> {
-        let (child_a, child_b) = (self.a.child_at(at_a), self.b.child_at(at_b));
-        match (child_a.kind(), child_b.kind()) {
+    fn step_of(&self, [a, b]: &[Subtree; 2]) -> Step<'_, 't> {
+        match (a.child.kind(), b.child.kind()) {
             (Kind::Empty, _) | (_, Kind::Empty) => Step::Nothing,
             (Kind::Leaf(of_a), Kind::Leaf(of_b)) => Step::Leaves(self.a.leaf(of_a), self.b.leaf(of_b)),
             (Kind::Inner(node), Kind::Leaf(_)) => Step::OpenA(node),
             (Kind::Leaf(_), Kind::Inner(node)) => Step::OpenB(node),
             (Kind::Inner(node_a), Kind::Inner(node_b)) => {
-                let [extent_a, extent_b] = extents();
-                let (size_a, size_b) = (extent_a, self.magnification * extent_b);
+                let (size_a, size_b) = (a.extent, self.magnification * b.extent);
                 if let Some(images) = &self.images
                     && size_a <= EVEN * size_b
                     && size_b <= EVEN * size_a
