@@ -9,6 +9,7 @@ use std::ops::RangeInclusive;
 use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::intersection::CACHED_GAP_MIN;
 use crate::difference::SUPPORT_ERROR;
 use crate::simd::dispatch;
 use crate::similarity::{STRETCH_ERROR, rough_squares};
@@ -100,19 +101,76 @@ pub fn glance_by<S: Simd>(
     (a, placement_a): (&Polytope, &DAffine3),
     (b, placement_b): (&Polytope, &DAffine3),
 ) -> Glance {
-    let Some([square_a, square_b]) = rough_squares(simd, [placement_a, placement_b]) else {
-        return Glance::Unusual;
-    };
-    let offset = placement_b.translation - placement_a.translation;
-    let (on_a, on_b) = (a.own_balls().center, b.own_balls().center);
-    let square = (placement_a.matrix3 * on_a - (placement_b.matrix3 * on_b + offset)).length_squared();
-    let (scale_a, scale_b) = (square_a.sqrt(), square_b.sqrt());
-    let ([inside_a, outside_a], [inside_b, outside_b]) = (a.sure_radii(), b.sure_radii());
-    let near = inside_a * scale_a + inside_b * scale_b;
-    let far = outside_a * scale_a + outside_b * scale_b;
-    let meet = (near > 0.0) & (square < near * near);
-    let sure = PLAIN_SQUARES.contains(&(far * far)) & (meet | (square > far * far));
-    if sure { Glance::Sure(meet) } else { Glance::Open }
+    match Look::at(simd, (a, placement_a), (b, placement_b)) {
+        Some(look) => look.glance(),
+        None => Glance::Unusual,
+    }
+}
+
+/// Balls of two polytopes, under placements that are good.
+pub(super) struct Look {
+    pub scales: [f64; 2],
+    /// From the origin of the first to that of the second.
+    pub offset: DVec3,
+    /// The square of the distance of the centres.
+    square: f64,
+    /// At this distance the balls in the polytopes overlap.
+    near: f64,
+    /// At this distance the balls around the polytopes are apart.
+    far: f64,
+}
+
+impl Look {
+    #[inline(always)]
+    pub fn at<S: Simd>(
+        simd: S,
+        (a, placement_a): (&Polytope, &DAffine3),
+        (b, placement_b): (&Polytope, &DAffine3),
+    ) -> Option<Look> {
+        let squares = rough_squares(simd, [placement_a, placement_b])?;
+        let scales = [squares[0].sqrt(), squares[1].sqrt()];
+        let offset = placement_b.translation - placement_a.translation;
+        let (on_a, on_b) = (a.own_balls().center, b.own_balls().center);
+        let square = (placement_a.matrix3 * on_a - (placement_b.matrix3 * on_b + offset)).length_squared();
+        let ([inside_a, outside_a], [inside_b, outside_b]) = (a.sure_radii(), b.sure_radii());
+        let near = inside_a * scales[0] + inside_b * scales[1];
+        let far = outside_a * scales[0] + outside_b * scales[1];
+        Some(Look { scales, offset, square, near, far })
+    }
+
+    #[inline(always)]
+    pub fn glance(&self) -> Glance {
+        let Look { square, near, far, .. } = *self;
+        let meet = (near > 0.0) & (square < near * near);
+        let sure = PLAIN_SQUARES.contains(&(far * far)) & (meet | (square > far * far));
+        if sure { Glance::Sure(meet) } else { Glance::Open }
+    }
+
+    /// The gap along a unit axis, from the second to the first, where it is so large that the axis may answer alone. World units.
+    #[inline(always)]
+    pub fn gap_along<S: Simd>(
+        &self,
+        simd: S,
+        (a, at_a): (&Polytope, &DAffine3),
+        (b, at_b): (&Polytope, &DAffine3),
+        axis: DVec3,
+    ) -> Option<f64> {
+        let reach = a.farthest() * self.scales[0] + b.farthest() * self.scales[1];
+        // As much as any coordinate of the difference; and the sum of those of an axis.
+        let error = (reach + self.offset.abs().max_element()) * axis.abs().element_sum();
+        let along = [at_a.matrix3.mul_transpose_vec3(-axis), at_b.matrix3.mul_transpose_vec3(axis)];
+        let [of_a, of_b] = Polytope::greatest_of_both(simd, [a, b], along, &mut [DVec3::ZERO; 2]);
+        let gap = -(of_a + of_b + axis.dot(self.offset));
+        (PLAIN_SQUARES.contains(&(reach * reach)) & (gap > CACHED_GAP_MIN * error))
+            .then_some(gap - SUPPORT_ERROR * error)
+    }
+
+    /// How far apart the balls are that tell, or how deep in each other.
+    #[inline(always)]
+    pub fn room(&self, meet: bool) -> f64 {
+        let distance = self.square.sqrt();
+        if meet { self.near - distance } else { distance - self.far }
+    }
 }
 
 fn compare(a: &Balls, placement_a: &DAffine3, b: &Balls, placement_b: &DAffine3) -> Option<bool> {

@@ -1,18 +1,21 @@
 //! The motion clock: an answer, and whether it still is one after the two objects have moved.
 //!
-//! Of objects that are apart, the gap along the axis that separates them is room to move in: from the placements then and now follows a
-//! bound on how far any point of the objects has come along the axis, and while that is less than the gap, no support point is
-//! asked for. Of objects that intersect, the four points of each whose differences contained the origin are looked at where they
-//! are now. (Bounds on motion are what I-COLLIDE schedules pairs by; here they change no answer.)
+//! Of objects that are apart, the gap is room to move in: from the placements then and now follows a bound on how far any point of the
+//! objects has come, whichever way, and one on how far along the axis that separates them, which is less. While either is less than the gap,
+//! no support point is asked for. Where balls in the objects overlap, so much is room too; of others that intersect, the four points
+//! of each whose differences contained the origin are looked at where they are now. (Bounds on motion are what I-COLLIDE schedules pairs by;
+//! here they change no answer.)
 
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::balls::{Balls, Look};
 use super::intersection::CACHED_GAP_MIN;
 use super::pairs::{Pairs, images};
-use crate::Support;
 use crate::simd::dispatch;
+use crate::similarity::STRETCH_ERROR;
 use crate::simplex::VOLUME_ERROR;
+use crate::{Polytope, Support};
 
 /// What was last sure of two objects, and how far that goes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,6 +23,7 @@ pub(super) struct Clock {
     evidence: Evidence,
     a: Body,
     b: Body,
+    haste: Haste,
     /// At least the size of the data for as long as the bodies allow it. World units.
     size: f64,
 }
@@ -30,10 +34,35 @@ enum Evidence {
     /// Nothing is known.
     #[default]
     None,
+    /// Balls around the objects are apart, or balls in them overlap: [`Haste`] alone tells for how long.
+    Balls { meet: bool },
     /// The objects are apart along a unit axis, from `B` to `A`, by more than this and what the clock leaves.
     Apart { axis: DVec3, gap: f64 },
     /// The tetrahedron of the differences of the four pairs of points that are kept contains the origin.
     Common,
+}
+
+/// How much a change of a number of a placement counts for, squared: of the linear parts of `A` and of `B`, and of both translations. While the
+/// squares of the changes, times these, sum to at most one, no point has used up the room that the answer leaves, and placements are good.
+///
+/// A point moves by at most the Frobenius norm of the change of the linear part, times its distance from the local origin, and the length of that of the
+/// translation. Four lengths sum to at most twice the root of the sum of their squares: so each counts for two over the room.
+#[derive(Clone, Copy, Debug, Default)]
+struct Haste {
+    linear: [f64; 2],
+    translation: f64,
+}
+
+impl Haste {
+    /// For objects that reach as far as this from their local origins, in their own units, and the axes of whose placements may change at most at these
+    /// rates in any case.
+    #[inline(always)]
+    fn new(room: f64, reach: [f64; 2], rates: [f64; 2]) -> Haste {
+        let each = 2.0 / room;
+        let square = |x: f64| x * x;
+        let linear = |k: usize| square((each * reach[k]).max(rates[k]));
+        Haste { linear: [linear(0), linear(1)], translation: square(each) }
+    }
 }
 
 /// A placement by its columns, the translation last, for vector instructions.
@@ -59,6 +88,9 @@ const PLAIN_MAX: f64 = 1e35;
 /// The least volume between the axes of a placement, brought to unit length, of which a clock is set.
 const VOLUME_MIN: f64 = 1e-6;
 
+/// That of a placement that nearly is a similarity, at least.
+const SIMILAR_VOLUME: f64 = 1.0 - 8.0 * STRETCH_ERROR;
+
 /// By this part of its length, times the volume between the unit axes, may an axis change, if it is alone to. Unit axes are then off by at most
 /// 1.04 times that; the volume, which is linear in each of three, by at most the root of three times that, or 0.91 of itself, so that a
 /// placement that was far from singular still is. And no object is larger by more than half.
@@ -71,98 +103,173 @@ const GAP_LEFT_MIN: f64 = 2.0 * CACHED_GAP_MIN;
 
 impl Clock {
     /// Whether the objects intersect where they are now; `None` when that is to be found again. The pairs of points must be those that it was
-    /// set with. Placements of an answer are finite, not near singular, and of magnitudes below 1e37.
+    /// set with. Placements of an answer are finite, not near singular, and of magnitudes that are allowed.
     #[inline]
     pub fn answer(&self, pairs: &Pairs, at_a: &DAffine3, at_b: &DAffine3) -> Option<bool> {
-        match &self.evidence {
+        dispatch!(move simd => self.answer_by(simd, pairs, at_a, at_b))
+    }
+
+    /// The same, as a part of a kernel.
+    #[inline(always)]
+    pub fn answer_by<S: Simd>(
+        &self,
+        simd: S,
+        pairs: &Pairs,
+        at_a: &DAffine3,
+        at_b: &DAffine3,
+    ) -> Option<bool> {
+        match self.evidence {
             Evidence::None => None,
-            Evidence::Apart { axis, gap } => {
-                dispatch!(simd => self.still_apart(simd, at_a, at_b, *axis, *gap)).then_some(false)
-            }
-            Evidence::Common => dispatch!(simd => self.still_common(simd, at_a, at_b, pairs)).then_some(true),
+            Evidence::Balls { meet } => self.moved_little(simd, at_a, at_b).then_some(meet),
+            Evidence::Apart { axis, gap } => self.still_apart(simd, at_a, at_b, axis, gap).then_some(false),
+            Evidence::Common => self.still_common(simd, at_a, at_b, pairs).then_some(true),
         }
     }
 
+    /// Whether they moved by less than they may, whichever way.
+    #[inline(always)]
+    fn moved_little<S: Simd>(&self, simd: S, at_a: &DAffine3, at_b: &DAffine3) -> bool {
+        let Haste { linear, translation } = self.haste;
+        let of = {
+            #[inline(always)]
+            |change: [f64x4<S>; 3], linear: f64| {
+                let [x, y, z] = change;
+                let last = f64x4::simd_from(simd, [linear, translation, translation, translation]);
+                (x * x + y * y) * f64x4::splat(simd, linear) + (z * z) * last
+            }
+        };
+        sum(of(self.a.change(simd, at_a), linear[0]) + of(self.b.change(simd, at_b), linear[1])) <= 1.0
+    }
+
+    /// Whether they came by less along the axis than they may.
     #[inline(always)]
     fn still_apart<S: Simd>(&self, simd: S, at_a: &DAffine3, at_b: &DAffine3, axis: DVec3, gap: f64) -> bool {
-        let (change_a, allowed_a) = self.a.change(simd, at_a);
-        let (change_b, allowed_b) = self.b.change(simd, at_b);
+        let (change_a, change_b) = (self.a.change(simd, at_a), self.b.change(simd, at_b));
         // How the balls moved along the axis: a centre by a product, any other point by at most a length more.
         let (linear_a, by_a) = along(&change_a, axis);
         let (linear_b, by_b) = along(&change_b, axis);
         let left = gap + (linear_a.dot(self.a.center) + by_a) - (linear_b.dot(self.b.center) + by_b);
-        allowed_a & allowed_b & sum_is_less(linear_a * self.a.radius, linear_b * self.b.radius, left)
+        self.a.allows(simd, &change_a)
+            & self.b.allows(simd, &change_b)
+            & sum_is_less(linear_a * self.a.radius, linear_b * self.b.radius, left)
     }
 
     #[inline(always)]
     fn still_common<S: Simd>(&self, simd: S, at_a: &DAffine3, at_b: &DAffine3, pairs: &Pairs) -> bool {
-        let (_, allowed_a) = self.a.change(simd, at_a);
-        let (_, allowed_b) = self.b.change(simd, at_b);
+        let (change_a, change_b) = (self.a.change(simd, at_a), self.b.change(simd, at_b));
         let offset = at_b.translation - at_a.translation;
         let (on_a, on_b) = (images(simd, &at_a.matrix3, &pairs.a), images(simd, &at_b.matrix3, &pairs.b));
-        let mut points = [[0.0; 4]; 3];
-        for i in 0..3 {
-            (on_a[i] - on_b[i] - f64x4::splat(simd, offset[i])).store_slice(&mut points[i]);
-        }
+        let [x, y, z] = [on_a[0] - on_b[0], on_a[1] - on_b[1], on_a[2] - on_b[2]];
+        let splat = |value: f64| f64x4::splat(simd, value);
+        let points = [x - splat(offset.x), y - splat(offset.y), z - splat(offset.z)];
         let error = VOLUME_ERROR * self.size * self.size * self.size;
-        allowed_a & allowed_b & contains_origin(&points, error)
+        self.a.allows(simd, &change_a) & self.b.allows(simd, &change_b) & contains_origin(simd, points, error)
     }
 
     /// Sets it for objects that are apart: `gap` is a lower bound of the gap along a unit axis, from `B` to `A`, in the world.
-    pub fn set_apart<A, B>(
-        &mut self,
-        (a, at_a): (&A, &DAffine3),
-        (b, at_b): (&B, &DAffine3),
-        axis: DVec3,
-        gap: f64,
-    ) where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
-        self.set((a, at_a), (b, at_b), |size| Evidence::Apart { axis, gap: gap - GAP_LEFT_MIN * size });
-    }
-
-    /// Sets it for objects that intersect, by the four pairs of points that are kept.
-    pub fn set_common<A, B>(&mut self, (a, at_a): (&A, &DAffine3), (b, at_b): (&B, &DAffine3))
+    pub fn set_apart<A, B>(&mut self, a: (&A, &DAffine3), b: (&B, &DAffine3), axis: DVec3, gap: f64)
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        self.set((a, at_a), (b, at_b), |_| Evidence::Common);
+        self.set_at_length([&Spread::of(a), &Spread::of(b)], Evidence::Apart { axis, gap });
+    }
+
+    /// Sets it for objects that intersect, by the four pairs of points that are kept.
+    pub fn set_common<A, B>(&mut self, a: (&A, &DAffine3), b: (&B, &DAffine3))
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        self.set_at_length([&Spread::of(a), &Spread::of(b)], Evidence::Common);
+    }
+
+    /// Sets it for polytopes whose balls tell whether they meet.
+    #[inline(always)]
+    pub fn set_by_balls<S: Simd>(
+        &mut self,
+        simd: S,
+        (a, at_a): (&Polytope, &DAffine3),
+        (b, at_b): (&Polytope, &DAffine3),
+        look: &Look,
+        meet: bool,
+    ) {
+        let (reach, scales) = ([a.farthest(), b.farthest()], look.scales);
+        // As long as it goes the linear parts grow by at most half, and the offset by a distance that is at most this.
+        let size = 4.0 * (reach[0] * scales[0] + reach[1] * scales[1] + look.offset.abs().element_sum());
+        let room = look.room(meet) - GAP_LEFT_MIN * size;
+        if !((room > 0.0) & (PLAIN_MIN..=PLAIN_MAX).contains(&size)) {
+            return self.stop();
+        }
+        let rate = |k: usize| 1.0 / (CHANGE_MAX * scales[k]);
+        self.haste = Haste::new(room, reach, [rate(0), rate(1)]);
+        self.a.place(simd, at_a);
+        self.b.place(simd, at_b);
+        self.evidence = Evidence::Balls { meet };
+    }
+
+    /// Sets it for polytopes that are apart, as [`set_apart`](Clock::set_apart).
+    #[inline(always)]
+    pub fn set_similar_apart(
+        &mut self,
+        a: (&Polytope, &DAffine3),
+        b: (&Polytope, &DAffine3),
+        look: &Look,
+        axis: DVec3,
+        gap: f64,
+    ) {
+        let [a, b] = [Spread::of_similar(a, look.scales[0]), Spread::of_similar(b, look.scales[1])];
+        self.set([&a, &b], Evidence::Apart { axis, gap });
     }
 
     /// Stops it: nothing is sure.
+    #[inline(always)]
     pub fn stop(&mut self) {
         self.evidence = Evidence::None;
     }
 
-    /// Sets it; `evidence` is given the size of the data.
-    fn set<A, B>(
-        &mut self,
-        (a, at_a): (&A, &DAffine3),
-        (b, at_b): (&B, &DAffine3),
-        evidence: impl FnOnce(f64) -> Evidence,
-    ) where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
+    /// The same as [`set`](Clock::set), out of the way.
+    #[inline(never)]
+    fn set_at_length(&mut self, objects: [&Spread; 2], evidence: Evidence) {
+        self.set(objects, evidence);
+    }
+
+    /// Sets it, where all is of plain size; of a gap, something is left.
+    #[inline(always)]
+    fn set(&mut self, [a, b]: [&Spread; 2], evidence: Evidence) {
         self.stop();
-        if let (Some((a, extent_a)), Some((b, extent_b))) = (Body::of(a, at_a), Body::of(b, at_b)) {
-            let extent = extent_a + extent_b;
-            // Each may come as far as this: then less than four times that is added to the sum of an offset's magnitudes.
-            let (a, b) = (a.with_travel_max(extent), b.with_travel_max(extent));
-            let size = 5.0 * extent + (at_b.translation - at_a.translation).abs().element_sum();
-            *self = Clock { evidence: evidence(size), a, b, size };
+        if !(a.is_plain() & b.is_plain()) {
+            return;
         }
+        // Each may come as far as this: then less than four times that is added to the sum of an offset's magnitudes.
+        let extent = a.extent() + b.extent();
+        let rate = extent.recip();
+        self.size = 5.0 * extent + (b.at.translation - a.at.translation).abs().element_sum();
+        self.a.set(a, rate);
+        self.b.set(b, rate);
+        self.evidence = match evidence {
+            Evidence::Apart { axis, gap } => Evidence::Apart { axis, gap: gap - GAP_LEFT_MIN * self.size },
+            evidence => evidence,
+        };
     }
 }
 
-impl Body {
-    /// With a bound on the coordinates of the object's image under its linear part, also under one that is changed as much as may be. `None` for
-    /// what is out of the ordinary.
-    fn of<S: Support + ?Sized>(object: &S, at: &DAffine3) -> Option<(Body, f64)> {
-        /// By Cauchy and Schwarz the root of three, and half as much again.
-        const SPREAD: f64 = 2.6;
+/// An object where it is placed.
+struct Spread<'p> {
+    at: &'p DAffine3,
+    /// A ball that contains the object. Space: local.
+    center: DVec3,
+    radius: f64,
+    /// No point is further from the local origin.
+    reach: f64,
+    /// The lengths of the axes.
+    lengths: DVec3,
+    /// The volume between the axes, brought to unit length.
+    volume: f64,
+}
+
+impl<'p> Spread<'p> {
+    fn of<S: Support + ?Sized>((object, at): (&S, &'p DAffine3)) -> Self {
         let (center, radius) = match object.balls() {
             Some(balls) => (balls.center, balls.outer),
             None => (DVec3::ZERO, object.reach().length()),
@@ -170,51 +277,111 @@ impl Body {
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = at.matrix3;
         let lengths = DVec3::new(x.length(), y.length(), z.length());
         let volume = x.cross(y).dot(z).abs() / (lengths.x * lengths.y * lengths.z);
-        let farthest = radius + center.length();
-        let plain = lengths.min_element() >= PLAIN_MIN
-            && lengths.max_element() <= PLAIN_MAX
-            && at.translation.abs().max_element() <= PLAIN_MAX
-            && radius >= PLAIN_MIN
-            && farthest <= PLAIN_MAX
-            && volume >= VOLUME_MIN;
-        let rates = (lengths * (CHANGE_MAX * volume.min(1.0))).recip();
-        let rates = std::array::from_fn(|k| if k < 9 { rates[k / 3] } else { 0.0 });
-        let body = Body { placement: at.to_cols_array(), rates, center, radius };
-        plain.then(|| (body, SPREAD * lengths.length() * farthest))
+        Spread { at, center, radius, reach: radius + center.length(), lengths, volume }
     }
 
-    /// The same, allowed to come this far.
-    fn with_travel_max(mut self, travel_max: f64) -> Body {
-        self.rates[9..].fill(travel_max.recip());
-        self
-    }
-
-    /// How its placement changed, and whether it may have changed so much: not to what is no number.
+    /// Under what nearly is a similarity of this scale.
     #[inline(always)]
-    fn change<S: Simd>(&self, simd: S, at: &DAffine3) -> (Columns, bool) {
-        let mut change = at.to_cols_array();
-        let mut sum = f64x4::splat(simd, 0.0);
-        for k in [0, 4, 8] {
-            let four = |columns: &Columns| {
-                f64x4::simd_from(simd, [columns[k], columns[k + 1], columns[k + 2], columns[k + 3]])
-            };
-            let changed = four(&change) - four(&self.placement);
-            let part = changed * four(&self.rates);
-            sum += part * part;
-            change[k..k + 4].copy_from_slice(changed.as_slice());
+    fn of_similar((object, at): (&Polytope, &'p DAffine3), scale: f64) -> Self {
+        let &Balls { center, outer, .. } = object.own_balls();
+        Spread {
+            at,
+            center,
+            radius: outer,
+            reach: object.farthest(),
+            lengths: DVec3::splat(scale),
+            volume: SIMILAR_VOLUME,
         }
-        let sums = sum.as_slice();
-        let allowed = (sums[0] + sums[1]) + (sums[2] + sums[3]) <= 1.0;
-        (change, allowed)
     }
+
+    #[inline(always)]
+    fn is_plain(&self) -> bool {
+        (self.lengths.min_element() >= PLAIN_MIN)
+            & (self.lengths.max_element() <= PLAIN_MAX)
+            & (self.at.translation.abs().max_element() <= PLAIN_MAX)
+            & (self.radius >= PLAIN_MIN)
+            & (self.reach <= PLAIN_MAX)
+            & (self.volume >= VOLUME_MIN)
+    }
+
+    /// A bound on the coordinates of the object's image under its linear part, also under one that is changed as much as may be.
+    #[inline(always)]
+    fn extent(&self) -> f64 {
+        /// By Cauchy and Schwarz the root of three, and half as much again.
+        const SPREAD: f64 = 2.6;
+        SPREAD * self.lengths.length() * self.reach
+    }
+
+    /// The reciprocal of how much each axis may change.
+    #[inline(always)]
+    fn rates(&self) -> DVec3 {
+        (self.lengths * (CHANGE_MAX * self.volume.min(1.0))).recip()
+    }
+}
+
+impl Body {
+    #[inline(always)]
+    fn place<S: Simd>(&mut self, simd: S, at: &DAffine3) {
+        let [x, y, z] = at_once(simd, at);
+        x.store_slice(&mut self.placement[0..4]);
+        y.store_slice(&mut self.placement[4..8]);
+        z.store_slice(&mut self.placement[8..12]);
+    }
+
+    #[inline(always)]
+    fn set(&mut self, object: &Spread, translation_rate: f64) {
+        let (DVec3 { x, y, z }, t) = (object.rates(), translation_rate);
+        self.placement = object.at.to_cols_array();
+        self.rates = [x, x, x, y, y, y, z, z, z, t, t, t];
+        self.center = object.center;
+        self.radius = object.radius;
+    }
+
+    /// How its placement changed.
+    #[inline(always)]
+    fn change<S: Simd>(&self, simd: S, at: &DAffine3) -> [f64x4<S>; 3] {
+        let (now, then) = (at_once(simd, at), &self.placement);
+        [now[0] - four(simd, then, 0), now[1] - four(simd, then, 1), now[2] - four(simd, then, 2)]
+    }
+
+    /// Whether it may have changed so much: not to what is no number.
+    #[inline(always)]
+    fn allows<S: Simd>(&self, simd: S, change: &[f64x4<S>; 3]) -> bool {
+        let part = |k: usize| change[k] * four(simd, &self.rates, k);
+        let (x, y, z) = (part(0), part(1), part(2));
+        sum(x * x + y * y + z * z) <= 1.0
+    }
+}
+
+/// Four of twelve numbers, from the `4 k`th on.
+#[inline(always)]
+fn four<S: Simd>(simd: S, columns: &Columns, k: usize) -> f64x4<S> {
+    f64x4::from_slice(simd, &columns[4 * k..4 * k + 4])
+}
+
+/// A placement as [`Columns`], read as it lies.
+#[inline(always)]
+fn at_once<S: Simd>(simd: S, at: &DAffine3) -> [f64x4<S>; 3] {
+    let linear: &[f64; 9] = at.matrix3.as_ref();
+    let DVec3 { x, y, z } = at.translation;
+    let four = |k: usize| f64x4::from_slice(simd, &linear[k..k + 4]);
+    [four(0), four(4), f64x4::simd_from(simd, [linear[8], x, y, z])]
+}
+
+#[inline(always)]
+fn sum<S: Simd>(lanes: f64x4<S>) -> f64 {
+    let lanes = lanes.as_slice();
+    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
 }
 
 /// The products of columns with an axis: those of the linear part, and that of the translation.
 #[inline(always)]
-fn along(columns: &Columns, axis: DVec3) -> (DVec3, f64) {
+fn along<S: Simd>(change: &[f64x4<S>; 3], axis: DVec3) -> (DVec3, f64) {
     let mut products = [0.0; 12];
-    for k in 0..12 {
-        products[k] = columns[k] * axis[k % 3];
+    for k in 0..3 {
+        let [x, y, z, w] = [axis[k], axis[(k + 1) % 3], axis[(k + 2) % 3], axis[k]];
+        let axis = f64x4::simd_from(change[k].simd, [x, y, z, w]);
+        (change[k] * axis).store_slice(&mut products[4 * k..4 * k + 4]);
     }
     let sum = |k: usize| products[k] + products[k + 1] + products[k + 2];
     (DVec3::new(sum(0), sum(3), sum(6)), sum(9))
@@ -228,23 +395,18 @@ fn sum_is_less(x: DVec3, y: DVec3, bound: f64) -> bool {
     (bound > 0.0) & (rest > 0.0) & (4.0 * x * y < rest * rest)
 }
 
-/// Whether a tetrahedron contains the origin: six times the volume that it makes with each face is, up to this error, of the same sign.
+/// Whether a tetrahedron contains the origin: six times the volumes that it makes with the faces, each from a corner on, are, up to this error, of
+/// turns of the same sign.
 #[inline(always)]
-fn contains_origin(points: &[[f64; 4]; 3], error: f64) -> bool {
-    // Around each face, and the corner opposite: as in `sides_of_origin`.
-    const FACES: [[usize; 4]; 3] = [[0, 1, 2, 0], [1, 2, 0, 1], [3, 3, 3, 2]];
-    let [px, py, pz] = points;
-    let mut sides = [0.0; 4];
-    for k in 0..4 {
-        let (p, q, r) = (FACES[0][k], FACES[1][k], FACES[2][k]);
-        let x = py[p] * pz[q] - pz[p] * py[q];
-        let y = pz[p] * px[q] - px[p] * pz[q];
-        let z = px[p] * py[q] - py[p] * px[q];
-        sides[k] = x * px[r] + y * py[r] + z * pz[r];
-    }
-    let [a, b, c, d] = [-sides[0], -sides[1], -sides[2], sides[3]];
-    let (least, greatest) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
-    (least > error) | (greatest < -error)
+fn contains_origin<S: Simd>(simd: S, [x, y, z]: [f64x4<S>; 3], error: f64) -> bool {
+    // A lane for each face: its first corner, and the two after it.
+    let (x1, y1, z1) = (x.slide::<1>(x), y.slide::<1>(y), z.slide::<1>(z));
+    let (x2, y2, z2) = (x.slide::<2>(x), y.slide::<2>(y), z.slide::<2>(z));
+    let volumes = (y * z1 - z * y1) * x2 + (z * x1 - x * z1) * y2 + (x * y1 - y * x1) * z2;
+    let above = volumes.simd_gt(f64x4::splat(simd, error)).to_bitmask();
+    let below = volumes.simd_lt(f64x4::splat(simd, -error)).to_bitmask();
+    let (even, odd) = (0b0101, 0b1010);
+    ((above == even) & (below == odd)) | ((above == odd) & (below == even))
 }
 
 #[cfg(test)]
@@ -252,7 +414,8 @@ mod tests {
     use glam::DQuat;
 
     use super::*;
-    use crate::gjk::{Memory, intersects};
+    use crate::gjk::{Glance, Memory, intersects};
+    use crate::simd::{Level, dispatch, levels};
     use crate::testing::{placement, shapes};
     use crate::{Cuboid, Polytope};
 
@@ -348,6 +511,119 @@ mod tests {
                 let near = 1.0 - chord(angle);
                 assert_eq!(memory.still(&turned(near - 1e-5, angle), &at(2.0)), Some(false), "{angle}");
                 assert_eq!(memory.still(&turned(near + 1e-5, angle), &at(2.0)), None, "{angle}");
+            }
+        }
+    }
+
+    /// The answer of a memory of two polytopes, where there is one without a search, and whether the clock gave it.
+    fn seen(level: Level, memory: &mut Memory, [a, b]: [(&Polytope, &DAffine3); 2]) -> (Glance, bool) {
+        dispatch!(level, simd => match memory.still_by(simd, a.1, b.1) {
+            Some(answer) => (Glance::Sure(answer), true),
+            None => (memory.glance_by(simd, a, b), false),
+        })
+    }
+
+    /// Law: what balls and the kept axis leave to the clock is what a search from nothing says, whatever moves, by how little or much, in any unit, far
+    /// from the origin; and every level of instructions says the same.
+    #[test]
+    fn what_a_glance_leaves_is_what_a_search_from_nothing_says() {
+        let cloud = |seed: u32, count: u32, off: DVec3| {
+            Polytope::new((0..count).map(|i| placement(seed + i).translation + off).collect()).unwrap()
+        };
+        let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5;
+        let faces = (0..6).flat_map(|k| {
+            let (axis, side) = (k / 2, k % 2);
+            let at = |u: u32, v: u32| side << axis | u << ((axis + 1) % 3) | v << ((axis + 2) % 3);
+            [[at(0, 0), at(1, 0), at(1, 1)], [at(0, 0), at(1, 1), at(0, 1)]]
+        });
+        let block =
+            Polytope::new((0..8).map(corner).collect()).unwrap().with_faces(&faces.collect::<Vec<_>>());
+        let objects = [block, cloud(3, 20, DVec3::ZERO), cloud(70, 40, DVec3::new(3.0, 0.0, 1.0))];
+        let (mut asked, mut hits, mut told, mut glanced) = (0, 0, [0; STEPS.len()], 0);
+        for (i, a) in objects.iter().enumerate() {
+            for (j, b) in objects.iter().enumerate() {
+                for (k, (unit, far)) in UNITS.into_iter().enumerate() {
+                    for (s, step) in STEPS.into_iter().enumerate() {
+                        let seed = (i + 5 * j + 37 * k + 191 * s) as u32;
+                        let mut memories = [Memory::default(); 2];
+                        let mut at = [placement(seed), placement(seed + 50)];
+                        for frame in 0..60 {
+                            let [at_a, at_b] = [(a, at[0]), (b, at[1])].map(|(object, at)| {
+                                let linear = at.matrix3 * unit * 0.7;
+                                let translation = (at.translation * 0.8 + far) * unit;
+                                DAffine3 {
+                                    matrix3: linear,
+                                    translation: translation - linear * object.center(),
+                                }
+                            });
+                            let expected = intersects(a, &at_a, b, &at_b);
+                            let context = format!("{i} and {j} in {unit:e} by {step:e}, frame {frame}");
+                            let mut answers = [None; 2];
+                            for (n, memory) in memories.iter_mut().enumerate() {
+                                let answer = seen(levels()[n], memory, [(a, &at_a), (b, &at_b)]);
+                                match answer.0 {
+                                    Glance::Sure(answer) => assert_eq!(answer, expected, "{context}"),
+                                    _ => assert_eq!(
+                                        memory.intersects_anew(a, &at_a, b, &at_b),
+                                        expected,
+                                        "{context}"
+                                    ),
+                                }
+                                answers[n] = Some(answer);
+                            }
+                            assert_eq!(answers[0], answers[1], "{context}");
+                            let (glance, clock) = answers[0].unwrap();
+                            asked += 1;
+                            hits += usize::from(expected);
+                            told[s] += usize::from(clock);
+                            glanced += usize::from(!clock && matches!(glance, Glance::Sure(_)));
+                            for (n, at) in at.iter_mut().enumerate() {
+                                let way = placement(seed + frame / 20 + 3 * n as u32).translation.normalize();
+                                at.matrix3 = DMat3::from_quat(DQuat::from_axis_angle(way, step)) * at.matrix3;
+                                at.translation += way * if frame % 20 < 10 { step } else { -step };
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        assert!((30..=70).contains(&(100 * hits / asked)), "{hits} of {asked}: not representative");
+        let rates = told.map(|told| 100 * told * STEPS.len() / asked);
+        assert!(rates[0] >= 90 && rates[1] >= 80 && rates[2] >= 40, "{rates:?} % were told");
+        assert!(glanced > 500, "{glanced}");
+    }
+
+    /// At the bound: balls that come near, straight or by a turn about a point far off, are told apart until just before they touch, and not after.
+    #[test]
+    fn balls_run_out_just_before_they_touch() {
+        let rod = Polytope::new(vec![DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z]).unwrap();
+        let [_, reach] = rod.sure_radii();
+        for unit in [1e-9, 1.0, 1e9] {
+            let at = |x: f64| DAffine3 {
+                matrix3: DMat3::IDENTITY * unit,
+                translation: DVec3::new(x, 0.0, 0.0) * unit,
+            };
+            let mut memory = Memory::default();
+            let room = 10.0 - 2.0 * reach;
+            for level in levels() {
+                let (here, there) = (at(0.0), at(10.0));
+                memory.rest();
+                assert_eq!(
+                    seen(level, &mut memory, [(&rod, &here), (&rod, &there)]),
+                    (Glance::Sure(false), false)
+                );
+                // Of the four lengths that sum to the room each may be half of it alone; and all a quarter.
+                let half = 0.5 * room;
+                let turn = |x: f64, part: f64| {
+                    let change = DMat3::from_diagonal(DVec3::new(part / rod.farthest(), 0.0, 0.0)) * unit;
+                    DAffine3 { matrix3: at(x).matrix3 + change, ..at(x) }
+                };
+                for (part, told) in [(0.9999, Some(false)), (1.0001, None)] {
+                    assert_eq!(memory.still(&here, &at(10.0 - half * part)), told);
+                    assert_eq!(memory.still(&at(half * part), &there), told);
+                    // The axes may change by half at most.
+                    assert_eq!(memory.still(&here, &turn(10.0, 0.5 * rod.farthest() * part)), told);
+                }
             }
         }
     }

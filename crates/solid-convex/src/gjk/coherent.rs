@@ -3,13 +3,14 @@
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 
+use super::balls::Look;
 use super::clock::Clock;
 use super::descent::{End, Goal, descend_robustly};
 use super::distance::{Answer, Measure, Measured, measure};
 use super::intersection::CACHED_GAP_MIN;
 use super::lean::{self, Lean, Search, Sure, Task};
 use super::pairs::{Pair, Pairs};
-use super::{Closest, ClosestInWorld, Witness, closest_points, nearby_feature};
+use super::{Closest, ClosestInWorld, Glance, Witness, closest_points, nearby_feature};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::simd::dispatch;
 use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
@@ -93,7 +94,7 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Coherent<'a, A, B> {
 /// All must be asked about the same two objects, the first first: of others, the answers may be wrong.
 impl Memory {
     /// Whether they intersect, by what was found last and how little they moved since: what [`intersects`](Memory::intersects) says, or
-    /// `None`. Placements that it answers for are finite, and not near singular. Cost: some 150 sums and products, no support point.
+    /// `None`. Placements that it answers for are finite, and not near singular. Cost: some 40 to 150 sums and products, no support point.
     ///
     /// ```
     /// use solid_convex::{Cuboid, gjk::Memory};
@@ -123,7 +124,38 @@ impl Memory {
         still.unwrap_or_else(|| self.intersects_anew(a, placement_a, b, placement_b))
     }
 
-    /// That a question was answered by other means, as a [`glance`](super::glance): what [`still`](Memory::still) knew is forgotten. It ran
+    /// What [`still`](Memory::still) says, as a part of a kernel.
+    #[inline(always)]
+    #[doc(hidden)]
+    pub fn still_by<S: Simd>(&self, simd: S, placement_a: &DAffine3, placement_b: &DAffine3) -> Option<bool> {
+        self.clock.answer_by(simd, &self.pairs, placement_a, placement_b)
+    }
+
+    /// What [`glance_by`](super::glance_by) says, or the axis that separated the polytopes last, when [`still`](Memory::still) said nothing.
+    /// Of an answer, that will know for how long it is.
+    #[inline(always)]
+    #[doc(hidden)]
+    pub fn glance_by<S: Simd>(
+        &mut self,
+        simd: S,
+        a: (&Polytope, &DAffine3),
+        b: (&Polytope, &DAffine3),
+    ) -> Glance {
+        let Some(look) = Look::at(simd, a, b) else { return Glance::Unusual };
+        let seen = look.glance();
+        if let Glance::Sure(meet) = seen {
+            self.clock.set_by_balls(simd, a, b, &look, meet);
+        } else if self.axis != DVec3::ZERO {
+            if let Some(gap) = look.gap_along(simd, a, b, self.axis) {
+                self.clock.set_similar_apart(a, b, &look, self.axis, gap);
+                return Glance::Sure(false);
+            }
+            self.axis = DVec3::ZERO;
+        }
+        seen
+    }
+
+    /// That a question was answered by other means: what [`still`](Memory::still) knew is forgotten. It ran
     /// out, and asking it again is seldom worth it before the next search.
     #[inline]
     pub fn rest(&mut self) {

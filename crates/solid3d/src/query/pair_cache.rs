@@ -1,5 +1,6 @@
 //! The questions about two shapes, asked frame after frame.
 
+use fearless_simd::Simd;
 use glam::DAffine3;
 use solid_convex::gjk::{Glance, Memory};
 use solid_convex::simd::dispatch;
@@ -47,24 +48,49 @@ impl PairCache {
 
     /// What [`intersects`](super::intersects) says, always.
     pub fn intersects(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<bool> {
-        let Self { a, b, memory, scratch } = self;
-        // Before anything is checked: placements that are near good ones are good.
-        if let Some(answer) = memory.still(placement_a, placement_b) {
-            return Ok(answer);
-        }
-        let (a, b) =
-            (Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b });
-        match dispatch!(simd => pair::glance(simd, a, b)) {
-            Glance::Sure(answer) => {
-                memory.rest();
+        dispatch!(move simd => {
+            // Before anything is checked: placements that are near good ones are good.
+            if let Some(answer) = self.memory.still_by(simd, placement_a, placement_b) {
                 return Ok(answer);
             }
-            Glance::Open => {}
-            Glance::Unusual => {
-                placement::checked(placement_a)?;
-                placement::checked(placement_b)?;
+            match self.glance(simd, placement_a, placement_b) {
+                Glance::Sure(answer) => Ok(answer),
+                seen => self.intersects_at_length(placement_a, placement_b, seen),
             }
+        })
+    }
+
+    #[inline(always)]
+    fn glance<S: Simd>(&mut self, simd: S, placement_a: &DAffine3, placement_b: &DAffine3) -> Glance {
+        if let (Some(a), Some(b)) = (self.a.polytope(), self.b.polytope()) {
+            return self.memory.glance_by(simd, (a, placement_a), (b, placement_b));
         }
+        let (a, b) = (
+            Placed { shape: &self.a, placement: placement_a },
+            Placed { shape: &self.b, placement: placement_b },
+        );
+        let seen = pair::glance(simd, a, b);
+        if matches!(seen, Glance::Sure(_)) {
+            self.memory.rest();
+        }
+        seen
+    }
+
+    /// The same, where neither the last answer nor a glance tells.
+    #[inline(never)]
+    fn intersects_at_length(
+        &mut self,
+        placement_a: &DAffine3,
+        placement_b: &DAffine3,
+        seen: Glance,
+    ) -> Result<bool> {
+        if seen == Glance::Unusual {
+            placement::checked(placement_a)?;
+            placement::checked(placement_b)?;
+        }
+        let Self { a, b, memory, scratch } = self;
+        let (a, b) =
+            (Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b });
         Ok(pair::intersects_again(a, b, memory, scratch))
     }
 

@@ -41,6 +41,8 @@ pub struct Polytope {
     rows: Rows,
     map: Option<DirectionMap>,
     reach: DVec3,
+    /// How far the farthest point is from the local origin.
+    farthest: f64,
     balls: Balls,
     /// Those of the balls.
     sure_radii: [f64; 2],
@@ -51,10 +53,11 @@ impl Polytope {
     pub fn new(points: Vec<DVec3>) -> Option<Self> {
         let rows = Rows::new(&points)?;
         let (reach, center) = (reach(points.iter().copied()), mean(points.iter().copied()));
-        let outer = points.iter().map(|&p| distance(p, center)).fold(0.0, f64::max);
+        let farthest_from = |center| points.iter().map(|&p| distance(p, center)).fold(0.0, f64::max);
+        let (outer, farthest) = (farthest_from(center), farthest_from(DVec3::ZERO));
         let map = (points.len() > SCAN_MAX).then(|| DirectionMap::new(&points, reach)).flatten();
         let balls = Balls { center, inner: 0.0, outer };
-        Some(Polytope { points, rows, map, reach, balls, sure_radii: balls.sure_radii() })
+        Some(Polytope { points, rows, map, reach, farthest, balls, sure_radii: balls.sure_radii() })
     }
 
     /// The same, where the faces of the hull are known: the triangles `faces` of its points, which close it. Many pairs that are deep in
@@ -83,6 +86,12 @@ impl Polytope {
     #[inline]
     pub(crate) fn own_balls(&self) -> &Balls {
         &self.balls
+    }
+
+    /// How far its farthest point is from the local origin.
+    #[inline]
+    pub(crate) fn farthest(&self) -> f64 {
+        self.farthest
     }
 
     /// What [`Balls::sure_radii`] gives of them.
