@@ -21,18 +21,33 @@ pub(crate) fn room<T>(vector: &mut Vec<T>, len: usize) {
 #[inline]
 pub(crate) fn push<T>(vector: &mut Vec<T>, element: T) {
     if vector.len() == vector.capacity() {
-        push_to_full(vector, element);
+        room_for_one(vector);
+    }
+    vector.push(element);
+}
+
+/// Apart, so that nothing is prepared for it where there is room.
+#[cold]
+#[inline(never)]
+fn room_for_one<T>(vector: &mut Vec<T>) {
+    room(vector, vector.len() + 1);
+}
+
+/// Adds an element of a word or two. Where it is the last thing to do, nothing is kept for after a call that is seldom made; a larger element
+/// would be put together elsewhere for that call, always.
+#[inline]
+pub(crate) fn push_word<T>(vector: &mut Vec<T>, element: T) {
+    if vector.len() == vector.capacity() {
+        push_word_to_full(vector, element);
     } else {
         vector.push(element);
     }
 }
 
-/// The same to a full vector: apart, so that nothing is prepared for it where there is room.
 #[cold]
 #[inline(never)]
-fn push_to_full<T>(vector: &mut Vec<T>, element: T) {
-    room(vector, vector.len() + 1);
-    vector.push(element);
+fn push_word_to_full<T>(vector: &mut Vec<T>, element: T) {
+    push(vector, element);
 }
 
 /// Adds elements.

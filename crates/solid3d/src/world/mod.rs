@@ -37,7 +37,7 @@ pub use response::Response;
 pub use statistics::Statistics;
 pub use test::TestProgress;
 
-use crate::broad::room::push;
+use crate::broad::room::push_word;
 use crate::broad::{BroadPhase, PROXY_MAX};
 use crate::error::{Error, Result};
 use crate::placement;
@@ -320,7 +320,7 @@ impl World {
             if self.displaced.len() > 2 * self.objects.len() {
                 self.forget_removed();
             }
-            push(&mut self.displaced, id);
+            push_word(&mut self.displaced, id);
         }
         self.stir(id, Staleness::Bounds);
     }

@@ -1,7 +1,7 @@
 //! What changed since the candidates were brought up to date.
 
 use crate::broad::Proxy;
-use crate::broad::room::{push, resize};
+use crate::broad::room::{push_word, resize};
 
 /// What of an object is out of date in the candidates: each includes those before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,7 +34,7 @@ impl Stirred {
     pub fn stir(&mut self, slot: Proxy, what: Staleness) {
         let Some(staleness) = self.staleness.get_mut(slot as usize) else { return self.stir_new(slot, what) };
         if *staleness == Staleness::Fresh {
-            push(&mut self.slots, slot);
+            push_word(&mut self.slots, slot);
         }
         *staleness = what.max(*staleness);
     }
