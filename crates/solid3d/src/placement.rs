@@ -101,7 +101,8 @@ pub(crate) fn inverse_linear(linear: &DMat3) -> DMat3 {
     scaled_inverse(linear)
 }
 
-/// The lengths of axes between which no product of the inverse overflows or loses digits: it then has the same bits without scaling.
+/// The lengths of axes between which no product of the inverse overflows, nor loses digits but those of entries below some 1e-200, which are nothing beside
+/// the length of their axis: it then has the same bits without scaling.
 const PLAIN_LENGTH_MIN: f64 = 1e-30;
 const PLAIN_LENGTH_MAX: f64 = 1e30;
 
