@@ -109,11 +109,10 @@ impl Polytope {
 
     #[inline(always)]
     fn furthest_within<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
-        let furthest = match self.furthest_mapped(direction) {
-            Some(furthest) => furthest,
-            None => self.rows.furthest(simd, direction),
-        };
-        self.point_at(furthest)
+        match self.furthest_mapped(direction) {
+            Some(furthest) => self.point_at(furthest),
+            None => self.rows.point_at(self.rows.furthest(simd, direction)),
+        }
     }
 
     /// Of a direction that is no number, none is the furthest: the index is past the end.
@@ -136,12 +135,11 @@ impl Polytope {
         along: [DVec3; 2],
     ) -> [DVec3; 2] {
         // Those that are mapped are many.
-        let [on_a, on_b] = if Polytope::are_few([a, b]) {
-            Rows::furthest_of_both(simd, [&a.rows, &b.rows], along)
-        } else {
-            [a.furthest_of_many(simd, along[0]), b.furthest_of_many(simd, along[1])]
-        };
-        [a.point_at(on_a), b.point_at(on_b)]
+        if Polytope::are_few([a, b]) {
+            let [on_a, on_b] = Rows::furthest_of_both(simd, [&a.rows, &b.rows], along);
+            return [a.rows.point_at(on_a), b.rows.point_at(on_b)];
+        }
+        [a.furthest_of_many(simd, along[0]), b.furthest_of_many(simd, along[1])]
     }
 
     /// The products of those with their directions; and the points themselves, unless they [`are_few`](Polytope::are_few).
@@ -155,8 +153,7 @@ impl Polytope {
         if Polytope::are_few([a, b]) {
             return Rows::greatest_of_both(simd, [&a.rows, &b.rows], along);
         }
-        let on_a = a.point_at(a.furthest_of_many(simd, along[0]));
-        let on_b = b.point_at(b.furthest_of_many(simd, along[1]));
+        let [on_a, on_b] = [a.furthest_of_many(simd, along[0]), b.furthest_of_many(simd, along[1])];
         *furthest = [on_a, on_b];
         [on_a.dot(along[0]), on_b.dot(along[1])]
     }
@@ -168,10 +165,10 @@ impl Polytope {
     }
 
     #[inline(always)]
-    fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> usize {
+    fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
         match self.furthest_mapped(direction) {
-            Some(furthest) => furthest,
-            None => self.rows.furthest_of_many(simd, direction),
+            Some(furthest) => self.point_at(furthest),
+            None => self.rows.point_at(self.rows.furthest_of_many(simd, direction)),
         }
     }
 

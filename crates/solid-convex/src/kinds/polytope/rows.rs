@@ -65,6 +65,16 @@ impl Rows {
         }
     }
 
+    /// The point of an index; of one past the end, the last. From the rows, which are at hand when all were just compared: elsewhere it would be
+    /// waited for where the caches are short.
+    #[inline(always)]
+    pub fn point_at(&self, index: usize) -> DVec3 {
+        let index = index.min(LANES * self.rows.len() - 1);
+        let Row([xs, ys, zs]) = &self.rows[index / LANES];
+        let lane = index % LANES;
+        DVec3::new(xs[lane], ys[lane], zs[lane])
+    }
+
     /// The products of those points with their directions: of all [`FEW`] rows, since nothing is spared by asking how many do not hold the last
     /// point alone.
     #[inline(always)]
@@ -200,6 +210,18 @@ mod tests {
     use super::*;
     use crate::simd::{dispatch, levels};
 
+    /// Law: an index has its point, and one that is past the end, as of a direction that is no number, the last.
+    #[test]
+    fn every_index_has_a_point() {
+        for count in 1..40 {
+            let points: Vec<DVec3> = (0..count).map(|i| DVec3::new(i as f64, 0.5, -(i as f64))).collect();
+            let rows = Rows::new(&points).unwrap();
+            for index in (0..100).chain([usize::MAX]) {
+                assert_eq!(rows.point_at(index), points[index.min(count - 1)], "{index} of {count}");
+            }
+        }
+    }
+
     #[test]
     fn every_level_finds_the_first_of_the_furthest() {
         for count in 1..80 {
@@ -216,6 +238,7 @@ mod tests {
                     assert_eq!(found, first, "{level:?}");
                     let many = dispatch!(level, simd => rows.furthest_of_many(simd, direction));
                     assert_eq!(many, first, "{level:?}");
+                    assert_eq!(rows.point_at(found), points[first]);
                     if rows.are_few() {
                         let other = Rows::new(&points[..points.len() / 2 + 1]).unwrap();
                         let both = [(&rows, &other), (&other, &rows)].map(|(a, b)| {
