@@ -254,9 +254,11 @@ pub(super) fn push_unless_far<K: Copy + PartialOrd, T: Copy>(
     stack: &mut Vec<(K, T)>,
     from: usize,
 ) {
-    if entry.0 < best {
-        insert(entry, stack, from, |bound| bound <= entry.0);
+    // A bound that is no number is below everything.
+    if entry.0 >= best {
+        return;
     }
+    insert(entry, stack, from, |bound| bound <= entry.0);
 }
 
 /// Puts an entry below those at the top that are `nearer`, but for what is below `end`.
@@ -284,5 +286,13 @@ mod tests {
             push_unless_far(entry, 9.0, &mut stack, 1);
         }
         assert_eq!(stack, [(0.5, 'z'), (3.0, 'a'), (2.0, 'e'), (1.0, 'd'), (1.0, 'b')]);
+    }
+
+    /// What is not known to be far may be near.
+    #[test]
+    fn an_entry_without_a_bound_is_kept() {
+        let mut stack = vec![(0.5, 'z')];
+        push_unless_far((f64::NAN, 'a'), 9.0, &mut stack, 1);
+        assert_eq!(stack.last().map(|entry| entry.1), Some('a'));
     }
 }
