@@ -1,9 +1,9 @@
 //! The motion clock: an answer, and whether it still is one after the two objects have moved.
 //!
-//! Of objects that are apart, the gap is room to move in: from the placements then and now follows a bound on how far any point of the
-//! objects has come, whichever way, and one on how far along the axis that separates them, which is less. While either is less than the gap,
-//! no support point is asked for. Where balls in the objects overlap, so much is room too; of others that intersect, the four points
-//! of each whose differences contained the origin are looked at where they are now. (Bounds on motion are what I-COLLIDE schedules pairs by;
+//! Of objects that are apart, the gap is room to move in, and no support point is asked for as long as they came by less: along the axis that
+//! separates them, by a bound that follows from the placements then and now, or, where balls around them are apart, whichever way, by a
+//! bound that is larger and sooner found. By how much balls in them overlap is room too; of others that intersect, the four points of each
+//! whose differences contained the origin are looked at where they are now. (Bounds on motion are what I-COLLIDE schedules pairs by;
 //! here they change no answer.)
 
 use fearless_simd::{Simd, f64x4, prelude::*};
@@ -23,7 +23,6 @@ pub(super) struct Clock {
     evidence: Evidence,
     a: Body,
     b: Body,
-    haste: Haste,
     /// At least the size of the data for as long as the bodies allow it. World units.
     size: f64,
 }
@@ -34,8 +33,8 @@ enum Evidence {
     /// Nothing is known.
     #[default]
     None,
-    /// Balls around the objects are apart, or balls in them overlap: [`Haste`] alone tells for how long.
-    Balls { meet: bool },
+    /// Balls around the objects are apart, or balls in them overlap.
+    Balls { meet: bool, haste: Haste },
     /// The objects are apart along a unit axis, from `B` to `A`, by more than this and what the clock leaves.
     Apart { axis: DVec3, gap: f64 },
     /// The tetrahedron of the differences of the four pairs of points that are kept contains the origin.
@@ -120,7 +119,7 @@ impl Clock {
     ) -> Option<bool> {
         match self.evidence {
             Evidence::None => None,
-            Evidence::Balls { meet } => self.moved_little(simd, at_a, at_b).then_some(meet),
+            Evidence::Balls { meet, haste } => self.moved_little(simd, at_a, at_b, haste).then_some(meet),
             Evidence::Apart { axis, gap } => self.still_apart(simd, at_a, at_b, axis, gap).then_some(false),
             Evidence::Common => self.still_common(simd, at_a, at_b, pairs).then_some(true),
         }
@@ -128,8 +127,8 @@ impl Clock {
 
     /// Whether they moved by less than they may, whichever way.
     #[inline(always)]
-    fn moved_little<S: Simd>(&self, simd: S, at_a: &DAffine3, at_b: &DAffine3) -> bool {
-        let Haste { linear, translation } = self.haste;
+    fn moved_little<S: Simd>(&self, simd: S, at_a: &DAffine3, at_b: &DAffine3, haste: Haste) -> bool {
+        let Haste { linear, translation } = haste;
         let of = {
             #[inline(always)]
             |change: [f64x4<S>; 3], linear: f64| {
@@ -186,9 +185,8 @@ impl Clock {
 
     /// Sets it for polytopes whose balls tell whether they meet.
     #[inline(always)]
-    pub fn set_by_balls<S: Simd>(
+    pub fn set_by_balls(
         &mut self,
-        simd: S,
         (a, at_a): (&Polytope, &DAffine3),
         (b, at_b): (&Polytope, &DAffine3),
         look: &Look,
@@ -202,10 +200,9 @@ impl Clock {
             return self.stop();
         }
         let rate = |k: usize| 1.0 / (CHANGE_MAX * scales[k]);
-        self.haste = Haste::new(room, reach, [rate(0), rate(1)]);
-        self.a.place(simd, at_a);
-        self.b.place(simd, at_b);
-        self.evidence = Evidence::Balls { meet };
+        self.a.placement = at_a.to_cols_array();
+        self.b.placement = at_b.to_cols_array();
+        self.evidence = Evidence::Balls { meet, haste: Haste::new(room, reach, [rate(0), rate(1)]) };
     }
 
     /// Sets it for polytopes that are apart, as [`set_apart`](Clock::set_apart).
@@ -320,14 +317,6 @@ impl<'p> Spread<'p> {
 }
 
 impl Body {
-    #[inline(always)]
-    fn place<S: Simd>(&mut self, simd: S, at: &DAffine3) {
-        let [x, y, z] = at_once(simd, at);
-        x.store_slice(&mut self.placement[0..4]);
-        y.store_slice(&mut self.placement[4..8]);
-        z.store_slice(&mut self.placement[8..12]);
-    }
-
     #[inline(always)]
     fn set(&mut self, object: &Spread, translation_rate: f64) {
         let (DVec3 { x, y, z }, t) = (object.rates(), translation_rate);

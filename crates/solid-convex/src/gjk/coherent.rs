@@ -144,7 +144,7 @@ impl Memory {
         let Some(look) = Look::at(simd, a, b) else { return Glance::Unusual };
         let seen = look.glance();
         if let Glance::Sure(meet) = seen {
-            self.clock.set_by_balls(simd, a, b, &look, meet);
+            self.clock.set_by_balls(a, b, &look, meet);
         } else if self.axis != DVec3::ZERO {
             if let Some(gap) = look.gap_along(simd, a, b, self.axis) {
                 self.clock.set_similar_apart(a, b, &look, self.axis, gap);

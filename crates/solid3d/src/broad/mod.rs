@@ -37,6 +37,13 @@ pub type Proxy = u32;
 /// Writes the boxes of some proxies beside them: some at a time, so that what it prepares serves several.
 pub type BoundsOf<'a> = dyn Fn(&mut [(Proxy, Aabb)]) + Sync + 'a;
 
+/// The box of a proxy alone.
+fn bounds_of_one(proxy: Proxy, bounds: &BoundsOf) -> Aabb {
+    let mut one = [(proxy, Aabb::EMPTY)];
+    bounds(&mut one);
+    one[0].1
+}
+
 /// The greatest proxy: both engines keep one bit of the word for themselves, and the tree three more for its lanes.
 pub const PROXY_MAX: Proxy = (1 << 28) - 1;
 
@@ -137,11 +144,7 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
     /// # Panics
     /// As [`update_many`](Self::update_many).
     fn update_with(&mut self, proxies: &[Proxy], bounds: &BoundsOf) {
-        for &proxy in proxies {
-            let mut one = [(proxy, Aabb::EMPTY)];
-            bounds(&mut one);
-            self.update(proxy, one[0].1);
-        }
+        proxies.iter().for_each(|&proxy| self.update(proxy, bounds_of_one(proxy, bounds)));
     }
 
     /// Takes a box out; its proxy may be used again at once.

@@ -15,7 +15,7 @@ impl Shape {
             Geometry::Cone(cone) => rim(cone.radius(), cone.height()),
             Geometry::Cylinder(cylinder) => rim(cylinder.radius(), cylinder.height()),
             Geometry::Capsule(capsule) => capsule.radius() + capsule.half_height(),
-            Geometry::Polytope(polytope) => furthest(polytope.points().iter().copied()),
+            Geometry::Polytope(hull) => hull.polytope().farthest(),
             Geometry::Complex(complex) => {
                 let indices = (0..complex.primitive_count() as u32).flat_map(|i| complex.primitive(i));
                 furthest(indices.map(|&index| complex.vertices()[index as usize]))

@@ -310,7 +310,7 @@ impl Examiner<'_> {
         let way = (a.has_way() || b.has_way()).then(|| [a.moving(), b.moving()]);
         let still_separated = |axis: &DVec3| match &way {
             None => pair::still_separated(axis, a.placed(), b.placed()),
-            Some([a, b]) => swept::still_separated(*axis, a, b),
+            Some([a, b]) => swept::still_separated(axis, a, b),
         };
         if self.caching && axis.as_ref().is_some_and(still_separated) {
             work.cache_hits += 1;

@@ -90,7 +90,8 @@ impl Polytope {
 
     /// How far its farthest point is from the local origin.
     #[inline]
-    pub(crate) fn farthest(&self) -> f64 {
+    #[doc(hidden)]
+    pub fn farthest(&self) -> f64 {
         self.farthest
     }
 

@@ -33,7 +33,9 @@ mod tree;
 use super::boxes::Boxes;
 use super::pair_lists::PairLists;
 use super::room::{resize_on_threads, room};
-use super::{BoundsOf, BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid};
+use super::{
+    BoundsOf, BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid, bounds_of_one,
+};
 use crate::bounds::Aabb;
 use crate::threads::both;
 use build::Builder;
@@ -324,9 +326,8 @@ impl BroadPhase for DynamicTree {
 
     fn update_with(&mut self, proxies: &[Proxy], bounds: &BoundsOf) {
         if let Some(refused) = self.move_many(Told::MovedTo(proxies, bounds)) {
-            let mut one = [(proxies[refused], Aabb::EMPTY)];
-            bounds(&mut one);
-            self.refuse_update(one[0].0, &one[0].1);
+            let proxy = proxies[refused];
+            self.refuse_update(proxy, &bounds_of_one(proxy, bounds));
         }
     }
 

@@ -16,7 +16,7 @@ pub(super) fn encounter(a: MovingConvex, b: MovingConvex, scratch: &mut Scratch)
     }
 }
 
-pub(super) fn still_separated(axis: DVec3, a: MovingConvex, b: MovingConvex) -> bool {
+pub(super) fn still_separated(axis: &DVec3, a: MovingConvex, b: MovingConvex) -> bool {
     MovingDifference::new(a, b).separated_along(axis)
 }
 

@@ -35,8 +35,8 @@ impl<'a> MovingDifference<'a> {
     }
 
     /// Whether an axis clearly separates it from the origin, and so each of the two ends.
-    pub fn separated_along(&self, axis: DVec3) -> bool {
-        gjk::separates(&axis, self, &DAffine3::IDENTITY, &Origin, &DAffine3::IDENTITY)
+    pub fn separated_along(&self, axis: &DVec3) -> bool {
+        gjk::separates(axis, self, &DAffine3::IDENTITY, &Origin, &DAffine3::IDENTITY)
     }
 }
 

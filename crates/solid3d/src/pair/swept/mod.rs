@@ -61,7 +61,7 @@ pub(crate) fn encounter(a: &Moving, b: &Moving, scratch: &mut Scratch) -> Encoun
 
 /// Whether the axis of an earlier test clearly separates two convex shapes at every time; both [`encounter`] and
 /// [`intersection`](super::intersection) then say that they are apart.
-pub(crate) fn still_separated(axis: DVec3, a: &Moving, b: &Moving) -> bool {
+pub(crate) fn still_separated(axis: &DVec3, a: &Moving, b: &Moving) -> bool {
     match (a.class(), b.class()) {
         (MovingClass::Convex(a), MovingClass::Convex(b)) => convex_convex::still_separated(axis, a, b),
         _ => false,
