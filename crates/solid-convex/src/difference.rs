@@ -4,6 +4,33 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use crate::{Support, unit_scale};
 
+/// A point of an object.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex {
+    /// Space: local to the object.
+    pub point: DVec3,
+    /// Which of the points of a polytope it is, or [`NO_VERTEX`].
+    pub index: u16,
+}
+
+/// Of a point that is no vertex of a polytope, or one beyond so many: no index.
+pub(crate) const NO_VERTEX: u16 = u16::MAX;
+
+impl Vertex {
+    #[inline(always)]
+    pub fn new(point: DVec3, index: usize) -> Vertex {
+        Vertex { point, index: index.min(usize::from(NO_VERTEX)) as u16 }
+    }
+}
+
+/// A point of which nothing else is known.
+impl From<DVec3> for Vertex {
+    #[inline(always)]
+    fn from(point: DVec3) -> Self {
+        Vertex { point, index: NO_VERTEX }
+    }
+}
+
 /// A support point of `A - B`, with the points of the two objects it comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SupportPoint {
@@ -13,9 +40,15 @@ pub(crate) struct SupportPoint {
     pub a: DVec3,
     /// The point of `B`. Space: local to `B`.
     pub b: DVec3,
+    /// Which of the points of `A` and of `B` they are, as in [`Vertex`].
+    pub indices: [u16; 2],
 }
 
 impl SupportPoint {
+    /// What stands where there is none yet: zeros alone, which are soon written.
+    pub const ZERO: SupportPoint =
+        SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO, indices: [0; 2] };
+
     /// Whether both come from the same points of the two objects.
     pub fn same_features(&self, other: &SupportPoint) -> bool {
         self.a == other.a && self.b == other.b
@@ -30,6 +63,9 @@ pub(crate) trait MinkowskiDifference {
 
     /// The point of the difference that a point of each object makes.
     fn point(&self, a: DVec3, b: DVec3) -> SupportPoint;
+
+    /// The points of two polytopes that have these indices; `None` of other objects.
+    fn vertices(&self, indices: [u16; 2]) -> Option<[DVec3; 2]>;
 
     /// Where to start: from the middle of `B` to that of `A`, and along x when they coincide.
     fn initial_direction(&self) -> DVec3;
@@ -87,7 +123,7 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
     /// Theorem 4.7 for each of the two objects.
     #[inline]
     pub fn support_against(&self, v: DVec3) -> SupportPoint {
-        self.point_against(v, |d| self.a.support(d), |d| self.b.support(d))
+        self.point_against(v, |d| self.a.support(d).into(), |d| self.b.support(d).into())
     }
 
     /// The same with support mappings of the objects that are inlined.
@@ -95,12 +131,12 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
     pub fn point_against(
         &self,
         v: DVec3,
-        support_a: impl Fn(DVec3) -> DVec3,
-        support_b: impl Fn(DVec3) -> DVec3,
+        support_a: impl Fn(DVec3) -> Vertex,
+        support_b: impl Fn(DVec3) -> Vertex,
     ) -> SupportPoint {
         let a = support_a(self.linear_a.mul_transpose_vec3(-v));
         let b = support_b(self.linear_b.mul_transpose_vec3(v));
-        self.point(a, b)
+        SupportPoint { indices: [a.index, b.index], ..self.point(a.point, b.point) }
     }
 
     /// The objects.
@@ -111,7 +147,8 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
     /// The point of the difference that a point of each object makes.
     #[inline(always)]
     pub fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
-        SupportPoint { w: (self.linear_a * a - self.linear_b * b) - self.offset, a, b }
+        let w = (self.linear_a * a - self.linear_b * b) - self.offset;
+        SupportPoint { w, a, b, indices: [NO_VERTEX; 2] }
     }
 
     /// `y.w - x.w`, from the differences of the local points: the error is relative to the edge, not to the positions.
@@ -166,6 +203,10 @@ impl<A: Support + ?Sized, B: Support + ?Sized> MinkowskiDifference for Differenc
     #[inline(always)]
     fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
         self.point(a, b)
+    }
+
+    fn vertices(&self, [i, j]: [u16; 2]) -> Option<[DVec3; 2]> {
+        Some([self.a.as_polytope()?.vertex(i), self.b.as_polytope()?.vertex(j)])
     }
 
     #[inline(always)]

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::{DAffine3, DVec3};
 
-use crate::difference::{Difference, MinkowskiDifference, SupportPoint, start_along};
+use crate::difference::{Difference, MinkowskiDifference, NO_VERTEX, SupportPoint, start_along};
 use crate::{MAGNITUDE_MAX, Polytope, Support, unit_scale};
 
 /// Squared lengths of the axes of a plain placement: no product of theirs overflows or loses digits.
@@ -43,6 +43,10 @@ where
     #[inline(always)]
     fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
         self.difference.point(a, b)
+    }
+
+    fn vertices(&self, indices: [u16; 2]) -> Option<[DVec3; 2]> {
+        self.difference.vertices(indices)
     }
 
     #[inline(always)]
@@ -130,14 +134,20 @@ impl<S: Simd> MinkowskiDifference for PolytopeDifference<'_, S> {
         let along = [combination(simd, &linear_a.rows, -v), combination(simd, &linear_b.rows, v)];
         let [on_a, on_b] =
             Polytope::furthest_of_both(simd, self.polytopes, [point(along[0]), point(along[1])]);
-        self.point(on_a, on_b)
+        SupportPoint { indices: [on_a.index, on_b.index], ..self.point(on_a.point, on_b.point) }
     }
 
     #[inline(always)]
     fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
         let (simd, [linear_a, linear_b]) = (self.simd, &self.linear);
         let between = combination(simd, &linear_a.columns, a) - combination(simd, &linear_b.columns, b);
-        SupportPoint { w: point(between - self.offset), a, b }
+        SupportPoint { w: point(between - self.offset), a, b, indices: [NO_VERTEX; 2] }
+    }
+
+    #[inline(always)]
+    fn vertices(&self, [i, j]: [u16; 2]) -> Option<[DVec3; 2]> {
+        let [a, b] = self.polytopes;
+        Some([a.vertex(i), b.vertex(j)])
     }
 
     #[inline(always)]
@@ -234,6 +244,9 @@ mod tests {
                     });
                     assert_eq!(scale, slow.scale());
                     assert_eq!(start, slow.initial_direction());
+                    let [i, j] = found.indices.map(usize::from);
+                    assert_eq!((a.points()[i], b.points()[j]), (found.a, found.b));
+                    let found = SupportPoint { indices: [NO_VERTEX; 2], ..found };
                     assert_eq!(found, slow.support_against(v), "{count} and {other} points, {k}");
                 }
             }

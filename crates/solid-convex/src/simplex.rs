@@ -71,8 +71,10 @@ pub(crate) const SLIVER_SINE_SQUARED: f64 = 1.0 / 16.0;
 impl Simplex {
     #[inline]
     pub fn new() -> Self {
-        let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
-        Simplex { slots: [zero; 4], members: Members { slots: [0; 4], len: 0, barycentric: [0.0; 4] } }
+        Simplex {
+            slots: [SupportPoint::ZERO; 4],
+            members: Members { slots: [0; 4], len: 0, barycentric: [0.0; 4] },
+        }
     }
 
     /// Up to four points, the oldest first; not reduced.

@@ -43,8 +43,7 @@ const POINTS_MAX: usize = 4 + 2 * (3 + 2 + 1);
 
 impl Points {
     fn new(points: &[SupportPoint]) -> Self {
-        let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
-        let mut all = Points { slots: [zero; POINTS_MAX], count: 0 };
+        let mut all = Points { slots: [SupportPoint::ZERO; POINTS_MAX], count: 0 };
         points.iter().for_each(|&point| all.push(point));
         all
     }

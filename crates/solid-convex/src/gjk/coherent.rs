@@ -1,19 +1,22 @@
 //! The same two objects, asked again and again: frame coherence.
 
+use std::ops::ControlFlow;
+
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 
+use super::again::{contains_origin, differences, left_by, search_from};
 use super::balls::Look;
 use super::clock::Clock;
 use super::descent::{End, Goal, descend_robustly};
 use super::distance::{Answer, Measure, Measured, measure};
-use super::intersection::CACHED_GAP_MIN;
-use super::lean::{self, Lean, Search, Sure, Task};
+use super::intersection::is_clear;
+use super::lean::{self, Lean, Sure, Task};
 use super::pairs::{Pair, Pairs};
 use super::{Closest, ClosestInWorld, Glance, Witness, closest_points, nearby_feature};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::simd::dispatch;
-use crate::simplex::{Simplex, VOLUME_ERROR, sides_of_origin};
+use crate::simplex::{Simplex, sides_of_origin};
 use crate::{Polytope, Support, epa};
 
 /// Two convex objects about which the same is asked frame after frame, as they move a little: what was found last is tried
@@ -175,26 +178,16 @@ impl Memory {
         B: Support + ?Sized,
     {
         let (placed_a, placed_b) = ((a, placement_a), (b, placement_b));
-        match lean::run(a, placement_a, b, placement_b, Again { memory: self }) {
-            Found::Separated { gap } => {
+        match lean::run(a, placement_a, b, placement_b, Intersects { memory: self }) {
+            Said::Apart { gap } => {
                 self.clock.set_apart(placed_a, placed_b, self.axis, gap);
                 false
             }
-            Found::Inside => {
+            Said::Common => {
                 self.clock.set_common(placed_a, placed_b);
                 true
             }
-            Found::Anew { lean, gap } => {
-                let apart = lean.sure == Sure::Separated;
-                self.keep(apart, lean.v, lean.points());
-                if apart {
-                    self.clock.set_apart(placed_a, placed_b, self.axis, gap);
-                } else {
-                    self.clock.set_common(placed_a, placed_b);
-                }
-                !apart
-            }
-            Found::Unknown => self.intersects_robustly(&Difference::new(a, placement_a, b, placement_b)),
+            Said::Nothing => self.intersects_robustly(&Difference::new(a, placement_a, b, placement_b)),
         }
     }
 
@@ -378,6 +371,64 @@ impl Memory {
     }
 }
 
+/// Whether two objects intersect, by what is kept of them, or a search from there, whose end is kept in its place.
+struct Intersects<'m> {
+    memory: &'m mut Memory,
+}
+
+enum Said {
+    /// By this gap at least. World units.
+    Apart {
+        gap: f64,
+    },
+    Common,
+    Nothing,
+}
+
+impl Task for Intersects<'_> {
+    type Found = Said;
+
+    #[inline(always)]
+    fn run(self, difference: &impl MinkowskiDifference) -> Said {
+        let Memory { axis, ref pairs, .. } = *self.memory;
+        let scale = difference.scale();
+        if axis != DVec3::ZERO {
+            let along = axis.dot(difference.support_against(axis).w);
+            if is_clear(axis, along) {
+                return Said::Apart { gap: gap(axis, along) / scale };
+            }
+        }
+        let (mut start, mut len) = (pairs.all(), pairs.len());
+        if len == 4 {
+            match contains_origin(start, difference) {
+                ControlFlow::Break(()) => return Said::Common,
+                ControlFlow::Continue(pairs) => (start, len) = (pairs, 3),
+            }
+        }
+        let mut lean = Lean::default();
+        if !search_from(&start[..len], difference, &mut lean) {
+            return Said::Nothing;
+        }
+        let v = lean.v;
+        match lean.sure {
+            Sure::Separated(along) => {
+                self.memory.keep(true, v, lean.points());
+                Said::Apart { gap: gap(v, along) / (v.length() * scale) }
+            }
+            _ => {
+                self.memory.keep(false, v, lean.points());
+                Said::Common
+            }
+        }
+    }
+}
+
+/// A lower bound of the gap along an axis, times its length, by its product with a support point against it. The difference's unit.
+#[inline(always)]
+fn gap(axis: DVec3, along: f64) -> f64 {
+    along - SUPPORT_ERROR * axis.abs().element_sum()
+}
+
 /// The closest points, by a search from where the last one ended, which is kept in its place.
 struct Renew<'m> {
     memory: &'m mut Memory,
@@ -399,99 +450,4 @@ impl Task for Renew<'_> {
             Answer::Beyond | Answer::Unknown => None,
         }
     }
-}
-
-/// Whether two objects intersect, by what is kept of them, else from scratch.
-struct Again<'m> {
-    memory: &'m Memory,
-}
-
-/// What [`Again`] found.
-#[expect(clippy::large_enum_variant, reason = "it is looked at where it is made, and never stored")]
-enum Found {
-    /// The kept axis clearly separates them, by this gap at least. World units.
-    Separated { gap: f64 },
-    /// The kept tetrahedron contains the origin.
-    Inside,
-    /// The kept tetrahedron is too close to tell, or the search was not sure.
-    Unknown,
-    /// What is kept is of no use any more. The gap along the axis is that of objects that are apart. World units.
-    Anew { lean: Lean, gap: f64 },
-}
-
-impl Task for Again<'_> {
-    type Found = Found;
-
-    #[inline(always)]
-    fn run(self, difference: &impl MinkowskiDifference) -> Found {
-        let Memory { axis, ref pairs, .. } = *self.memory;
-        if axis != DVec3::ZERO {
-            let (gap, clear) = gap(axis, difference.support_against(axis).w);
-            if clear {
-                return Found::Separated { gap: gap / difference.scale() };
-            }
-        }
-        let (mut start, mut len) = (pairs.all(), pairs.len());
-        if len == 4 {
-            let (sides, least) = sides_of_origin(differences(&start, difference));
-            if least <= VOLUME_ERROR {
-                return Found::Unknown;
-            }
-            if sides[0].min(sides[1]).min(sides[2].min(sides[3])) > 0.0 {
-                return Found::Inside;
-            }
-            (start, len) = (left_by(start, sides), 3);
-        }
-        // First from where the last search ended, then from nothing.
-        for warm in [&start[..len], &[]] {
-            let search = Search { goal: Goal::Separation, warm };
-            let lean = search.run(difference);
-            match lean.sure {
-                Sure::Separated => {
-                    let axis = lean.v.normalize_or_zero();
-                    let (gap, clear) = gap(axis, difference.support_against(axis).w);
-                    // Of a small gap a search from nothing has the word.
-                    if clear || warm.is_empty() {
-                        return Found::Anew { lean, gap: gap / difference.scale() };
-                    }
-                }
-                Sure::Inside => return Found::Anew { lean, gap: 0.0 },
-                Sure::Near(_) | Sure::Beyond | Sure::Nothing => {}
-            }
-            if warm.is_empty() {
-                break;
-            }
-        }
-        Found::Unknown
-    }
-}
-
-/// The points of the difference that pairs make.
-#[inline(always)]
-fn differences(pairs: &[Pair; 4], difference: &impl MinkowskiDifference) -> [DVec3; 4] {
-    let mut points = [DVec3::ZERO; 4];
-    for (point, pair) in points.iter_mut().zip(pairs) {
-        *point = difference.point(pair.a, pair.b).w;
-    }
-    points
-}
-
-/// The face by which the origin went out of a tetrahedron, before the corner opposite.
-#[inline(always)]
-fn left_by([p, q, r, s]: [Pair; 4], sides: [f64; 4]) -> [Pair; 4] {
-    let outside = sides[0].min(sides[1]).min(sides[2].min(sides[3]));
-    match sides {
-        [side, ..] if side == outside => [p, q, s, r],
-        [_, side, ..] if side == outside => [q, r, s, p],
-        [_, _, side, _] if side == outside => [r, p, s, q],
-        _ => [p, q, r, s],
-    }
-}
-
-/// A lower bound of the gap along a unit axis, in the difference's unit, from a support point against it; and whether it is so large that
-/// it may answer alone.
-#[inline(always)]
-fn gap(axis: DVec3, w: DVec3) -> (f64, bool) {
-    let (gap, norm) = (axis.dot(w), axis.abs().element_sum());
-    (gap - SUPPORT_ERROR * norm, gap > CACHED_GAP_MIN * norm)
 }

@@ -86,7 +86,7 @@ fn finished(lean: &Lean, goal: Goal) -> Option<Descent> {
     let mut simplex = lean.simplex();
     let (end, v) = match lean.sure {
         Sure::Nothing => return None,
-        Sure::Separated | Sure::Beyond => (End::Separated, lean.v),
+        Sure::Separated(_) | Sure::Beyond => (End::Separated, lean.v),
         Sure::Inside => simplex.reduce_if_inside().then_some((End::Inside, DVec3::ZERO))?,
         Sure::Near(mu) => match simplex.reduce() {
             // Measured again by more careful means.

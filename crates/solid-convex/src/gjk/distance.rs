@@ -130,7 +130,7 @@ impl Answer {
                 }
                 _ => Answer::Unknown,
             },
-            Sure::Separated | Sure::Nothing => Answer::Unknown,
+            Sure::Separated(_) | Sure::Nothing => Answer::Unknown,
         }
     }
 }
@@ -275,8 +275,7 @@ where
     if descent.beyond {
         return None;
     }
-    let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
-    let (mut points, mut len) = ([zero; 4], 0);
+    let (mut points, mut len) = ([SupportPoint::ZERO; 4], 0);
     for (place, p) in points.iter_mut().zip(descent.simplex.points()) {
         *place = *p;
         len += 1;

@@ -73,7 +73,7 @@ where
 {
     let lean = lean::run(a, placement_a, b, placement_b, SEARCH);
     match lean.sure {
-        Sure::Separated => Outcome::Separated { axis: lean.v.normalize() },
+        Sure::Separated(_) => Outcome::Separated { axis: lean.v.normalize() },
         Sure::Inside => Outcome::Intersecting(lean.common_point()),
         Sure::Nothing | Sure::Near(_) | Sure::Beyond => {
             robust_intersection(&Difference::new(a, placement_a, b, placement_b))
@@ -164,7 +164,7 @@ where
     B: Support + ?Sized,
 {
     match lean::run(a, placement_a, b, placement_b, Verdict) {
-        Sure::Separated => false,
+        Sure::Separated(_) => false,
         Sure::Inside => true,
         Sure::Nothing | Sure::Near(_) | Sure::Beyond => {
             robust_intersection(&Difference::new(a, placement_a, b, placement_b)).witness().is_some()
@@ -193,7 +193,7 @@ where
         return None;
     }
     match lean::run(a, placement_a, b, placement_b, Axis) {
-        (Sure::Separated, v) => Some(v.normalize()),
+        (Sure::Separated(_), v) => Some(v.normalize()),
         (Sure::Inside, _) => None,
         (Sure::Nothing | Sure::Near(_) | Sure::Beyond, _) => {
             robust_axis(&Difference::new(a, placement_a, b, placement_b))
@@ -203,7 +203,7 @@ where
 
 /// Out of the way of those pairs, nearly all, of which a lean descent was sure.
 #[cold]
-fn robust_axis<A, B>(difference: &Difference<A, B>) -> Option<DVec3>
+pub(super) fn robust_axis<A, B>(difference: &Difference<A, B>) -> Option<DVec3>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
@@ -225,14 +225,15 @@ impl Task for Separates<'_> {
 
     #[inline(always)]
     fn run(self, difference: &impl MinkowskiDifference) -> bool {
-        clearly_separates(*self.axis, difference.support_against(*self.axis).w)
+        let axis = *self.axis;
+        is_clear(axis, axis.dot(difference.support_against(axis).w))
     }
 }
 
-/// Whether `w`, a support point against the axis, shows that it separates by so large a gap that it may answer alone.
+/// Whether an axis separates by so large a gap that it may answer alone, by its product with a support point against it.
 #[inline(always)]
-pub(super) fn clearly_separates(axis: DVec3, w: DVec3) -> bool {
-    axis.dot(w) > CACHED_GAP_MIN * axis.abs().element_sum()
+pub(super) fn is_clear(axis: DVec3, along: f64) -> bool {
+    along > CACHED_GAP_MIN * axis.abs().element_sum()
 }
 
 /// A cached axis answers alone only when the gap along it is more than this, relative to the size of the data. Nearer,

@@ -36,8 +36,8 @@ const DIVISOR_MIN: f64 = 1e-24;
 /// What the lean descent is sure of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Sure {
-    /// The axis separates the objects.
-    Separated,
+    /// The axis separates the objects: its product with any point of the difference is this, up to the error of a support point.
+    Separated(f64),
     /// The four points contain the origin.
     Inside,
     /// The hull of the points has the point closest to the origin, within the goal's tolerance; the distance is at least this.
@@ -63,12 +63,17 @@ impl Default for Lean {
     /// One that has not begun.
     #[inline(always)]
     fn default() -> Self {
-        let zero = SupportPoint { w: DVec3::ZERO, a: DVec3::ZERO, b: DVec3::ZERO };
-        Lean { sure: Sure::Nothing, v: DVec3::ZERO, points: [zero; 4], len: 0 }
+        Lean { sure: Sure::Nothing, v: DVec3::ZERO, points: [SupportPoint::ZERO; 4], len: 0 }
     }
 }
 
 impl Lean {
+    /// Begins anew.
+    #[inline(always)]
+    pub fn begin(&mut self) {
+        (self.sure, self.len) = (Sure::Nothing, 0);
+    }
+
     /// The support points that it ended with, the oldest first.
     pub fn points(&self) -> &[SupportPoint] {
         &self.points[..self.len.min(4)]
@@ -323,8 +328,8 @@ impl Search<'_> {
         if self.warm.is_empty() {
             v = difference.initial_direction();
         } else {
-            for (place, &Pair { a, b }) in lean.points.iter_mut().zip(self.warm.iter().take(3)) {
-                *place = difference.point(a, b);
+            for (place, &Pair { a, b, indices }) in lean.points.iter_mut().zip(self.warm.iter().take(3)) {
+                *place = SupportPoint { indices, ..difference.point(a, b) };
             }
             lean.len = self.warm.len().min(3);
             let closest = closest_of_any(&mut lean.points, &mut lean.len);
@@ -393,7 +398,7 @@ impl Search<'_> {
     fn reached(self, v: DVec3, divisor: f64, vw: f64, len: usize) -> Sure {
         let square = v.length_squared();
         let tolerance = match self.goal {
-            Goal::Separation => return Sure::Separated,
+            Goal::Separation => return Sure::Separated(vw),
             // What exceeds the bound by its margin does so squared: most need no root.
             Goal::DistanceWithin { bound, .. }
                 if vw * vw > bound * bound * square && self.goal.is_exceeded(vw / square.sqrt()) =>

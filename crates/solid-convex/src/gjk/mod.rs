@@ -11,6 +11,7 @@
 //!   simplex was computed anew from the edges of the two objects, which gives it the precision of the edges instead of
 //!   that of the positions; a plate of 1000 x 1000 x 0.001 needs it.
 
+mod again;
 mod balls;
 mod cast;
 mod clock;
@@ -21,6 +22,7 @@ mod intersection;
 mod lean;
 mod nearby_feature;
 mod pairs;
+mod proof;
 #[cfg(test)]
 mod tests;
 
@@ -33,6 +35,7 @@ pub use distance::{Closest, ClosestInWorld, closest_points, closest_points_withi
 pub use intersection::{
     Outcome, Witness, intersection, intersects, intersects_closely, separates, separating_axis,
 };
+pub use proof::{Decision, Proof, Vertices};
 
 /// Objects nearer to each other than this, or overlapping less, relative to the size of the data, may be reported
 /// as touching. The size of the data is the sum of the objects' extents and of the distance of their local origins.

@@ -6,7 +6,7 @@ use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::{DAffine3, DVec3};
 
 use super::coherent::Memory;
-use super::pairs::{Pair, Pairs, Points, images, point, put};
+use super::pairs::{Pairs, Points, images, point, put};
 use super::{ClosestInWorld, DISTANCE_TOLERANCE};
 use crate::difference::SUPPORT_ERROR;
 use crate::polytope_difference::is_plain;
@@ -94,8 +94,12 @@ pub(super) fn closest<S: Simd>(
             memory.pairs_to_change().set_len(0);
             return None;
         }
-        let [on_a, on_b] = if few { Polytope::furthest_of_both(simd, [a, b], along) } else { furthest };
-        corners.add(simd, memory.pairs_to_change(), Pair { a: on_a, b: on_b }, [at_a, at_b], offset);
+        if few {
+            let [on_a, on_b] = Polytope::furthest_of_both(simd, [a, b], along);
+            furthest = [on_a.point, on_b.point];
+        }
+        let [on_a, on_b] = furthest;
+        corners.add(simd, memory.pairs_to_change(), [on_a, on_b], [at_a, at_b], offset);
         moved = true;
     }
     None
@@ -176,14 +180,14 @@ impl Corners {
         &mut self,
         simd: S,
         pairs: &mut Pairs,
-        pair: Pair,
+        [a, b]: [DVec3; 2],
         [at_a, at_b]: [&DAffine3; 2],
         offset: DVec3,
     ) {
-        let (on_a, on_b) = (at_a.matrix3 * pair.a, at_b.matrix3 * pair.b);
+        let (on_a, on_b) = (at_a.matrix3 * a, at_b.matrix3 * b);
         let at = pairs.len();
-        put(simd, &mut pairs.a, at, pair.a);
-        put(simd, &mut pairs.b, at, pair.b);
+        put(simd, &mut pairs.a, at, a);
+        put(simd, &mut pairs.b, at, b);
         put(simd, &mut self.on_a, at, on_a);
         put(simd, &mut self.w, at, on_a - (on_b + offset));
         pairs.set_len(at + 1);
@@ -232,6 +236,7 @@ mod tests {
     use glam::DMat3;
 
     use super::*;
+    use crate::gjk::pairs::Pair;
     use crate::gjk::{Memory, closest_points};
     use crate::simd::{dispatch, levels};
     use crate::testing::placement;
@@ -274,7 +279,7 @@ mod tests {
                 let [found, wide] = levels().map(|level| {
                     let mut memory = memory;
                     let found = dispatch!(level, simd => closest(simd, &mut memory, on_a, on_b));
-                    (found, memory.pairs.all().map(|Pair { a, b }| [a, b]))
+                    (found, memory.pairs.all().map(|Pair { a, b, .. }| [a, b]))
                 });
                 assert_eq!(found, wide, "{count} and {other}, {k}");
                 let expected = closest_points(&a, &a_now, &b, &b_now).distance;

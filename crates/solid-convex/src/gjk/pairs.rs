@@ -3,13 +3,20 @@
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::{DMat3, DVec3};
 
-use crate::difference::SupportPoint;
+use crate::difference::{NO_VERTEX, SupportPoint};
 
 /// A point of each object, each in its local space.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub a: DVec3,
     pub b: DVec3,
+    /// As of a [`SupportPoint`].
+    pub indices: [u16; 2],
+}
+
+impl Pair {
+    /// What stands where there is none.
+    pub const ZERO: Pair = Pair { a: DVec3::ZERO, b: DVec3::ZERO, indices: [0; 2] };
 }
 
 /// Four points of an object by coordinate, for vector instructions. Space: local.
@@ -50,7 +57,7 @@ impl Pairs {
     /// All four, also those that are missing.
     #[inline]
     pub fn all(&self) -> [Pair; 4] {
-        [0, 1, 2, 3].map(|k| Pair { a: point(&self.a, k), b: point(&self.b, k) })
+        [0, 1, 2, 3].map(|k| Pair { a: point(&self.a, k), b: point(&self.b, k), indices: [NO_VERTEX; 2] })
     }
 
     /// Sets how many there are.

@@ -343,7 +343,7 @@ fn the_lean_descent_says_what_the_robust_one_says() {
                     hits += usize::from(slow.end != End::Separated);
                     sure += usize::from(wide.sure != Sure::Nothing);
                     match wide.sure {
-                        Sure::Separated => assert_ne!(slow.end, End::Inside, "{i} {j} {k}"),
+                        Sure::Separated(_) => assert_ne!(slow.end, End::Inside, "{i} {j} {k}"),
                         Sure::Inside => assert_ne!(slow.end, End::Separated, "{i} {j} {k}"),
                         Sure::Near(mu) => {
                             let Some((v, _)) = wide.closest_point() else { continue };

@@ -56,8 +56,8 @@ use solid_convex::{Closest, Witness, gjk};
 pub(crate) use surface::{SurfacePoint, surface_point};
 pub use swept::Path;
 pub(crate) use table::{
-    axis, closest, closest_within, convex_closest_within, convex_intersects, intersection, intersects,
-    intersects_by_class, penetration, separation,
+    axis, closest, closest_within, convex_closest_within, convex_intersects, decide, intersection,
+    intersects, intersects_by_class, penetration,
 };
 
 use crate::placement::inverse_linear;
@@ -78,12 +78,6 @@ pub(crate) enum Relation {
     Separated { axis: Option<DVec3> },
     /// They do: a common point, as a point of each shape.
     Common(Witness),
-}
-
-/// That two shapes do not intersect; convex shapes come with an axis that separates them, from `B` to `A`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Separation {
-    pub axis: Option<DVec3>,
 }
 
 /// Whether two shapes intersect, where that takes no search: as [`gjk::glance`], of other simple shapes too. Placements need not have been

@@ -1,11 +1,12 @@
 //! The table.
 
 use glam::{DAffine3, DVec3};
-use solid_convex::{Closest, Penetration, Support, gjk};
+use solid_convex::gjk::{self, Decision, Proof};
+use solid_convex::{Closest, Penetration, Support};
 
 use super::{
-    Mirror, Placed, Relation, Scratch, Separation, closed_form, complex_complex, complex_convex,
-    convex_convex, depth,
+    Mirror, Placed, Relation, Scratch, closed_form, complex_complex, complex_convex, convex_convex, depth,
+    still_separated,
 };
 use crate::shape::{Class, Complex};
 
@@ -97,21 +98,31 @@ pub(crate) fn intersection(a: Placed, b: Placed, scratch: &mut Scratch) -> Relat
     ROW.apply(a, b, scratch)
 }
 
-/// What [`intersection`] says without a common point: `None` of shapes that intersect.
-pub(crate) fn separation(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<Separation> {
-    let separated = |axis: Option<DVec3>| axis.map(|axis| Separation { axis: Some(axis) });
+/// Whether they intersect, as [`intersection`] says, by what showed it last or by something else, which takes its place.
+pub(crate) fn decide(a: Placed, b: Placed, proof: &mut Proof, scratch: &mut Scratch) -> Decision {
     // Of known types, without a call through a table of functions.
     if let (Some(on_a), Some(on_b)) = (a.shape.polytope(), b.shape.polytope()) {
-        scratch.primitive_tests += 1;
-        return separated(gjk::separating_axis(on_a, a.placement, on_b, b.placement));
+        let decision = proof.renew(on_a, a.placement, on_b, b.placement);
+        scratch.primitive_tests += u64::from(!decision.by_the_same);
+        return decision;
     }
-    if let (Some((on_a, on_b)), None) = (convex(a, b), a.shape.simple().and(b.shape.simple())) {
-        return separated(convex_convex::axis(on_a, on_b, scratch));
+    if let Proof::Apart(axis) = proof
+        && still_separated(axis, a, b)
+    {
+        return Decision { intersect: false, by_the_same: true };
     }
-    match intersection(a, b, scratch) {
-        Relation::Separated { axis } => Some(Separation { axis }),
-        Relation::Common(_) => None,
-    }
+    let (intersect, axis) = match (convex(a, b), a.shape.simple().and(b.shape.simple())) {
+        (Some((on_a, on_b)), None) => {
+            let axis = convex_convex::axis(on_a, on_b, scratch);
+            (axis.is_none(), axis)
+        }
+        _ => match intersection(a, b, scratch) {
+            Relation::Separated { axis } => (false, axis),
+            Relation::Common(_) => (true, None),
+        },
+    };
+    *proof = axis.into();
+    Decision { intersect, by_the_same: false }
 }
 
 /// The closest points.

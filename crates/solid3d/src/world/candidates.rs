@@ -4,7 +4,7 @@
 //! said stands until one of the two objects, its previous frame or the response of the pair changes: then the candidate is put
 //! into the queue, which the next test examines. So the cost of a test follows what changed.
 
-use glam::DVec3;
+use solid_convex::gjk::Proof;
 use solid_convex::simd::dispatch;
 
 use super::arena::slot_of;
@@ -30,8 +30,8 @@ pub(super) struct Candidate {
     /// In the order of pairs.
     pub a: ObjectId,
     pub b: ObjectId,
-    /// The axis that separated the pair when it was last examined.
-    pub axis: Option<DVec3>,
+    /// What showed whether the pair collides when it was last examined.
+    pub proof: Proof,
     /// Its collision, if it had one when it was last examined.
     pub found: Option<FindingId>,
     /// Whether that is one of which nothing is known but that it is there now.
@@ -83,7 +83,7 @@ impl Candidates {
         let candidate = Candidate {
             a,
             b,
-            axis: None,
+            proof: Proof::None,
             found: None,
             is_plain: false,
             matters: false,
@@ -137,8 +137,8 @@ impl Candidates {
     }
 
     /// Forgets what was learned about pairs that may help to examine them.
-    pub fn forget_axes(&mut self) {
-        self.slots.values_mut().iter_mut().flatten().for_each(|candidate| candidate.axis = None);
+    pub fn forget_proofs(&mut self) {
+        self.slots.values_mut().iter_mut().flatten().for_each(|candidate| candidate.proof = Proof::None);
     }
 
     /// Moves those that wait to be examined to `places`, each once.

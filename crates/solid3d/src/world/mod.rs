@@ -288,8 +288,8 @@ impl World {
         self.stir(id, if had_way { Staleness::Bounds } else { Staleness::Previous });
     }
 
-    /// Lets tests use what earlier tests found out about a pair: its separating axis, and all of it while nothing about the pair
-    /// changed. On by default. Answers are the same with and without, to the bit.
+    /// Lets tests use what earlier tests found out about a pair: its separating axis, the vertices by which two hulls had a common point, and
+    /// all of it while nothing about the pair changed. On by default. Answers are the same with and without, to the bit.
     pub fn enable_caching(&mut self) {
         self.caching = true;
     }
@@ -297,7 +297,7 @@ impl World {
     /// Makes each test start from nothing; see [`enable_caching`](World::enable_caching).
     pub fn disable_caching(&mut self) {
         self.caching = false;
-        self.candidates.forget_axes();
+        self.candidates.forget_proofs();
     }
 
     /// The work done since the world was made.

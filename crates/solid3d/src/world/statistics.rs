@@ -10,7 +10,8 @@ pub struct Statistics {
     pub candidates: u64,
     /// Candidates that were examined. Of the others nothing had changed since they were: what was found then still holds.
     pub examined: u64,
-    /// Candidates that were examined and that the axis of an earlier test still separated.
+    /// Candidates that were examined and of which what an earlier test found still showed whether they collide: the axis that separated them, or the
+    /// vertices by which two hulls had a common point, where no more is asked of a collision.
     pub cache_hits: u64,
     /// Tests of one box against the eight of a tree's node.
     pub box_tests: u64,
@@ -25,7 +26,7 @@ pub struct Statistics {
 impl Statistics {
     /// What `count` candidates will cost if they are like those examined so far, in units of about a box test.
     pub(super) fn units_for(&self, count: usize) -> u64 {
-        /// What a candidate costs at least, whose cached axis still separates it.
+        /// What a candidate costs at least, of which what is cached still tells.
         const UNITS_PER_CANDIDATE: u64 = 4;
         /// What the search of two convex shapes for a common point costs.
         const UNITS_PER_PRIMITIVE_TEST: u64 = 6;

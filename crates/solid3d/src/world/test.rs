@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use solid_convex::gjk::{Decision, Proof};
 
 use super::arena::Arena;
 use super::candidates::{Candidate, PairKey};
@@ -12,8 +13,8 @@ use super::response::ResponseTable;
 use super::threads::{PART, Workers};
 use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
 use crate::error::Result;
-use crate::pair::swept::{self, Encounter, Moving};
-use crate::pair::{self, Relation, Scratch, Separation};
+use crate::pair::swept::{self, Encounter};
+use crate::pair::{self, Relation, Scratch};
 
 /// How far a test has come that is made collision by collision: see [`World::test_next`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -184,7 +185,7 @@ impl World {
         let mut described = Vec::new();
         let Self { objects, responses, caching, workers, statistics, .. } = self;
         let examiner = Examiner { objects, responses, caching: *caching };
-        let verdict = examiner.examine(a, b, &mut None, workers.own(), &mut described, statistics);
+        let verdict = examiner.examine(a, b, &mut Proof::None, workers.own(), &mut described, statistics);
         let found = verdict.outcome.found(|| described.pop());
         statistics.candidates += 1;
         statistics.collisions += u64::from(found.is_some());
@@ -272,9 +273,9 @@ impl Examiner<'_> {
     /// Examines a candidate, and keeps what is of it alone; the rest is news.
     fn renew(&self, place: Place, candidate: &mut Option<Candidate>, news: &mut News, scratch: &mut Scratch) {
         let candidate = candidate.as_mut().expect("what waits to be examined is a candidate");
-        let &mut Candidate { a, b, ref mut axis, found, .. } = candidate;
+        let &mut Candidate { a, b, ref mut proof, found, .. } = candidate;
         let Verdict { matters, outcome } =
-            self.examine(a, b, axis, scratch, &mut news.described, &mut news.work);
+            self.examine(a, b, proof, scratch, &mut news.described, &mut news.work);
         let was_plain = std::mem::replace(&mut candidate.is_plain, outcome == Outcome::Plain);
         news.matter += u64::from(matters);
         news.mattered += u64::from(std::mem::replace(&mut candidate.matters, matters));
@@ -288,77 +289,76 @@ impl Examiner<'_> {
         }
     }
 
-    /// Whether two objects collide, of which `a` comes first; a function of the two, their response and the axis alone, in place of which
-    /// that is put which separates them now. What more is known of a collision is put into `described`, and the work is added to that
-    /// done before.
+    /// Whether two objects collide, of which `a` comes first; a function of the two and their response alone, whatever proof is tried first,
+    /// in place of which that is put which there is now. What more is known of a collision is put into `described`, and the work is added
+    /// to that done before.
     fn examine(
         &self,
         a: ObjectId,
         b: ObjectId,
-        axis: &mut Option<DVec3>,
+        proof: &mut Proof,
         scratch: &mut Scratch,
         described: &mut Vec<(When, Contact)>,
         work: &mut Statistics,
     ) -> Verdict {
         let response = self.responses.of(a, b);
         if response == Response::Ignore {
-            *axis = None;
+            *proof = Proof::None;
             return Verdict::default();
         }
         work.examined += 1;
         let (a, b) = (&self.objects[a], &self.objects[b]);
-        let way = (a.has_way() || b.has_way()).then(|| [a.moving(), b.moving()]);
-        let still_separated = |axis: &DVec3| match &way {
-            None => pair::still_separated(axis, a.placed(), b.placed()),
-            Some([a, b]) => swept::still_separated(axis, a, b),
-        };
-        if self.caching && axis.as_ref().is_some_and(still_separated) {
-            work.cache_hits += 1;
-            return Verdict { matters: true, outcome: Outcome::Apart };
+        let has_way = a.has_way() || b.has_way();
+        if !self.caching {
+            *proof = Proof::None;
         }
         let before = scratch.work();
-        let (outcome, found) = match (now([a, b], response, scratch, described), &way) {
-            (Now::Collide(outcome), _) => (outcome, None),
-            (Now::Apart { axis }, None) => (Outcome::Apart, axis),
-            (Now::Apart { .. }, Some(way)) => {
-                work.sweeps += 1;
-                on_the_way([a, b], way, response, scratch, described)
-            }
+        let Found { outcome, by_the_same } = if has_way {
+            now_or_on_the_way([a, b], response, proof, scratch, described, work)
+        } else {
+            now([a, b], response, proof, scratch, described)
         };
         let after = scratch.work();
+        work.cache_hits += u64::from(by_the_same);
         work.box_tests += after.0 - before.0;
         work.primitive_tests += after.1 - before.1;
-        *axis = found.filter(|_| self.caching);
         Verdict { matters: true, outcome }
     }
 }
 
-/// What two objects do as they are.
-enum Now {
-    Collide(Outcome),
-    /// With an axis that separates them, where there is one to keep.
-    Apart {
-        axis: Option<DVec3>,
-    },
+/// What examining two objects gave.
+struct Found {
+    outcome: Outcome,
+    /// Whether what was kept showed it.
+    by_the_same: bool,
 }
 
+/// What two objects do as they are.
 fn now(
     [a, b]: [&Object; 2],
     response: Response,
+    proof: &mut Proof,
     scratch: &mut Scratch,
     described: &mut Vec<(When, Contact)>,
-) -> Now {
+) -> Found {
     let (placed_a, placed_b) = (a.placed(), b.placed());
     if response == Response::Simple {
-        return match pair::separation(placed_a, placed_b, scratch) {
-            Some(Separation { axis }) => Now::Apart { axis },
-            None => Now::Collide(Outcome::Plain),
-        };
+        let Decision { intersect, by_the_same } = pair::decide(placed_a, placed_b, proof, scratch);
+        return Found { outcome: if intersect { Outcome::Plain } else { Outcome::Apart }, by_the_same };
+    }
+    if let Proof::Apart(axis) = proof
+        && pair::still_separated(axis, placed_a, placed_b)
+    {
+        return Found { outcome: Outcome::Apart, by_the_same: true };
     }
     let witness = match pair::intersection(placed_a, placed_b, scratch) {
-        Relation::Separated { axis } => return Now::Apart { axis },
+        Relation::Separated { axis } => {
+            *proof = axis.into();
+            return Found { outcome: Outcome::Apart, by_the_same: false };
+        }
         Relation::Common(witness) => witness,
     };
+    *proof = Proof::None;
     let contact = match response {
         Response::Ignore | Response::Simple => Contact::Simple,
         Response::Witness => Contact::witness(placed_a, placed_b, &witness),
@@ -367,7 +367,7 @@ fn now(
         Response::Depth => Contact::depth(placed_a, placed_b, scratch),
         Response::Contacts => Contact::contacts(placed_a, placed_b, &witness, scratch),
     };
-    Now::Collide(describe(When::Now, contact, described))
+    Found { outcome: describe(When::Now, contact, described), by_the_same: false }
 }
 
 fn describe(when: When, contact: Contact, described: &mut Vec<(When, Contact)>) -> Outcome {
@@ -382,18 +382,47 @@ fn push_of_part<T>(list: &mut Vec<T>, element: T) {
     list.push(element);
 }
 
-/// Whether two objects that are apart now collided on the way; else an axis, when one separates them all the way.
+/// What two objects do as they are; of those that are apart, what they did on the way. The proof is one for all the way.
+fn now_or_on_the_way(
+    objects: [&Object; 2],
+    response: Response,
+    proof: &mut Proof,
+    scratch: &mut Scratch,
+    described: &mut Vec<(When, Contact)>,
+    work: &mut Statistics,
+) -> Found {
+    let [a, b] = objects.map(Object::moving);
+    if let Proof::Apart(axis) = proof
+        && swept::still_separated(axis, &a, &b)
+    {
+        return Found { outcome: Outcome::Apart, by_the_same: true };
+    }
+    let found = now(objects, response, proof, scratch, described);
+    if found.outcome != Outcome::Apart {
+        return found;
+    }
+    work.sweeps += 1;
+    let outcome = match swept::encounter(&a, &b, scratch) {
+        Encounter::None { axis } => {
+            *proof = axis.into();
+            Outcome::Apart
+        }
+        Encounter::At(point) => {
+            *proof = Proof::None;
+            on_the_way(objects, point, response, scratch, described)
+        }
+    };
+    Found { outcome, by_the_same: false }
+}
+
+/// A collision at a point on the way of two objects that are apart now.
 fn on_the_way(
     [a, b]: [&Object; 2],
-    [way_a, way_b]: &[Moving; 2],
+    point: DVec3,
     response: Response,
     scratch: &mut Scratch,
     described: &mut Vec<(When, Contact)>,
-) -> (Outcome, Option<DVec3>) {
-    let point = match swept::encounter(way_a, way_b, scratch) {
-        Encounter::None { axis } => return (Outcome::Apart, axis),
-        Encounter::At(point) => point,
-    };
+) -> Outcome {
     let contact = match response {
         Response::Ignore | Response::Simple => Contact::Simple,
         Response::Witness => Contact::witness_on_the_way(a.placed(), b.placed(), point),
@@ -403,7 +432,7 @@ fn on_the_way(
         Response::Depth => Contact::depth(a.placed(), b.placed(), scratch),
         Response::Contacts => Contact::Contacts { point, manifolds: Arc::default() },
     };
-    (describe(When::OnTheWay, contact, described), None)
+    describe(When::OnTheWay, contact, described)
 }
 
 fn smart([a, b]: [&Object; 2], scratch: &mut Scratch) -> Contact {
@@ -426,6 +455,34 @@ mod tests {
         let at = |i: usize| DAffine3::from_translation(DVec3::X * 0.9 * i as f64);
         let ids = (0..count).map(|i| world.add(&ball, at(i)).unwrap()).collect();
         (world, ids)
+    }
+
+    /// Of hulls that collide, what showed it last shows it again, where no more is asked; with the same collisions as without.
+    #[test]
+    fn a_collision_of_hulls_is_shown_by_the_same_vertices() {
+        let hull = Shape::convex_hull(&[DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE]).unwrap();
+        for (response, hits) in [(Response::Simple, 9), (Response::Witness, 0)] {
+            let options = WorldOptions { default_response: response, ..WorldOptions::default() };
+            let worlds = [true, false].map(|caching| {
+                let mut world = World::with_options(&options);
+                if !caching {
+                    world.disable_caching();
+                }
+                let at = |x: f64| DAffine3 {
+                    translation: DVec3::new(x, 0.13, 0.07),
+                    ..DAffine3::from_rotation_y(0.3)
+                };
+                let still = world.add(&hull, DAffine3::IDENTITY).unwrap();
+                let moving = world.add(&hull, at(0.2)).unwrap();
+                for frame in 0..10 {
+                    world.set_placement(moving, at(0.2 + 0.001 * f64::from(frame))).unwrap();
+                    assert!(matches!(&world.test()[..], [found] if found.a == still && found.b == moving));
+                    world.proceed();
+                }
+                world.statistics().cache_hits
+            });
+            assert_eq!(worlds, [hits, 0], "{response:?}");
+        }
     }
 
     /// What a response costs that moves one object follows the pairs of that object, not all pairs.

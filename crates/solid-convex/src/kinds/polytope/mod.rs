@@ -7,6 +7,7 @@ use fearless_simd::Simd;
 use glam::{DMat3, DVec3};
 
 use super::points::{mean, reach};
+use crate::difference::Vertex;
 use crate::gjk::Balls;
 use crate::simd::{self, dispatch};
 use crate::support::bounds_by_supports;
@@ -104,22 +105,34 @@ impl Polytope {
     /// The support point, for searches that are compiled into one piece with it: but for those without vectors, of which each copy would be
     /// long, and which nobody is in a hurry for.
     #[inline(always)]
-    pub(crate) fn furthest<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
+    pub(crate) fn furthest<S: Simd>(&self, simd: S, direction: DVec3) -> Vertex {
         simd::part!(simd => self.furthest_within(simd, direction))
     }
 
     #[inline(always)]
-    fn furthest_within<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
+    fn furthest_within<S: Simd>(&self, simd: S, direction: DVec3) -> Vertex {
         match self.furthest_mapped(direction) {
-            Some(furthest) => self.point_at(furthest),
-            None => self.rows.point_at(self.rows.furthest(simd, direction)),
+            Some(furthest) => Vertex::new(self.point_at(furthest), furthest),
+            None => self.vertex_in_rows(self.rows.furthest(simd, direction)),
         }
+    }
+
+    /// The point of an index; of one past the end, the last.
+    #[inline(always)]
+    pub(crate) fn vertex(&self, index: u16) -> DVec3 {
+        self.rows.point_at(usize::from(index))
     }
 
     /// Of a direction that is no number, none is the furthest: the index is past the end.
     #[inline(always)]
     fn point_at(&self, furthest: usize) -> DVec3 {
         self.points[furthest.min(self.points.len() - 1)]
+    }
+
+    /// The same from the rows, after all of them were compared.
+    #[inline(always)]
+    fn vertex_in_rows(&self, furthest: usize) -> Vertex {
+        Vertex::new(self.rows.point_at(furthest), furthest)
     }
 
     /// The index of the furthest point, where there are so many that they are mapped.
@@ -134,11 +147,11 @@ impl Polytope {
         simd: S,
         [a, b]: [&Polytope; 2],
         along: [DVec3; 2],
-    ) -> [DVec3; 2] {
+    ) -> [Vertex; 2] {
         // Those that are mapped are many.
         if Polytope::are_few([a, b]) {
             let [on_a, on_b] = Rows::furthest_of_both(simd, [&a.rows, &b.rows], along);
-            return [a.rows.point_at(on_a), b.rows.point_at(on_b)];
+            return [a.vertex_in_rows(on_a), b.vertex_in_rows(on_b)];
         }
         [a.furthest_of_many(simd, along[0]), b.furthest_of_many(simd, along[1])]
     }
@@ -155,8 +168,8 @@ impl Polytope {
             return Rows::greatest_of_both(simd, [&a.rows, &b.rows], along);
         }
         let [on_a, on_b] = [a.furthest_of_many(simd, along[0]), b.furthest_of_many(simd, along[1])];
-        *furthest = [on_a, on_b];
-        [on_a.dot(along[0]), on_b.dot(along[1])]
+        *furthest = [on_a.point, on_b.point];
+        [on_a.point.dot(along[0]), on_b.point.dot(along[1])]
     }
 
     /// Whether the points of both are so few that all products stay in registers.
@@ -166,10 +179,10 @@ impl Polytope {
     }
 
     #[inline(always)]
-    fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> DVec3 {
+    fn furthest_of_many<S: Simd>(&self, simd: S, direction: DVec3) -> Vertex {
         match self.furthest_mapped(direction) {
-            Some(furthest) => self.point_at(furthest),
-            None => self.rows.point_at(self.rows.furthest_of_many(simd, direction)),
+            Some(furthest) => Vertex::new(self.point_at(furthest), furthest),
+            None => self.vertex_in_rows(self.rows.furthest_of_many(simd, direction)),
         }
     }
 
@@ -192,7 +205,7 @@ impl Polytope {
 impl Support for Polytope {
     #[inline]
     fn support(&self, direction: DVec3) -> DVec3 {
-        dispatch!(simd => self.furthest(simd, direction))
+        dispatch!(simd => self.furthest(simd, direction).point)
     }
 
     fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
