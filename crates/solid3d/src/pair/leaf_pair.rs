@@ -35,13 +35,12 @@ impl LeafTest<'_> {
                 continue;
             }
             *primitive_tests += u64::from(near.count_ones());
-            let x = ones.triangle(i);
             let triangles = if ones.triangles() >> i & 1 == 1 { near & others.triangles() } else { 0 };
-            let sure = verdict(simd, &x, others, triangles);
+            let sure = verdict(simd, (ones, i), others, triangles);
             let mut meet = sure.meet;
             for j in bits(near & !(sure.apart | sure.meet)) {
                 let is_met = if triangles >> j & 1 == 1 {
-                    triangle_triangle::intersect(&x, &others.triangle(j))
+                    triangle_triangle::intersect(&ones.triangle(i), &others.triangle(j))
                 } else {
                     self.hulls_meet(ones.primitive(i), others.primitive(j))
                 };
