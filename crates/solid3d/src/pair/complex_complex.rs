@@ -10,14 +10,15 @@ use solid_convex::{Closest, Witness, gjk};
 use super::containment::{PlacedSolid, part_inside};
 use super::crossing_point::{crossing_point, weighted};
 use super::frame::Frame;
-use super::row::{CONFIRMED, Near, Rows, distances, exceed, verdict};
+use super::leaf_pair::{LeafTest, transposed};
+use super::row::{CONFIRMED, Near, Rows, distances, exceed};
 use super::scratch::PlacedPrimitive;
 use super::table::PlacedComplex;
-use super::triangle_triangle::{self, Triangle};
+use super::triangle_triangle::Triangle;
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 use crate::shape::Complex;
-use crate::tree::{Facing, LeafPairs, NearLeafPairs, bits, nearest_pairs_on, pairs_on};
+use crate::tree::{Facing, LEAF_SIZE, LeafPairs, NearLeafPairs, bits, nearest_pairs_on, pairs_on};
 
 /// Whether they intersect: as [`intersection`] says.
 pub(super) fn intersects(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> bool {
@@ -95,7 +96,7 @@ impl LeafPairs<()> for Meeting<'_> {
         in_a.measure(simd);
         in_b.measure(simd);
         let (in_a, in_b) = (&*in_a, &*in_b);
-        // Those of which fewer are near are held one by one against the others, eight at a time.
+        // In the order of the leaf of which fewer are near: one by one, and with each the others.
         let swapped = of_b.count_ones() < of_a.count_ones();
         let [(ones, of_ones), (others, of_others)] =
             if swapped { [(in_b, of_b), (in_a, of_a)] } else { [(in_a, of_a), (in_b, of_b)] };
@@ -104,29 +105,18 @@ impl LeafPairs<()> for Meeting<'_> {
             return ControlFlow::Continue(());
         }
         let of_ones = of_ones & ones.level_with(simd, others);
-        for i in bits(of_ones) {
-            let near = others.overlapping(simd, &ones.bounds(i)) & of_others;
-            if near == 0 {
-                continue;
-            }
-            *self.primitive_tests += u64::from(near.count_ones());
-            let x = ones.triangle(i);
-            let triangles = if ones.triangles() >> i & 1 == 1 { near & others.triangles() } else { 0 };
-            let sure = verdict(simd, &x, others, triangles);
-            for j in bits(near & !sure.apart) {
-                let (one, other) = (ones.primitive(i), others.primitive(j));
-                let (one, other) = if swapped { (other, one) } else { (one, other) };
-                let meet = if sure.meet >> j & 1 == 1 {
-                    true
-                } else if triangles >> j & 1 == 1 {
-                    triangle_triangle::intersect(&x, &others.triangle(j))
-                } else {
-                    hulls_meet(self.a, one, self.b, other)
-                };
-                if meet {
-                    (self.found)(one, other)?;
-                }
-            }
+        // Of those that are left, the fewer are tested one by one, unless the first in order is all that is wanted.
+        let turned = !self.wants_first && of_others.count_ones() < of_ones.count_ones();
+        let lanes = [(ones, of_ones), (others, of_others)];
+        let [tested, against] = if turned { [lanes[1], lanes[0]] } else { lanes };
+        let test =
+            LeafTest { a: self.a, b: self.b, swapped: swapped != turned, wants_first: self.wants_first };
+        let meeting = test.meeting(simd, tested, against, self.primitive_tests);
+        let meeting = if turned { transposed(meeting) } else { meeting };
+        for place in bits(meeting) {
+            let (one, other) = (ones.primitive(place / LEAF_SIZE), others.primitive(place % LEAF_SIZE));
+            let (one, other) = if swapped { (other, one) } else { (one, other) };
+            (self.found)(one, other)?;
         }
         ControlFlow::Continue(())
     }
@@ -302,10 +292,6 @@ pub(super) fn corners(complex: &Complex, primitive: u32) -> Option<Triangle> {
         [i, j, k] => Some([i, j, k].map(|index| complex.vertices()[index as usize])),
         _ => None,
     }
-}
-
-fn hulls_meet(a: PlacedComplex, i: u32, b: PlacedComplex, j: u32) -> bool {
-    gjk::intersection(&a.0.primitive_hull(i), a.1, &b.0.primitive_hull(j), b.1).witness().is_some()
 }
 
 fn closest_of(a: PlacedComplex, i: u32, b: PlacedComplex, j: u32) -> Closest {

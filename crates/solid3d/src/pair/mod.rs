@@ -25,6 +25,7 @@ mod fixed_box;
 mod frame;
 mod gaps;
 mod glance;
+mod leaf_pair;
 mod ray;
 mod reach;
 mod row;

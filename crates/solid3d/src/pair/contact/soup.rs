@@ -149,9 +149,8 @@ impl LeafPairs<()> for NearPairs<'_> {
             let bounds = in_a.bounds(i);
             let near = in_b.overlapping(simd, &bounds.inflated(self.margin));
             *self.primitive_tests += u64::from(near.count_ones());
-            let x = in_a.triangle(i);
             let triangles = if in_a.triangles() >> i & 1 == 1 { near & in_b.triangles() } else { 0 };
-            let sure = verdict(simd, &x, in_b, triangles);
+            let sure = verdict(simd, (in_a, i), in_b, triangles);
             let apart = if self.margin == 0.0 { sure.apart } else { 0 };
             for j in bits(near & !apart) {
                 // Of triangles it is decided exactly, as everywhere.
@@ -160,7 +159,7 @@ impl LeafPairs<()> for NearPairs<'_> {
                 let meet = if certain {
                     sure.meet >> j & 1 == 1
                 } else {
-                    known && triangle_triangle::intersect(&x, &in_b.triangle(j))
+                    known && triangle_triangle::intersect(&in_a.triangle(i), &in_b.triangle(j))
                 };
                 if meet || !known || self.margin > 0.0 {
                     self.found.push(([in_a.primitive(i), in_b.primitive(j)], meet));

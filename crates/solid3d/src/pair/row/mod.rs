@@ -31,6 +31,7 @@ pub(super) type Lanes = [f64; LEAF_SIZE];
 
 /// Up to eight primitives. Lanes beyond them repeat the first.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))] // no vector is in two lines of a cache
 pub(crate) struct Row {
     /// By corner and axis. A point or a segment repeats its last corner; a primitive of more vertices has none that mean
     /// anything.
@@ -85,6 +86,12 @@ impl Row {
             return;
         }
         self.leaf = key;
+        self.take(simd, complex, leaf, map);
+    }
+
+    /// The same, without a look at what is here.
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, simd: S, complex: &Complex, leaf: &[u32], map: &DAffine3) {
         self.used = (1 << leaf.len()) - 1;
         for (lane, primitive) in self.primitives.iter_mut().enumerate() {
             *primitive = leaf[if lane < leaf.len() { lane } else { 0 }];

@@ -19,7 +19,7 @@ use fearless_simd::{Simd, f32x8, f64x4, mask32x8};
 
 use super::{Lanes, Row};
 use crate::pair::glance::{Points, dot, minus};
-use crate::pair::triangle_triangle::Triangle;
+use crate::tree::LEAF_SIZE;
 
 /// 128u: see the module.
 const ROUNDING: f32 = 64.0 * f32::EPSILON;
@@ -36,26 +36,27 @@ pub(crate) struct Verdict {
     pub apart: u32,
 }
 
-/// What is certain of a triangle and those of a row in the lanes asked for.
+/// What is certain of the triangle in a lane of a row, the one, and those of another row in the lanes asked for.
 #[inline(never)] // see `distances`
-pub(crate) fn verdict<S: Simd>(simd: S, x: &Triangle, row: &Row, lanes: u32) -> Verdict {
+pub(crate) fn verdict<S: Simd>(simd: S, (one, lane): (&Row, usize), row: &Row, lanes: u32) -> Verdict {
     simd.vectorize(
         #[inline(always)]
-        || verdict_on(simd, x, row, lanes),
+        || verdict_on(simd, (one, lane), row, lanes),
     )
 }
 
 #[inline(always)]
-fn verdict_on<S: Simd>(simd: S, x: &Triangle, row: &Row, lanes: u32) -> Verdict {
+fn verdict_on<S: Simd>(simd: S, (one, lane): (&Row, usize), row: &Row, lanes: u32) -> Verdict {
+    let x = |corner: usize, axis: usize| one.corners[corner][axis][lane % LEAF_SIZE];
     let zero = f32x8::splat(simd, 0.0);
     let mut xs = [[zero; 3]; 3];
     let mut ys = xs;
     let mut bound = f32x8::splat(simd, ROUNDING);
     for axis in 0..3 {
-        let from = x[0][axis];
+        let from = x(0, axis);
         for corner in 0..3 {
             if corner > 0 {
-                xs[corner][axis] = f32x8::splat(simd, (x[corner][axis] - from) as f32);
+                xs[corner][axis] = f32x8::splat(simd, (x(corner, axis) - from) as f32);
             }
             ys[corner][axis] = around(simd, &row.corners[corner][axis], from);
         }
@@ -158,7 +159,7 @@ fn cross<S: Simd>(a: &Points<S>, b: &Points<S>) -> Points<S> {
 mod tests {
     use super::*;
     use crate::pair::row::tests::row_of;
-    use crate::pair::triangle_triangle::intersect;
+    use crate::pair::triangle_triangle::{Triangle, intersect};
     use glam::DVec3;
     use rand::Rng;
     use solid_convex::simd::dispatch;
@@ -168,9 +169,9 @@ mod tests {
     /// Holds what is said of a triangle and eight against the exact test, on every level of instructions; returns how many
     /// lanes meet, and of how many nothing is said.
     fn check(x: &Triangle, ys: &[Triangle; 8]) -> [usize; 2] {
-        let row = row_of(ys);
+        let (one, row) = (row_of(&[*x; 8]), row_of(ys));
         let asked = 0b1101_1111;
-        let all = levels().map(|level| dispatch!(level, simd => verdict(simd, x, &row, asked)));
+        let all = levels().map(|level| dispatch!(level, simd => verdict(simd, (&one, 5), &row, asked)));
         assert_eq!(all[0], all[1]);
         let Verdict { meet, apart } = all[0];
         assert_eq!((meet | apart) & !asked, 0);
