@@ -136,6 +136,7 @@ const TINY: f32 = f32::MIN_POSITIVE;
 
 /// A tree in a common space, of which the unit is the reach of both.
 struct Side<'t> {
+    tree: &'t Tree,
     slabs: &'t [Eight],
     /// From tree coordinates; by rows.
     linear: [[f32; 3]; 3],
@@ -146,8 +147,7 @@ struct Side<'t> {
 
 /// Two trees that face each other.
 pub(super) struct Faces<'t> {
-    a: Side<'t>,
-    b: Side<'t>,
+    sides: [Side<'t>; 2],
     /// From the origin of the tree coordinates of `b` to that of `a`.
     offset: DVec3,
     unit: f64,
@@ -156,7 +156,7 @@ pub(super) struct Faces<'t> {
 
 impl<'t> Faces<'t> {
     /// `None` where no unit suits.
-    pub fn new(facing: &Facing<'t>, a: &Tree, b: &Tree) -> Option<Self> {
+    pub fn new(facing: &Facing<'t>, a: &'t Tree, b: &'t Tree) -> Option<Self> {
         let linear = |at: &DAffine3, tree: &Tree| at.matrix3 * tree.normal.scale;
         let [at_a, at_b] = &facing.placements;
         let (of_a, of_b) = (linear(at_a, a), linear(at_b, b));
@@ -166,7 +166,7 @@ impl<'t> Faces<'t> {
         if !unit.is_normal() || !unit.recip().is_normal() {
             return None;
         }
-        let side = |linear: DMat3, slabs: &'t Slabs| {
+        let side = |tree: &'t Tree, linear: DMat3, slabs: &'t Slabs| {
             let exact = linear * unit.recip();
             let rows = exact.transpose().to_cols_array_2d();
             let DMat3 { x_axis: x, y_axis: y, z_axis: z } = exact;
@@ -174,6 +174,7 @@ impl<'t> Faces<'t> {
             let largest = cofactors.to_cols_array().iter().fold(0.0, |most: f64, c| most.max(c.abs()));
             let cofactors = if largest.is_normal() { cofactors * largest.recip() } else { DMat3::ZERO };
             Side {
+                tree,
                 slabs: &slabs.eights,
                 linear: rows.map(|row| row.map(|x| x as f32)),
                 exact,
@@ -182,100 +183,31 @@ impl<'t> Faces<'t> {
         };
         let [slabs_a, slabs_b] = facing.slabs;
         Some(Faces {
-            a: side(of_a, slabs_a),
-            b: side(of_b, slabs_b),
+            sides: [side(a, of_a, slabs_a), side(b, of_b, slabs_b)],
             offset: offset * unit.recip(),
             unit,
             margin: MARGIN * unit,
         })
     }
 
-    /// Raises lower bounds of the distances of what hangs at a place of `b` and of the lanes of a node of `a`, until none is below `best`. What was
-    /// near was apart along `kept`, of length one, or zero.
-    #[expect(clippy::too_many_arguments, reason = "two sides, of which either may be the one")]
+    /// Raises lower bounds of the distances of the lanes of a node and what hangs at a place of the other tree, until none is below `best`; the
+    /// node is of the first tree for `OF` = 0, of the second for 1. What was near was apart along `kept`, of length one, or zero.
     #[inline(always)]
-    pub fn raise_in_a<S: Simd>(
+    pub fn raise<S: Simd, const OF: usize>(
         &self,
         simd: S,
-        a: &Tree,
         node: usize,
-        b: &Tree,
-        in_b: Place,
-        kept: DVec3,
-        best: f64,
-        bounds: &mut [f64; WIDTH],
-    ) {
-        let (many, one) = (&self.a, &self.b);
-        self.raise(
-            simd,
-            many,
-            &a.nodes[node],
-            &many.slabs[node],
-            one,
-            b,
-            in_b,
-            -self.offset,
-            kept,
-            best,
-            bounds,
-        );
-    }
-
-    /// The same for what hangs at a place of `a` and the lanes of a node of `b`.
-    #[expect(clippy::too_many_arguments, reason = "two sides, of which either may be the one")]
-    #[inline(always)]
-    pub fn raise_in_b<S: Simd>(
-        &self,
-        simd: S,
-        b: &Tree,
-        node: usize,
-        a: &Tree,
-        in_a: Place,
-        kept: DVec3,
-        best: f64,
-        bounds: &mut [f64; WIDTH],
-    ) {
-        let (many, one) = (&self.b, &self.a);
-        self.raise(
-            simd,
-            many,
-            &b.nodes[node],
-            &many.slabs[node],
-            one,
-            a,
-            in_a,
-            self.offset,
-            kept,
-            best,
-            bounds,
-        );
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "two sides, of which either may be the one")]
-    #[inline(always)]
-    fn raise<S: Simd>(
-        &self,
-        simd: S,
-        many: &Side,
-        node: &Node,
-        slabs: &Eight,
-        one: &Side,
-        tree: &Tree,
         place: Place,
-        offset: DVec3,
         kept: DVec3,
         best: f64,
         bounds: &mut [f64; WIDTH],
     ) {
+        let (many, one) = (&self.sides[OF], &self.sides[1 - OF]);
+        let offset = if OF == 0 { -self.offset } else { self.offset };
         part!(simd => {
-            let gaps = Gaps::new(
-                simd,
-                many,
-                Patch::lanes(simd, node, slabs),
-                one,
-                Patch::one(simd, one, tree, place),
-                offset,
-            );
+            let lanes = Patch::lanes(simd, &many.tree.nodes[node], &many.slabs[node]);
+            let single = Patch::one(simd, one, place);
+            let gaps = Gaps::new(simd, many, lanes, one, single, offset);
             let zero = splat(simd, 0.0);
             let kept = [splat(simd, kept.x as f32), splat(simd, kept.y as f32), splat(simd, kept.z as f32)];
             if !self.take(gaps.along(simd, &kept).max(zero).to_array(), best, bounds) {
@@ -343,8 +275,8 @@ impl<S: Simd> Patch<S> {
 
     /// The same in all lanes.
     #[inline(always)]
-    fn one(simd: S, side: &Side, tree: &Tree, place: Place) -> Self {
-        let bounds = tree.box_at(place);
+    fn one(simd: S, side: &Side, place: Place) -> Self {
+        let bounds = side.tree.box_at(place);
         let (min, max) = (bounds.min(), bounds.max());
         let none = splat(simd, 0.0);
         let [mut centers, mut extents, mut normal] = [[none; 3]; 3];
