@@ -6,13 +6,13 @@ use glam::DVec3;
 use solid_convex::simd::{Level, dispatch, level};
 
 use super::beam::seek;
+use super::facing::{Faces, Facing};
 use super::lanes::{distances_squared, extents};
 use super::metric::{Folded, PairMetric};
 use super::nearest::push_unless_far;
 use super::node::WIDTH;
 use super::pairs::{Duel, Pair, Step, Tested};
 use super::relative::Relative;
-use super::slabs::{Faces, Facing};
 use super::traversal::STACK_USUAL;
 use super::{Traversal, Tree};
 
