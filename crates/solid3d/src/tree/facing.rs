@@ -10,6 +10,7 @@ use fearless_simd::{Simd, f32x8};
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::simd::part;
 
+use super::lanes::splat;
 use super::node::{Node, WIDTH};
 use super::slabs::{Eight, Slabs, center};
 use super::{Place, Tree};
@@ -289,9 +290,4 @@ fn transposed_product<S: Simd>(simd: S, [x, y, z]: &[[f32; 3]; 3], v: &Vector<S>
 #[inline(always)]
 fn dot<S: Simd>(a: &Vector<S>, b: &Vector<S>) -> f32x8<S> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn splat<S: Simd>(simd: S, x: f32) -> f32x8<S> {
-    f32x8::splat(simd, x)
 }
