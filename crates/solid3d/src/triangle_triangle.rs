@@ -7,7 +7,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::exact::{self, orient2d, orient3d};
+use crate::exact::{flatten, orient2d, orient3d, segments_meet, segments_meet_in_space};
 
 /// Three corners.
 pub(crate) type Triangle = [DVec3; 3];
@@ -27,7 +27,7 @@ pub(crate) fn intersect(x: &Triangle, y: &Triangle) -> bool {
         EDGES.iter().any(|&[i, j]| {
             let (p, q) = (&edges_of[i], &edges_of[j]);
             if other_flat {
-                EDGES.iter().any(|&[k, l]| segments_meet(p, q, &other[k], &other[l]))
+                EDGES.iter().any(|&[k, l]| segments_meet_in_space(*p, *q, other[k], other[l]))
             } else {
                 segment_meets_triangle(p, q, sides[i], sides[j], other)
             }
@@ -45,9 +45,10 @@ fn same_strict_side(sides: [f64; 3]) -> bool {
 /// The triangle is not degenerate; `p_side` and `q_side` are the orientations of the ends to its plane.
 fn segment_meets_triangle(p: &DVec3, q: &DVec3, p_side: f64, q_side: f64, triangle: &Triangle) -> bool {
     if p_side == 0.0 && q_side == 0.0 {
-        return PROJECTIONS
-            .iter()
-            .all(|flatten| segment_meets_triangle_2d(flatten(p), flatten(q), triangle.map(|c| flatten(&c))));
+        // Coplanar sets meet if and only if they do in all three projections, as segments do.
+        return (0..3).all(|k| {
+            segment_meets_triangle_2d(flatten(k, *p), flatten(k, *q), triangle.map(|c| flatten(k, c)))
+        });
     }
     if same_strict_side([p_side, q_side, p_side]) {
         return false;
@@ -56,21 +57,8 @@ fn segment_meets_triangle(p: &DVec3, q: &DVec3, p_side: f64, q_side: f64, triang
     turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0)
 }
 
-fn segments_meet(p: &DVec3, q: &DVec3, r: &DVec3, s: &DVec3) -> bool {
-    orient3d(*p, *q, *r, *s) == 0.0
-        && PROJECTIONS
-            .iter()
-            .all(|flatten| exact::segments_meet(flatten(p), flatten(q), flatten(r), flatten(s)))
-}
-
-/// Coplanar sets meet if and only if they do in all three projections along the coordinate axes: at least one of these
-/// loses nothing of the plane, and none parts what meets.
-const PROJECTIONS: [fn(&DVec3) -> DVec2; 3] =
-    [|p| DVec2::new(p.y, p.z), |p| DVec2::new(p.z, p.x), |p| DVec2::new(p.x, p.y)];
-
 fn segment_meets_triangle_2d(p: DVec2, q: DVec2, triangle: [DVec2; 3]) -> bool {
-    EDGES.iter().any(|&[i, j]| exact::segments_meet(p, q, triangle[i], triangle[j]))
-        || contains_2d(triangle, p)
+    EDGES.iter().any(|&[i, j]| segments_meet(p, q, triangle[i], triangle[j])) || contains_2d(triangle, p)
 }
 
 /// Whether a point lies in a triangle's interior; `false` for a degenerate triangle, whose edges are all there is.
@@ -80,7 +68,7 @@ fn contains_2d(triangle: [DVec2; 3], p: DVec2) -> bool {
 }
 
 fn collinear(t: &Triangle) -> bool {
-    PROJECTIONS.iter().all(|flatten| orient2d(flatten(&t[0]), flatten(&t[1]), flatten(&t[2])) == 0.0)
+    (0..3).all(|k| orient2d(flatten(k, t[0]), flatten(k, t[1]), flatten(k, t[2])) == 0.0)
 }
 
 #[cfg(test)]

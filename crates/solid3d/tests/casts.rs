@@ -7,20 +7,11 @@
 
 mod common;
 
-use common::{direction, in_cube, placement, random_complex, random_mesh, shape_of, torus};
+use common::{direction, in_cube, placement, random_mesh, some_shape, torus};
 use glam::{DAffine3, DVec3};
 use rand::Rng;
-use rand::rngs::StdRng;
-use solid_oracle::generate::{random_shape, seeded};
+use solid_oracle::generate::seeded;
 use solid3d::{Shape, glam, query};
-
-fn some_shape(rng: &mut StdRng, case: u32) -> Shape {
-    match case % 4 {
-        0 => random_mesh(rng, 50).shape(),
-        1 => random_complex(rng, 10).shape(),
-        _ => shape_of(&random_shape(rng, 1.0)),
-    }
-}
 
 fn moved(at: &DAffine3, motion: DVec3, t: f64) -> DAffine3 {
     DAffine3 { translation: at.translation + motion * t, ..*at }

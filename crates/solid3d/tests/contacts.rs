@@ -10,7 +10,7 @@ mod common;
 use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
-use common::{assert_rate, placement, random_complex, random_mesh, sheet};
+use common::{assert_rate, at, placement, random_complex, random_mesh, sheet, size_of};
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
@@ -18,10 +18,6 @@ use solid3d::query::{self, ContactOptions, ContactPoint, Feature, Manifold};
 use solid3d::{Motion, Response, Shape, When, World, WorldOptions, glam};
 
 const SEED: u64 = 20_262;
-
-fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(DVec3::new(x, y, z))
-}
 
 fn within(margin: f64) -> ContactOptions {
     ContactOptions { margin, ..ContactOptions::default() }
@@ -50,20 +46,7 @@ fn floor(squares: u32) -> Shape {
 
 /// The surface of a unit cube, of 12 triangles.
 fn cube_mesh() -> Shape {
-    let corner = |i: u32| DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -0.5 } else { 0.5 }));
-    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles: Vec<[u32; 3]> = sides.iter().flat_map(|&[i, j, k, l]| [[i, j, k], [i, k, l]]).collect();
-    Shape::mesh((0..8).map(corner).collect::<Vec<_>>(), triangles).unwrap()
-}
-
-/// A length that bounds the extents of both shapes and the distance of their origins.
-fn size_of(a: &Shape, pa: &DAffine3, b: &Shape, pb: &DAffine3) -> f64 {
-    let extent = |shape: &Shape, at: &DAffine3| {
-        let here = DAffine3 { translation: DVec3::ZERO, ..*at };
-        let bounds = query::bounds(shape, &here).unwrap();
-        bounds.min.abs().max(bounds.max.abs()).max_element()
-    };
-    extent(a, pa) + extent(b, pb) + (pa.translation - pb.translation).abs().max_element()
+    common::cube(0.5).shape()
 }
 
 fn deepest(manifolds: &[Manifold]) -> f64 {

@@ -11,8 +11,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
 
 use common::{
-    Soup, assert_rate, direction, in_cube, log_uniform, placement, random_complex, random_mesh, rescaled,
-    stretch, torus,
+    Case, Soup, assert_rate, at, direction, in_cube, log_uniform, random_complex, random_mesh, rescaled,
+    torus,
 };
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
@@ -21,10 +21,6 @@ use solid_oracle::generate::seeded;
 use solid_oracle::{Convex, distance_bounds, mesh_distance, mesh_pairs, triangles_intersect};
 use solid3d::query::{self, IntersectionCurve, Polyline, PrimitivePair};
 use solid3d::{Error, Shape, ShapeKind, glam};
-
-fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(DVec3::new(x, y, z))
-}
 
 fn curve(a: &Shape, at_a: &DAffine3, b: &Shape, at_b: &DAffine3) -> IntersectionCurve {
     let curve = query::intersection_curve(a, at_a, b, at_b).unwrap();
@@ -207,34 +203,19 @@ fn round_shapes_are_refused() {
     assert!(matches!(error, Error::SingularPlacement { .. }));
 }
 
-/// Two placed meshes near each other.
-struct Case {
-    a: Soup,
-    at_a: DAffine3,
-    b: Soup,
-    at_b: DAffine3,
-    /// The size of the data, about.
-    size: f64,
-}
-
 impl Case {
-    /// B's origin is put near a vertex of A, up to `away` sizes of B off.
-    fn new(rng: &mut StdRng, a: Soup, b: Soup, away: f64) -> Case {
-        let size = log_uniform(rng, 1e-6, 1e6);
-        let ratio = if rng.random_range(0..3) == 0 { log_uniform(rng, 0.1, 10.0) } else { 1.0 };
-        let (a, b) = (a.scaled(size), b.scaled(size * ratio));
-        let (at_a, mut at_b) = (placement(rng, 3.0 * size), placement(rng, size));
-        let vertex = at_a.transform_point3(a.vertices[rng.random_range(0..a.vertices.len())]);
-        at_b.translation = vertex + away * size * ratio * rng.random_range(0.0..=1.0) * direction(rng);
-        let apart = at_a.translation.distance(at_b.translation);
-        Case { size: size * (stretch(&at_a) + ratio * stretch(&at_b)) + apart, a, at_a, b, at_b }
+    /// Its size is that of the data, about.
+    fn near(rng: &mut StdRng, a: Soup, b: Soup, away: f64) -> Case {
+        let mut case = Case::new(rng, a, b, away, 10.0);
+        case.size += case.at_a.translation.distance(case.at_b.translation);
+        case
     }
 
     fn meshes(rng: &mut StdRng) -> Case {
         let count = |rng: &mut StdRng| log_uniform(rng, 20.0, 800.0) as u32;
         let (n, m) = (count(rng), count(rng));
         let (a, b) = (random_mesh(rng, n), random_mesh(rng, m));
-        Case::new(rng, a, b, 2.0)
+        Case::near(rng, a, b, 2.0)
     }
 
     fn closed_meshes(rng: &mut StdRng) -> Case {
@@ -249,7 +230,7 @@ impl Case {
             }
         };
         let (a, b) = (closed(), closed());
-        Case::new(rng, a, b, 2.1)
+        Case::near(rng, a, b, 2.1)
     }
 
     fn curve(&self) -> IntersectionCurve {
@@ -384,7 +365,7 @@ fn complex_shapes_meet_where_their_boundaries_do() {
         let (n, m) = (count(&mut rng), count(&mut rng));
         let a = random_complex(&mut rng, n);
         let b = if rng.random() { random_complex(&mut rng, m) } else { random_mesh(&mut rng, m.max(20)) };
-        let mut case = Case::new(&mut rng, a, b, 0.7);
+        let mut case = Case::near(&mut rng, a, b, 0.7);
         // Without solid primitives the curve is empty if and only if nothing intersects.
         let surfaces = rng.random();
         if surfaces {

@@ -9,7 +9,7 @@ mod common;
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use common::{assert_rate, direction, in_cube, shape_of, sheet};
+use common::{assert_rate, at, cube, direction, in_cube, shape_of, sheet};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -19,10 +19,6 @@ use solid3d::query::{self, ContactOptions, ImpactOptions, Penetration, Ray, RayO
 use solid3d::{Shape, World, glam};
 
 const SEED: u64 = 31;
-
-fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(DVec3::new(x, y, z))
-}
 
 fn turned(rng: &mut StdRng, translation: DVec3) -> DAffine3 {
     let turn = DQuat::from_axis_angle(direction(rng), rng.random_range(0.0..PI));
@@ -254,10 +250,7 @@ fn the_hull_of_flattened_points_keeps_all_of_them() {
 /// Two surfaces with nothing in common, one inside the other, are in contact when they bound solids.
 #[test]
 fn a_mesh_wholly_inside_another_collides() {
-    let corner = |i: u32| DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -0.5 } else { 0.5 }));
-    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles: Vec<[u32; 3]> = sides.iter().flat_map(|&[i, j, k, l]| [[i, j, k], [i, k, l]]).collect();
-    let surface = Shape::mesh((0..8).map(corner).collect::<Vec<_>>(), triangles).unwrap();
+    let surface = cube(0.5).shape();
     let solid = surface.clone().into_solid().unwrap();
     let (here, small) = (DAffine3::IDENTITY, DAffine3::from_scale(DVec3::splat(0.25)));
     assert!(!query::intersects(&surface, &here, &surface, &small).unwrap(), "they are surfaces");

@@ -6,8 +6,8 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::{
-    Soup, assert_rate, direction, in_cube, log_uniform, placement, random_complex, random_mesh, rescaled,
-    shape_of, stretch, torus,
+    Case, Soup, assert_rate, direction, in_cube, log_uniform, placement, random_complex, random_mesh,
+    rescaled, shape_of, stretch, torus,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
@@ -18,33 +18,12 @@ use solid_oracle::{
 };
 use solid3d::{Aabb, Error, Shape, glam, query};
 
-/// Two placed soups near each other, and the extent of both.
-struct Case {
-    a: Soup,
-    at_a: DAffine3,
-    b: Soup,
-    at_b: DAffine3,
-    size: f64,
-}
-
 impl Case {
-    /// B's origin is put near a vertex of A, up to `away` sizes of B off.
-    fn new(rng: &mut StdRng, a: Soup, b: Soup, away: f64) -> Case {
-        let size = log_uniform(rng, 1e-6, 1e6);
-        let ratio = if rng.random_range(0..3) == 0 { log_uniform(rng, 1e-3, 1e3) } else { 1.0 };
-        let (a, b) = (a.scaled(size), b.scaled(size * ratio));
-        let (at_a, mut at_b) = (placement(rng, 3.0 * size), placement(rng, size));
-        let vertex = at_a.transform_point3(a.vertices[rng.random_range(0..a.vertices.len())]);
-        let off = away * rng.random_range(0.0..=1.0) * size * ratio;
-        at_b.translation = vertex + off * direction(rng);
-        Case { size: size * (stretch(&at_a) + ratio * stretch(&at_b)), a, at_a, b, at_b }
-    }
-
     fn pair_of_meshes(rng: &mut StdRng) -> Case {
         let count = |rng: &mut StdRng| log_uniform(rng, 20.0, 2000.0) as u32;
         let (n, m) = (count(rng), count(rng));
         let (a, b) = (random_mesh(rng, n), random_mesh(rng, m));
-        Case::new(rng, a, b, 1.7)
+        Case::new(rng, a, b, 1.7, 1e3)
     }
 
     /// Complex against complex or mesh, either first.
@@ -54,7 +33,7 @@ impl Case {
         let a = random_complex(rng, n);
         let b = if rng.random() { random_complex(rng, m) } else { random_mesh(rng, m.max(20)) };
         let (a, b) = if rng.random() { (a, b) } else { (b, a) };
-        Case::new(rng, a, b, 1.5)
+        Case::new(rng, a, b, 1.5, 1e3)
     }
 
     fn meshes_meet(&self) -> bool {
@@ -202,7 +181,7 @@ fn meshes_and_complex_shapes_against_every_convex_kind_agree_with_brute_force() 
             if rng.random() { random_mesh(&mut rng, count) } else { random_complex(&mut rng, count.min(40)) };
         let convex = random_shape(&mut rng, 1.0);
         let one = Soup::mesh(vec![DVec3::ZERO], vec![[0; 3]]);
-        let Case { a: soup, at_a, at_b, size, b: _ } = Case::new(&mut rng, soup, one, 1.6);
+        let Case { a: soup, at_a, at_b, size, b: _ } = Case::new(&mut rng, soup, one, 1.6, 1e3);
         // The convex shape has unit size, so its own placement scales it.
         let at_b = DAffine3 { matrix3: at_b.matrix3 * (size / 4.0), translation: at_b.translation };
         let size = size + stretch(&at_b);
@@ -366,7 +345,7 @@ fn any_case(rng: &mut StdRng) -> Case {
     if rng.random() {
         let (n, m) = (rng.random_range(20..400), rng.random_range(20..400));
         let (a, b) = (random_mesh(rng, n), random_mesh(rng, m));
-        Case::new(rng, a, b, 1.7)
+        Case::new(rng, a, b, 1.7, 1e3)
     } else {
         Case::pair_of_soups(rng)
     }

@@ -8,7 +8,9 @@
 
 mod common;
 
-use common::{direction, each_pair, in_cube, placement, random_complex, random_mesh, rescaled};
+use common::{
+    at, cube, direction, each_pair, in_cube, placement, random_complex, random_mesh, rescaled, size_of,
+};
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -23,16 +25,6 @@ use solid3d::{Shape, glam};
 const SEED: u64 = 20_261;
 /// Pairs of a regime.
 const PAIRS: usize = 1_500;
-
-/// A length that bounds the extents of both shapes and the distance of their origins.
-fn size_of(a: &Shape, pa: &DAffine3, b: &Shape, pb: &DAffine3) -> f64 {
-    let extent = |shape: &Shape, at: &DAffine3| {
-        let here = DAffine3 { translation: DVec3::ZERO, ..*at };
-        let bounds = query::bounds(shape, &here).unwrap();
-        bounds.min.abs().max(bounds.max.abs()).max_element()
-    };
-    extent(a, pa) + extent(b, pb) + (pa.translation - pb.translation).abs().max_element()
-}
 
 /// What the answers of a regime were like.
 #[derive(Debug, Default)]
@@ -229,10 +221,6 @@ fn shallow_pairs() {
     run(Regime::NearTouching { relative_gap: 1e-9 }, 30..=70);
 }
 
-fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(DVec3::new(x, y, z))
-}
-
 fn depth(a: &Shape, at_a: &DAffine3, b: &Shape, at_b: &DAffine3) -> f64 {
     let found = query::penetration(a, at_a, b, at_b).unwrap().unwrap();
     let swapped = query::penetration(b, at_b, a, at_a).unwrap().unwrap();
@@ -347,23 +335,7 @@ fn a_soup_is_as_deep_as_its_deepest_primitives() {
 /// A solid is its hull: a body that is wholly inside gets out.
 #[test]
 fn what_is_in_a_solid_gets_out() {
-    let corner = |i: u32| DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -1.0 } else { 1.0 }));
-    let corners: Vec<DVec3> = (0..8).map(corner).collect();
-    let sides = [
-        [0, 2, 3],
-        [0, 3, 1],
-        [4, 5, 7],
-        [4, 7, 6],
-        [0, 1, 5],
-        [0, 5, 4],
-        [2, 6, 7],
-        [2, 7, 3],
-        [0, 4, 6],
-        [0, 6, 2],
-        [1, 3, 7],
-        [1, 7, 5],
-    ];
-    let surface = Shape::mesh(corners, sides).unwrap();
+    let surface = cube(1.0).shape();
     let solid = surface.clone().into_solid().unwrap();
     let (ball, here) = (Shape::sphere(0.25).unwrap(), DAffine3::IDENTITY);
     let inside = at(0.5, 0.1, 0.2);

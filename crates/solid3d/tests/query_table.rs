@@ -4,10 +4,13 @@
 //! it anew. A query more is a line more in [`OF_TWO`] or [`OF_ONE`].
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod common;
+
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use common::{at, cube};
 use glam::{DAffine3, DVec3};
 use solid3d::query::{self, ContactOptions, ImpactOptions, PairCache, Ray, RayOptions};
 use solid3d::{ComplexShapeBuilder, Error, Result, Shape, ShapeKind, glam};
@@ -116,11 +119,8 @@ fn figure(x: f64) -> String {
 
 /// A shape of each kind, all about 2 in size; a mesh both as a surface and as a solid.
 fn shapes() -> Vec<(String, Shape)> {
-    let corner = |i: u32| DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -1.0 } else { 1.0 }));
-    let corners: Vec<DVec3> = (0..8).map(corner).collect();
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = faces.iter().flat_map(|&[p, q, r, s]| [[p, q, r], [p, r, s]]);
-    let mesh = Shape::mesh(corners.clone(), triangles.collect::<Vec<[u32; 3]>>()).unwrap();
+    let cube = cube(1.0);
+    let (mesh, corners) = (cube.shape(), cube.vertices);
     let of = |kind: ShapeKind| match kind {
         ShapeKind::Sphere => Shape::sphere(1.0),
         ShapeKind::Cuboid => Shape::cuboid([2.0, 2.0, 2.0]),
@@ -157,10 +157,6 @@ fn table(
         writeln!(text, "| {} | {} |", names.join(" | "), cells.join(" | ")).unwrap();
     }
     text
-}
-
-fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(DVec3::new(x, y, z))
 }
 
 fn page() -> String {

@@ -6,7 +6,8 @@ mod common;
 use std::collections::HashSet;
 
 use common::{
-    Soup, assert_rate, direction, in_cube, log_uniform, placement, random_complex, rescaled, stretch, torus,
+    Soup, assert_rate, at, block, cube, direction, in_cube, log_uniform, placement, random_complex, rescaled,
+    stretch, torus,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use rand::Rng;
@@ -25,10 +26,6 @@ fn solid(soup: &Soup) -> Shape {
 
 fn point_shape(point: DVec3) -> Shape {
     ComplexShapeBuilder::new([point]).point(0).build().unwrap()
-}
-
-fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(dvec3(x, y, z))
 }
 
 /// The answer for a pair, which must be the same from the other side and in any unit of length.
@@ -87,18 +84,6 @@ fn globe(rows: u32, columns: u32, mut map: impl FnMut(DVec3) -> DVec3) -> Soup {
         }
     }
     Soup::mesh(vertices, triangles)
-}
-
-/// The box between two corners, outside out.
-fn block(min: DVec3, max: DVec3) -> Soup {
-    let corner = |i: u32| DVec3::select(glam::BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0), max, min);
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
-    Soup::mesh((0..8).map(corner).collect(), triangles.collect())
-}
-
-fn cube(half: f64) -> Soup {
-    block(DVec3::splat(-half), DVec3::splat(half))
 }
 
 /// The cells of a lattice that are filled, and the faces between filled and empty ones: edges of four triangles, cavities and

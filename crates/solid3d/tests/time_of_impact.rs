@@ -7,23 +7,15 @@
 
 mod common;
 
-use common::{assert_rate, direction, in_cube, placement, random_complex, random_mesh, shape_of, torus};
+use common::{assert_rate, direction, in_cube, placement, random_mesh, some_shape, torus};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
-use solid_oracle::generate::{random_shape, seeded};
+use solid_oracle::generate::seeded;
 use solid3d::query::{self, Impact, ImpactOptions, Path};
 use solid3d::{Error, Shape, glam};
 
 const OPTIONS: ImpactOptions = ImpactOptions { path: Path::Turning, tolerance: 1e-8 };
-
-fn some_shape(rng: &mut StdRng, case: u32) -> Shape {
-    match case % 4 {
-        0 => random_mesh(rng, 50).shape(),
-        1 => random_complex(rng, 10).shape(),
-        _ => shape_of(&random_shape(rng, 1.0)),
-    }
-}
 
 /// A rigid motion: a turn by a vector, about the local origin, and a translation.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 //! What becomes of the collisions: each recorder makes one thing of the frames as they are tested, holding none of them.
 
 mod csv;
+mod encounters;
 mod json;
 mod near;
 mod pairs;
@@ -133,5 +134,7 @@ pub trait Recorder {
     fn frame(&mut self, scene: &Scene, frame: &Frame) -> Result<()>;
 
     /// There are no more.
-    fn finish(&mut self, summary: &Summary) -> Result<()>;
+    fn finish(&mut self, _summary: &Summary) -> Result<()> {
+        Ok(())
+    }
 }

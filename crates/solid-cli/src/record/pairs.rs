@@ -100,10 +100,6 @@ impl Recorder for PairRecorder {
         self.count(frame);
         Ok(())
     }
-
-    fn finish(&mut self, _summary: &Summary) -> Result<()> {
-        Ok(())
-    }
 }
 
 impl Pair {

@@ -1,8 +1,9 @@
 use rand::rngs::StdRng;
+use solid_oracle::generate::in_cube;
 use solid3d::glam::{DQuat, DVec3};
 
 use super::polyhedron::Polyhedron;
-use super::pose::{Pose, direction, in_cube, rotation};
+use super::pose::{Pose, direction, rotation};
 use super::track::bounce;
 
 /// More objects than this share shapes.

@@ -1,6 +1,7 @@
 use rand::rngs::StdRng;
+use solid_oracle::generate::in_cube;
 
-use super::pose::{PairPose, Pose, in_cube, rotation};
+use super::pose::{PairPose, Pose, rotation};
 
 /// So often is the interval of the cube's side halved; the sample is coarser than that.
 const HALVINGS: usize = 20;

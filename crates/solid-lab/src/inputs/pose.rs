@@ -49,8 +49,3 @@ pub fn direction(rng: &mut StdRng) -> DVec3 {
     let radius = (1.0 - height * height).sqrt();
     DVec3::new(radius * turn.cos(), radius * turn.sin(), height)
 }
-
-/// A point of the cube [-1, 1]^3, all equally likely.
-pub(super) fn in_cube(rng: &mut StdRng) -> DVec3 {
-    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
-}

@@ -1,8 +1,9 @@
 use rand::rngs::StdRng;
+use solid_oracle::generate::in_cube;
 use solid3d::Aabb;
 use solid3d::glam::DVec3;
 
-use super::pose::{direction, in_cube};
+use super::pose::direction;
 use super::track::bounce;
 
 /// How far a box moves in a frame, in its sides: 5 % of half of its diagonal, as the objects of I-COLLIDE.

@@ -1,8 +1,9 @@
 use rand::rngs::StdRng;
+use solid_oracle::generate::in_cube;
 use solid3d::glam::{DQuat, DVec3};
 
 use super::pairs::side_at_overlap;
-use super::pose::{PairPose, Pose, direction, in_cube, rotation};
+use super::pose::{PairPose, Pose, direction, rotation};
 
 /// How far a coherent object moves in a frame, in radii.
 const STEP: f64 = 0.01;

@@ -28,9 +28,9 @@ pub fn seeded(seed: u64) -> StdRng {
 }
 
 /// A direction, uniform on the sphere.
-fn random_direction(rng: &mut StdRng) -> DVec3 {
+pub fn direction(rng: &mut StdRng) -> DVec3 {
     loop {
-        let v = random_in_cube(rng);
+        let v = in_cube(rng);
         if (1e-3..=1.0).contains(&v.length_squared()) {
             return v.normalize();
         }
@@ -38,11 +38,11 @@ fn random_direction(rng: &mut StdRng) -> DVec3 {
 }
 
 /// A point, uniform in the cube from -1 to 1.
-fn random_in_cube(rng: &mut StdRng) -> DVec3 {
+pub fn in_cube(rng: &mut StdRng) -> DVec3 {
     DVec3::from_array(core::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
 }
 
 /// A number whose logarithm is uniform.
-fn log_uniform(rng: &mut StdRng, low: f64, high: f64) -> f64 {
+pub fn log_uniform(rng: &mut StdRng, low: f64, high: f64) -> f64 {
     rng.random_range(low.ln()..=high.ln()).exp()
 }

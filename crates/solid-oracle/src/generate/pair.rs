@@ -3,7 +3,7 @@ use rand::Rng;
 use rand::rngs::StdRng;
 
 use super::{
-    PlacementKind, log_uniform, random_direction, random_flat, random_placement, random_shape, random_sliver,
+    PlacementKind, direction, log_uniform, random_flat, random_placement, random_shape, random_sliver,
 };
 use crate::double_double::Vec3;
 use crate::placed::PlacedPair;
@@ -55,7 +55,7 @@ pub fn random_pair(rng: &mut StdRng, regime: Regime) -> Pair {
         Regime::Random => overlapping_or_apart(rng, size),
         Regime::FarFromOrigin => {
             let mut pair = overlapping_or_apart(rng, size);
-            let away = random_direction(rng) * size * log_uniform(rng, 1e3, 1e9);
+            let away = direction(rng) * size * log_uniform(rng, 1e3, 1e9);
             pair.pa.translation += away;
             pair.pb.translation += away;
             pair
@@ -87,7 +87,7 @@ pub fn random_pair(rng: &mut StdRng, regime: Regime) -> Pair {
         }
         Regime::Concentric => {
             let mut pair = any(rng, size, random_shape);
-            pair.pa.translation = random_direction(rng) * size;
+            pair.pa.translation = direction(rng) * size;
             pair.pb.translation = pair.pa.translation;
             pair
         }
@@ -118,7 +118,7 @@ fn near(rng: &mut StdRng, mut pair: Pair) -> Pair {
     let size = pair.size;
     pair.pa.translation *= size;
     pair.pb.translation = pair.pa.translation;
-    let direction = random_direction(rng);
+    let direction = direction(rng);
     let reach = placed(&pair).support(Vec3::from_f64(direction)).w.to_f64().dot(direction).max(0.0);
     pair.pb.translation += direction * reach * rng.random_range(0.0..=WAY_MAX);
     pair
@@ -127,8 +127,8 @@ fn near(rng: &mut StdRng, mut pair: Pair) -> Pair {
 /// Moves B so that the gap becomes `gap`, along the axis that separates the shapes when B is far away.
 fn with_gap(rng: &mut StdRng, mut pair: Pair, gap: f64) -> Pair {
     let scale = placed(&pair).scale().to_f64();
-    pair.pa.translation = random_direction(rng) * pair.size;
-    pair.pb.translation = pair.pa.translation + random_direction(rng) * 3.0 * scale;
+    pair.pa.translation = direction(rng) * pair.size;
+    pair.pb.translation = pair.pa.translation + direction(rng) * 3.0 * scale;
     // Twice, because the translation that closes a large distance is rounded coarsely.
     for _ in 0..2 {
         let Some((axis, current)) = separation(&pair) else { break };
@@ -141,15 +141,15 @@ fn with_gap(rng: &mut StdRng, mut pair: Pair, gap: f64) -> Pair {
 fn through_each_other(rng: &mut StdRng, mut pair: Pair, gap: f64) -> Pair {
     let inner_a = inner_point(rng, &pair.a);
     let inner_b = inner_point(rng, &pair.b);
-    pair.pa.translation = random_direction(rng) * pair.size;
+    pair.pa.translation = direction(rng) * pair.size;
     let meet = pair.pa.transform_point3(inner_a);
-    pair.pb.translation = meet - pair.pb.matrix3 * inner_b + random_direction(rng) * gap;
+    pair.pb.translation = meet - pair.pb.matrix3 * inner_b + direction(rng) * gap;
     pair
 }
 
 /// A point between two support points, or the origin of the space of a shape that has it inside.
 fn inner_point(rng: &mut StdRng, shape: &Convex) -> DVec3 {
-    let direction = Vec3::from_f64(random_direction(rng));
+    let direction = Vec3::from_f64(direction(rng));
     let (p, q) = (shape.support(direction).to_f64(), shape.support(-direction).to_f64());
     p.lerp(q, rng.random_range(0.0..=1.0))
 }

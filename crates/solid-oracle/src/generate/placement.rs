@@ -2,7 +2,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 
-use super::{random_direction, random_in_cube};
+use super::{direction, in_cube};
 
 /// What a placement may do to a shape besides moving it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,7 +43,7 @@ pub fn random_placement(rng: &mut StdRng, kind: PlacementKind) -> DAffine3 {
             shear * DMat3::from_diagonal(factors)
         }
     };
-    DAffine3 { matrix3: rotation * local, translation: random_in_cube(rng) }
+    DAffine3 { matrix3: rotation * local, translation: in_cube(rng) }
 }
 
 fn random_rotation(rng: &mut StdRng) -> DMat3 {
@@ -51,5 +51,5 @@ fn random_rotation(rng: &mut StdRng) -> DMat3 {
         return DMat3::IDENTITY;
     }
     let angle = rng.random_range(0.0..core::f64::consts::TAU);
-    DMat3::from_quat(DQuat::from_axis_angle(random_direction(rng), angle))
+    DMat3::from_quat(DQuat::from_axis_angle(direction(rng), angle))
 }

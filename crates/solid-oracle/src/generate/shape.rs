@@ -2,7 +2,7 @@ use glam::DVec3;
 use rand::Rng;
 use rand::rngs::StdRng;
 
-use super::{log_uniform, random_direction, random_in_cube};
+use super::{direction, in_cube, log_uniform};
 use crate::shape::Convex;
 
 /// Steps of the grid on which the points of exactly degenerate hulls lie, per unit of size.
@@ -37,8 +37,7 @@ pub fn random_flat(rng: &mut StdRng, size: f64) -> Convex {
         1 => Convex::Cone { radius: extent, half_height: thickness },
         2 => coplanar(rng, size),
         3 => {
-            let points =
-                (0..8).map(|_| random_in_cube(rng) * DVec3::new(extent, thickness, extent)).collect();
+            let points = (0..8).map(|_| in_cube(rng) * DVec3::new(extent, thickness, extent)).collect();
             Convex::Hull { points }
         }
         _ => Convex::Cuboid { half: DVec3::new(extent, thickness, size) },
@@ -54,8 +53,7 @@ pub fn random_sliver(rng: &mut StdRng, size: f64) -> Convex {
         2 => Convex::Capsule { radius: thickness, half_height: size },
         3 => collinear(rng, size),
         4 => {
-            let points =
-                (0..6).map(|_| random_in_cube(rng) * DVec3::new(thickness, size, thickness)).collect();
+            let points = (0..6).map(|_| in_cube(rng) * DVec3::new(thickness, size, thickness)).collect();
             Convex::Hull { points }
         }
         _ => Convex::Cuboid { half: DVec3::new(thickness, size, thickness) },
@@ -64,7 +62,7 @@ pub fn random_sliver(rng: &mut StdRng, size: f64) -> Convex {
 
 /// A point of a grid so coarse that sums of a few differences of such points are exact.
 fn on_grid(rng: &mut StdRng, size: f64) -> DVec3 {
-    (random_in_cube(rng) * GRID).round() * grid_step(size)
+    (in_cube(rng) * GRID).round() * grid_step(size)
 }
 
 fn grid_step(size: f64) -> f64 {
@@ -90,12 +88,12 @@ fn coplanar(rng: &mut StdRng, size: f64) -> Convex {
 
 fn on_ellipsoid(rng: &mut StdRng, radii: DVec3) -> Convex {
     let count = rng.random_range(8..=60);
-    Convex::Hull { points: (0..count).map(|_| random_direction(rng) * radii).collect() }
+    Convex::Hull { points: (0..count).map(|_| direction(rng) * radii).collect() }
 }
 
 fn cloud(rng: &mut StdRng, size: f64) -> Convex {
     let count = rng.random_range(4..=20);
-    Convex::Hull { points: (0..count).map(|_| random_in_cube(rng) * size).collect() }
+    Convex::Hull { points: (0..count).map(|_| in_cube(rng) * size).collect() }
 }
 
 fn with_duplicates(rng: &mut StdRng, size: f64) -> Convex {

@@ -2,6 +2,7 @@
 
 mod distance;
 mod intersection;
+mod side;
 mod winding;
 
 pub use distance::{mesh_distance, triangle_distance};

@@ -1,13 +1,8 @@
 use glam::{DVec3, dvec3};
 
+use super::side::side;
 use super::{Triangle, triangles_intersect, triangles_of};
 use crate::exact::ExactVec3;
-
-/// Rounding of a 3x3 determinant of rounded differences is below this times its permanent; as in `intersection`.
-const DETERMINANT_ERROR: f64 = 1e-15;
-
-/// A permanent below this may hide an underflow.
-const PERMANENT_MIN: f64 = 1e-280;
 
 /// How far outside of the mesh segments end, relative to its extent and to the distance of the point.
 const FAR: f64 = 3.0;
@@ -55,11 +50,11 @@ pub fn winding_number(vertices: &[DVec3], triangles: &[[u32; 3]], point: DVec3) 
 
 /// How the segment from p to q crosses a triangle that p is not on: 1 from its back to its front. `None` when it passes an edge.
 fn crossing(t: &Triangle, p: DVec3, q: DVec3) -> Option<i32> {
-    let (side_p, side_q) = (side(t[0], t[1], t[2], p), side(t[0], t[1], t[2], q));
+    let (side_p, side_q) = (exact_side(t[0], t[1], t[2], p), exact_side(t[0], t[1], t[2], q));
     if side_p * side_q > 0 {
         return Some(0);
     }
-    let turns = [[0, 1], [1, 2], [2, 0]].map(|[i, j]| side(p, q, t[i], t[j]));
+    let turns = [[0, 1], [1, 2], [2, 0]].map(|[i, j]| exact_side(p, q, t[i], t[j]));
     if turns.contains(&1) && turns.contains(&-1) {
         return Some(0);
     }
@@ -74,16 +69,19 @@ fn degenerate(t: &Triangle) -> bool {
     (&b - &a).cross(&(&c - &a)).is_zero()
 }
 
-/// The side of the plane (a, b, c) that p lies on: 1 for the one from which they run counterclockwise.
-fn side(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> i32 {
-    let (u, v, w) = (a - p, b - p, c - p);
-    let det = u.x * (v.y * w.z - v.z * w.y) + u.y * (v.z * w.x - v.x * w.z) + u.z * (v.x * w.y - v.y * w.x);
-    let (u, v, w) = (u.abs(), v.abs(), w.abs());
-    let permanent =
-        u.x * (v.y * w.z + v.z * w.y) + u.y * (v.z * w.x + v.x * w.z) + u.z * (v.x * w.y + v.y * w.x);
-    if permanent > PERMANENT_MIN && det.abs() > DETERMINANT_ERROR * permanent {
-        return if det < 0.0 { 1 } else { -1 };
+/// The side of the plane (a, b, c) that p lies on: 1 for the one from which they run counterclockwise, -1 for the other, 0 on the plane.
+fn exact_side(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> i32 {
+    match side(a, b, c, p) {
+        Some(clockwise) => {
+            if clockwise {
+                -1
+            } else {
+                1
+            }
+        }
+        None => {
+            let [a, b, c, p] = [a, b, c, p].map(ExactVec3::from_f64);
+            -(&a - &p).dot(&(&b - &p).cross(&(&c - &p))).sign()
+        }
     }
-    let [a, b, c, p] = [a, b, c, p].map(ExactVec3::from_f64);
-    -(&a - &p).dot(&(&b - &p).cross(&(&c - &p))).sign()
 }

@@ -1,7 +1,8 @@
 //! Distinct points in a scale in which determinants can neither overflow nor underflow, and exact signs of them.
 
-use glam::DVec3;
-use robust::{Coord, Coord3D};
+use glam::{DVec2, DVec3};
+
+use crate::exact::{flatten, height, orient2d, power_of_two};
 
 /// A distinct point: an index into [`Sites`].
 pub(super) type Site = u32;
@@ -17,7 +18,7 @@ const EXPONENT_MIN: i32 = -306;
 /// The distinct points, in lexicographic order.
 #[derive(Debug)]
 pub(super) struct Sites {
-    coordinates: Vec<[f64; 3]>,
+    points: Vec<DVec3>,
     /// For each site the first of the input points that are equal to it.
     input: Vec<u32>,
 }
@@ -28,26 +29,26 @@ impl Sites {
         let greatest = points.iter().fold(DVec3::ZERO, |g, p| g.max(p.abs()));
         let shift = greatest.to_array().map(|g| EXPONENT_MAX - exponent(g));
         let least = power_of_two(EXPONENT_MIN);
-        let scaled = |p: &DVec3| -> [f64; 3] {
-            std::array::from_fn(|k| {
+        let scaled = |p: &DVec3| {
+            DVec3::from_array(std::array::from_fn(|k| {
                 // In two steps, because the factor itself may be out of range. Exact: results are normal numbers.
                 let half = shift[k] / 2;
                 let x = p[k] * power_of_two(half) * power_of_two(shift[k] - half);
                 // Adding zero makes -0 into 0.
                 if x.abs() < least { 0.0 } else { x + 0.0 }
-            })
+            }))
         };
-        let mut all: Vec<([f64; 3], u32)> = points.iter().map(scaled).zip(0..).collect();
+        let mut all: Vec<(DVec3, u32)> = points.iter().map(scaled).zip(0..).collect();
         all.sort_unstable_by(|(p, i), (q, j)| {
-            p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])).then(p[2].total_cmp(&q[2])).then(i.cmp(j))
+            p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(p.z.total_cmp(&q.z)).then(i.cmp(j))
         });
         all.dedup_by(|(p, _), (q, _)| p == q);
-        let (coordinates, input) = all.into_iter().unzip();
-        Sites { coordinates, input }
+        let (points, input) = all.into_iter().unzip();
+        Sites { points, input }
     }
 
     pub fn len(&self) -> Site {
-        self.coordinates.len() as Site
+        self.points.len() as Site
     }
 
     pub fn input(&self, site: Site) -> u32 {
@@ -57,26 +58,22 @@ impl Sites {
     /// Positive where `d` lies above the plane through `a`, `b`, `c`, from where they appear counter-clockwise; negative
     /// below. The sign is exact; the magnitude is about six times the volume of the tetrahedron, in the scale of the sites.
     pub fn height(&self, [a, b, c]: [Site; 3], d: Site) -> f64 {
-        let at = |site: Site| {
-            let [x, y, z] = self.coordinates[site as usize];
-            Coord3D { x, y, z }
-        };
-        -robust::orient3d(at(a), at(b), at(c), at(d))
+        height(self.at(a), self.at(b), self.at(c), self.at(d))
     }
 
     /// Positive where `a`, `b`, `c` turn to the left when `dropped_axis` is left out; the sign is exact.
     pub fn turn(&self, dropped_axis: usize, [a, b, c]: [Site; 3]) -> f64 {
-        let at = |site: Site| {
-            let [x, y] = self.projected(dropped_axis, site);
-            Coord { x, y }
-        };
-        robust::orient2d(at(a), at(b), at(c))
+        let at = |site: Site| self.projected(dropped_axis, site);
+        orient2d(at(a), at(b), at(c))
     }
 
     /// A site without one of its coordinates.
-    pub fn projected(&self, dropped_axis: usize, site: Site) -> [f64; 2] {
-        let p = self.coordinates[site as usize];
-        [p[(dropped_axis + 1) % 3], p[(dropped_axis + 2) % 3]]
+    pub fn projected(&self, dropped_axis: usize, site: Site) -> DVec2 {
+        flatten(dropped_axis, self.at(site))
+    }
+
+    fn at(&self, site: Site) -> DVec3 {
+        self.points[site as usize]
     }
 
     /// A site off the line through two, about the farthest, and an axis along which the three are seen to be no line.
@@ -115,11 +112,6 @@ fn exponent(x: f64) -> i32 {
     let biased = (x.to_bits() >> 52 & 0x7FF) as i32;
     // Subnormal numbers are made normal first.
     if biased == 0 { exponent(x * power_of_two(64)) - 64 } else { biased - 1022 }
-}
-
-/// `2^e` for `e` from -1022 to 1023.
-fn power_of_two(e: i32) -> f64 {
-    f64::from_bits(((1023 + e) as u64) << 52)
 }
 
 #[cfg(test)]

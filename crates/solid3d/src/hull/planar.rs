@@ -9,8 +9,8 @@ use super::exact::{Site, Sites};
 pub(super) fn convex_polygon(sites: &Sites, dropped_axis: usize) -> Vec<Site> {
     let mut order: Vec<Site> = (0..sites.len()).collect();
     order.sort_unstable_by(|&a, &b| {
-        let ([ax, ay], [bx, by]) = (sites.projected(dropped_axis, a), sites.projected(dropped_axis, b));
-        ax.total_cmp(&bx).then(ay.total_cmp(&by))
+        let (p, q) = (sites.projected(dropped_axis, a), sites.projected(dropped_axis, b));
+        p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y))
     });
     let mut chain: Vec<Site> = Vec::new();
     let mut extend = |chain_start: usize, site: Site| {

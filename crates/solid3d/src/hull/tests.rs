@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use proptest::prelude::*;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
+use solid_oracle::generate::in_cube;
 use std::f64::consts::TAU;
 
 fn hull_of(points: &[DVec3]) -> Hull {
@@ -14,13 +15,9 @@ fn hull_of(points: &[DVec3]) -> Hull {
     hull
 }
 
-fn vector(rng: &mut StdRng) -> DVec3 {
-    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)))
-}
-
 fn on_sphere(rng: &mut StdRng) -> DVec3 {
     loop {
-        let v = vector(rng);
+        let v = in_cube(rng);
         if v.length_squared() <= 1.0 && v.length_squared() > 1e-4 {
             return v.normalize();
         }
@@ -47,7 +44,8 @@ fn volume_and_area(hull: &Hull, points: &[DVec3]) -> (f64, f64) {
 fn assert_supports(hull: &Hull, points: &[DVec3], rng: &mut StdRng) {
     let size = points.iter().fold(0.0f64, |s, p| s.max(p.abs().max_element()));
     for i in 0..200 {
-        let direction = if i < 6 { DVec3::AXES[i % 3] * if i < 3 { 1.0 } else { -1.0 } } else { vector(rng) };
+        let direction =
+            if i < 6 { DVec3::AXES[i % 3] * if i < 3 { 1.0 } else { -1.0 } } else { in_cube(rng) };
         let all = points.iter().map(|p| p.dot(direction)).fold(f64::NEG_INFINITY, f64::max);
         let slots = 0..hull.vertices().len();
         let value = |slot: usize| points[hull.vertices()[slot] as usize].dot(direction);
@@ -63,7 +61,7 @@ fn assert_supports(hull: &Hull, points: &[DVec3], rng: &mut StdRng) {
 /// Law: hill climbing along the edges ends at a support point, where neighbours' products differ by more than rounding.
 fn assert_climbs(hull: &Hull, points: &[DVec3], rng: &mut StdRng) {
     for _ in 0..200 {
-        let direction = vector(rng);
+        let direction = in_cube(rng);
         let value = |slot: usize| points[hull.vertices()[slot] as usize].dot(direction);
         let best = (0..hull.vertices().len()).map(value).fold(f64::NEG_INFINITY, f64::max);
         let mut slot = rng.random_range(0..hull.vertices().len());
@@ -78,7 +76,7 @@ fn assert_climbs(hull: &Hull, points: &[DVec3], rng: &mut StdRng) {
 fn random_clouds() {
     let mut rng = StdRng::seed_from_u64(1);
     for n in [4, 5, 8, 30, 300, 2000] {
-        let points: Vec<_> = (0..n).map(|_| vector(&mut rng)).collect();
+        let points: Vec<_> = (0..n).map(|_| in_cube(&mut rng)).collect();
         let hull = hull_of(&points);
         assert_eq!(hull.dimension(), 3);
         assert_supports(&hull, &points, &mut rng);
@@ -159,7 +157,7 @@ fn a_prism_with_many_coplanar_points() {
 fn flattened_clouds() {
     let mut rng = StdRng::seed_from_u64(4);
     for flatness in [1e-3, 1e-15, 1e-17, 1e-100] {
-        let points: Vec<_> = (0..300).map(|_| vector(&mut rng) * DVec3::new(1.0, 1.0, flatness)).collect();
+        let points: Vec<_> = (0..300).map(|_| in_cube(&mut rng) * DVec3::new(1.0, 1.0, flatness)).collect();
         let hull = hull_of(&points);
         assert_eq!(hull.dimension(), 3, "{flatness}");
         assert_supports(&hull, &points, &mut rng);
@@ -177,11 +175,11 @@ fn slivers() {
     let mut rng = StdRng::seed_from_u64(5);
     for _ in 0..50 {
         // Points within some units in the last place of a line or of few places.
-        let axis = vector(&mut rng);
+        let axis = in_cube(&mut rng);
         let points: Vec<_> = (0..60)
             .map(|_| {
                 let t = f64::from(rng.random_range(0..5u8));
-                axis * t + 2e-16 * vector(&mut rng)
+                axis * t + 2e-16 * in_cube(&mut rng)
             })
             .collect();
         assert_supports(&hull_of(&points), &points, &mut rng);
@@ -191,7 +189,7 @@ fn slivers() {
 #[test]
 fn the_range_reaches_from_1e_minus_100_to_1e100() {
     let mut rng = StdRng::seed_from_u64(6);
-    let points: Vec<_> = (0..100).map(|_| vector(&mut rng)).collect();
+    let points: Vec<_> = (0..100).map(|_| in_cube(&mut rng)).collect();
     let vertices = hull_of(&points).vertices().to_vec();
     for exponent in [-332, -100, 100, 332] {
         let scaled: Vec<_> = points.iter().map(|&p| p * 2f64.powi(exponent)).collect();
@@ -201,7 +199,7 @@ fn the_range_reaches_from_1e_minus_100_to_1e100() {
         points.iter().map(|&p| p * DVec3::new(2f64.powi(332), 1.0, 2f64.powi(-332))).collect();
     assert_eq!(hull_of(&uneven).vertices(), vertices);
     // Mixed sizes in one hull.
-    let mixed: Vec<_> = (0..200).map(|_| vector(&mut rng) * 10f64.powi(rng.random_range(-80..80))).collect();
+    let mixed: Vec<_> = (0..200).map(|_| in_cube(&mut rng) * 10f64.powi(rng.random_range(-80..80))).collect();
     assert_eq!(hull_of(&mixed).dimension(), 3);
 }
 
@@ -366,7 +364,7 @@ fn times() {
     let mut rng = StdRng::seed_from_u64(7);
     for n in [100, 1_000, 10_000, 100_000, 1_000_000] {
         let sphere: Vec<_> = (0..n).map(|_| on_sphere(&mut rng)).collect();
-        let cube: Vec<_> = (0..n).map(|_| vector(&mut rng)).collect();
+        let cube: Vec<_> = (0..n).map(|_| in_cube(&mut rng)).collect();
         let side = f64::from(n).cbrt().round() as i32;
         let ring: Vec<_> = (0..n)
             .map(|i| (f64::from(i) * TAU / f64::from(n)).sin_cos())

@@ -223,31 +223,11 @@ mod tests {
     use super::*;
     use crate::pair::complex_convex::CLEARLY_APART;
     use crate::pair::frame::Frame;
-    use crate::shape::Complex;
-    use glam::DQuat;
+    use crate::pair::gaps::scenes::{triangles, turned};
     use rand::Rng;
-    use rand::rngs::StdRng;
     use solid_convex::simd::{dispatch, levels};
     use solid_convex::{Cuboid, Sphere, Support, gjk};
-    use solid_oracle::generate::seeded;
-
-    fn point(rng: &mut StdRng, size: f64) -> DVec3 {
-        DVec3::from_array(std::array::from_fn(|_| rng.random_range(-size..size)))
-    }
-
-    /// Triangles of a size, near each other: thin, flat and of no area too.
-    fn mesh(rng: &mut StdRng, case: usize, size: f64) -> Vec<DVec3> {
-        let triangles = (0..rng.random_range(1..=30)).flat_map(|_| {
-            let (p, q, r) = (point(rng, 1.0), point(rng, 0.3), point(rng, 0.3));
-            match case % 5 {
-                0 => [p, p + q, p + 0.4 * q + r * 1e-6],
-                1 => [p, p + q, p + r].map(|corner| corner.with_z(0.3)),
-                2 => [p, p + q, p],
-                _ => [p, p + q, p + r],
-            }
-        });
-        triangles.map(|corner| corner * size).collect()
-    }
+    use solid_oracle::generate::{in_cube, seeded};
 
     /// Law: what is said of a triangle is what GJK says, of balls and boxes that are far or meet, or nearly touch, under any maps; on
     /// every level of instructions. What is clear is said of most.
@@ -259,20 +239,13 @@ mod tests {
         let (mut meet, mut clear, mut lanes) = (0, 0, 0);
         for case in 0..4000 {
             let size = 10f64.powi(rng.random_range(-30..30));
-            let far = if case % 7 == 0 { point(&mut rng, 1e6 * size) } else { DVec3::ZERO };
-            let vertices: Vec<DVec3> = mesh(&mut rng, case, size).into_iter().map(|v| v + far).collect();
-            let indices: Vec<[u32; 3]> =
-                (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-            let complex = Complex::mesh(vertices.clone(), indices).expect("it is well formed");
-            let turn = DQuat::from_axis_angle(point(&mut rng, 1.0).normalize(), rng.random_range(0.0..6.0));
-            let mut at_complex = DAffine3::from_quat(turn);
-            if case % 3 == 0 {
-                at_complex.matrix3.x_axis =
-                    at_complex.matrix3.x_axis * -1.5 + at_complex.matrix3.y_axis * 0.7;
-            }
+            let far = if case % 7 == 0 { 1e6 * size * in_cube(&mut rng) } else { DVec3::ZERO };
+            let complex = triangles(&mut rng, case, 30, size, far);
+            let (turn, at_complex) = turned(&mut rng, case);
             // Around a vertex, or up to a corner of a triangle but for a little.
-            let target = at_complex.transform_point3(vertices[rng.random_range(0..vertices.len())]);
-            let away = point(&mut rng, 0.6 * size);
+            let vertex = rng.random_range(0..complex.vertices().len());
+            let target = at_complex.transform_point3(complex.vertices()[vertex]);
+            let away = 0.6 * size * in_cube(&mut rng);
             let half = size * 10f64.powf(rng.random_range(-2.0..0.0));
             let near = 1.0 + [0.0, 1e-9, -1e-9, 1e-5, -1e-5, 1e-3][case % 6];
             let radius = if case % 2 == 0 { half } else { away.length() * near };

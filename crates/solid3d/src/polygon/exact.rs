@@ -1,9 +1,10 @@
-//! Exact signs: where a point lies to a line or a plane.
+//! Exact signs for polygons, and the coordinates for which they are exact.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
-use crate::exact::orient3d;
-pub(super) use crate::exact::{orient2d as turn, same_strict_side, segments_meet};
+use crate::exact::power_of_two;
+pub(super) use crate::exact::{flatten, height, orient2d as turn, same_strict_side};
+pub(super) use crate::exact::{segments_meet, segments_meet_in_space};
 
 /// No predicate overflows while coordinates are at most this: a determinant of three differences stays below
 /// 6 * (2^301)^3, with room for the splitting constant of exact products.
@@ -12,17 +13,6 @@ pub(super) const MAGNITUDE_MAX: f64 = power_of_two(300);
 /// No predicate loses a bit while coordinates other than zero are at least this: their last bits are at least
 /// 2^(-300 - 52), and the product of three such bits is still a positive number.
 pub(super) const MAGNITUDE_MIN: f64 = power_of_two(-300);
-
-/// Positive where `d` lies above the plane through `a`, `b`, `c`, from where they appear counter-clockwise: the sign of
-/// `det(b - a, c - a, d - a)`.
-pub(super) fn height(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
-    -orient3d(a, b, c, d)
-}
-
-/// A point without one of its coordinates: looking along that axis, from its positive end.
-pub(super) fn flatten(dropped: usize, p: DVec3) -> DVec2 {
-    DVec2::new(p[(dropped + 1) % 3], p[(dropped + 2) % 3])
-}
 
 /// Whether two segments of a plane cross: each has its ends strictly on both sides of the other's line.
 pub(super) fn segments_cross(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {
@@ -35,8 +25,4 @@ pub(super) fn segments_cross(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {
 /// Whether a closed segment of a plane contains a point.
 pub(super) fn segment_contains(p: DVec2, q: DVec2, x: DVec2) -> bool {
     p.min(q).cmple(x).all() && x.cmple(p.max(q)).all() && turn(p, q, x) == 0.0
-}
-
-const fn power_of_two(e: i32) -> f64 {
-    f64::from_bits(((1023 + e) as u64) << 52)
 }

@@ -6,6 +6,7 @@ use solid_convex::unit_scale;
 
 use super::Polygon;
 use super::chain::{Base, Chain};
+use super::exact::segments_meet_in_space;
 use super::segment;
 
 /// Two chains in one scale.
@@ -78,7 +79,7 @@ impl<'a> Pair<'a> {
 
 fn edges_meet_edges(a: &Chain, b: &Chain) -> bool {
     let meet = |[i, j]: [usize; 2], [k, l]: [usize; 2]| {
-        segment::meets_segment(a.vertices[i], a.vertices[j], b.vertices[k], b.vertices[l])
+        segments_meet_in_space(a.vertices[i], a.vertices[j], b.vertices[k], b.vertices[l])
     };
     a.edges().any(|x| b.edges().any(|y| meet(x, y)))
 }

@@ -7,13 +7,6 @@ use super::counters::Counters;
 use super::exact::{flatten, height, same_strict_side, segments_meet};
 use super::planar;
 
-/// Whether two closed segments of space share a point: if and only if they are coplanar and do so in all three projections
-/// along the axes, of which at least one loses nothing, and none parts what meets.
-pub(super) fn meets_segment(p: DVec3, q: DVec3, r: DVec3, s: DVec3) -> bool {
-    height(p, q, r, s) == 0.0
-        && (0..3).all(|k| segments_meet(flatten(k, p), flatten(k, q), flatten(k, r), flatten(k, s)))
-}
-
 /// Whether a segment of the polygon's plane shares a point with the polygon.
 pub(super) fn meets_in_plane(polygon: &Chain, base: Base, p: DVec3, q: DVec3) -> bool {
     let flat = |i: usize| flatten(base.dropped, polygon.vertices[i]);

@@ -27,7 +27,7 @@
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
 //! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
 //! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
-//! | `slabs` | how flat what hangs in each lane is: better bounds for tree against tree |
+//! | `slabs`, `facing` | how flat what hangs in each lane is; better bounds for tree against tree by that |
 //!
 //! # Laws
 //!
@@ -45,6 +45,7 @@ mod clusters;
 mod cost;
 mod crossing;
 mod eights;
+mod facing;
 mod lanes;
 mod leaf_images;
 mod leaf_points;
@@ -72,6 +73,7 @@ mod tests;
 pub use build::DEPTH_MAX;
 pub use cast_pairs::cast_pairs;
 pub use cost::DEGRADED_RATIO;
+pub(crate) use facing::Facing;
 pub(crate) use lanes::bits;
 pub(crate) use leaf_images::{HALF_STEP, Image, Leaf, LeafImages, STEPS};
 pub(crate) use leaf_points::LeafPoints;
@@ -86,7 +88,7 @@ pub(crate) use pairs::{LeafPairs, pairs_on};
 pub(crate) use ray::RayLeaves;
 pub use ray::TreeRay;
 pub use relative::{PlacedBox, Relative};
-pub(crate) use slabs::{Facing, Slabs};
+pub(crate) use slabs::Slabs;
 pub use traversal::{Counters, Traversal};
 
 use crate::Aabb;

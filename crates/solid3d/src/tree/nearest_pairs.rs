@@ -6,13 +6,13 @@ use glam::DVec3;
 use solid_convex::simd::{Level, dispatch, level};
 
 use super::beam::seek;
+use super::facing::{Faces, Facing};
 use super::lanes::{distances_squared, extents};
 use super::metric::{Folded, PairMetric};
 use super::nearest::push_unless_far;
 use super::node::WIDTH;
-use super::pairs::{Duel, Step, Tested};
+use super::pairs::{Duel, Pair, Step, Tested};
 use super::relative::Relative;
-use super::slabs::{Faces, Facing};
 use super::traversal::STACK_USUAL;
 use super::{Traversal, Tree};
 
@@ -104,7 +104,6 @@ fn walk<S: Simd>(
     traversal: &mut Traversal,
     visitor: &mut impl NearLeafPairs,
 ) {
-    let (a, b) = (duel.a, duel.b);
     let Traversal { counters, near_pairs: stack, .. } = traversal;
     stack.clear();
     stack.reserve(STACK_USUAL);
@@ -112,12 +111,11 @@ fn walk<S: Simd>(
     if *best == f64::INFINITY {
         stack.extend(seek(simd, duel, counters).map(|pair| (0.0, pair)));
     }
-    let (mut of_a, mut of_b) = (Tested::default(), Tested::default());
+    let mut opening = Opening { duel, metric, faces, tested: Default::default() };
     while let Some((least, pair)) = stack.pop() {
         if least >= *best {
             continue;
         }
-        let from = stack.len();
         match duel.step(&pair) {
             Step::Leaves(leaf_a, leaf_b) => {
                 counters.leaf_visits += 1;
@@ -125,38 +123,58 @@ fn walk<S: Simd>(
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&a.nodes[node], of_b.probe(simd, duel.b_to_a(), b, pair.b));
-                let squared = distances_squared(simd, lanes, duel.b_to_a(), probe, &metric.a, &metric.b);
-                let mut bounds = [0.0; WIDTH];
-                for (some, bounds) in bounds.chunks_exact_mut(4).zip(metric.world(simd, squared)) {
-                    bounds.store_slice(some);
-                }
-                if let Some(faces) = faces.filter(|_| some_below(&bounds, *best)) {
-                    faces.raise_in_a(simd, a, node, b, pair.b, visitor.axis(), *best, &mut bounds);
-                }
-                let extents = extents(simd, lanes);
-                for (lane, least) in bounds.into_iter().enumerate() {
-                    push_unless_far((least, pair.with_a(node, lane, &extents)), *best, stack, from);
-                }
+                opening.push::<_, 0>(simd, pair, node, visitor.axis(), *best, stack);
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let (lanes, probe) = (&b.nodes[node], of_a.probe(simd, duel.a_to_b(), a, pair.a));
-                let squared = distances_squared(simd, lanes, duel.a_to_b(), probe, &metric.b, &metric.a);
-                let mut bounds = [0.0; WIDTH];
-                for (some, bounds) in bounds.chunks_exact_mut(4).zip(metric.world(simd, squared)) {
-                    bounds.store_slice(some);
-                }
-                if let Some(faces) = faces.filter(|_| some_below(&bounds, *best)) {
-                    faces.raise_in_b(simd, b, node, a, pair.a, visitor.axis(), *best, &mut bounds);
-                }
-                let extents = extents(simd, lanes);
-                for (lane, least) in bounds.into_iter().enumerate() {
-                    push_unless_far((least, pair.with_b(node, lane, &extents)), *best, stack, from);
-                }
+                opening.push::<_, 1>(simd, pair, node, visitor.axis(), *best, stack);
             }
             Step::OpenBoth(..) => unreachable!("nodes are opened one by one"),
             Step::Nothing => {}
+        }
+    }
+}
+
+/// What it takes to open a node of either tree.
+struct Opening<'w, 't> {
+    duel: &'w Duel<'t>,
+    metric: &'w Folded,
+    faces: Option<&'w Faces<'t>>,
+    tested: [Tested; 2],
+}
+
+impl Opening<'_, '_> {
+    /// Puts the lanes of a node of a pair on the stack that may hold something nearer than `best`; of the first tree for `OF` = 0, of the
+    /// second for 1.
+    #[inline(always)]
+    fn push<S: Simd, const OF: usize>(
+        &mut self,
+        simd: S,
+        pair: Pair,
+        node: usize,
+        axis: DVec3,
+        best: f64,
+        stack: &mut Vec<(f64, Pair)>,
+    ) {
+        let Opening { duel, metric, faces, tested } = self;
+        let other = 1 - OF;
+        let (trees, weights) = ([duel.a, duel.b], [&metric.a, &metric.b]);
+        let (lanes, beside) = (&trees[OF].nodes[node], [pair.b, pair.a][OF]);
+        let crossing = if OF == 0 { duel.b_to_a() } else { duel.a_to_b() };
+        let probe = tested[other].probe(simd, crossing, trees[other], beside);
+        let squared = distances_squared(simd, lanes, crossing, probe, weights[OF], weights[other]);
+        let mut bounds = [0.0; WIDTH];
+        for (some, bounds) in bounds.chunks_exact_mut(4).zip(metric.world(simd, squared)) {
+            bounds.store_slice(some);
+        }
+        if let Some(faces) = faces.filter(|_| some_below(&bounds, best)) {
+            faces.raise::<S, OF>(simd, node, beside, axis, best, &mut bounds);
+        }
+        let (extents, from) = (extents(simd, lanes), stack.len());
+        for (lane, least) in bounds.into_iter().enumerate() {
+            let below =
+                if OF == 0 { pair.with_a(node, lane, &extents) } else { pair.with_b(node, lane, &extents) };
+            push_unless_far((least, below), best, stack, from);
         }
     }
 }

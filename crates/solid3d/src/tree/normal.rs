@@ -5,6 +5,7 @@
 
 use super::packed::{FAR, PackedBox};
 use crate::Aabb;
+use crate::exact::power_of_two;
 use glam::DVec3;
 
 /// The greatest magnitude of a coordinate of a primitive's box.
@@ -16,7 +17,7 @@ pub(super) const GROWTH_RELATIVE: f64 = f32::EPSILON as f64;
 
 /// Absolute growth, in tree coordinates. It covers underflow, is below the resolution of `f64` on the root, 2^-53, and is so
 /// far above the subnormal numbers of `f32` (which are slow) that a flat box does not meet them.
-pub(super) const GROWTH: f64 = f64::from_bits((1023 - 60) << 52); // 2^-60
+pub(super) const GROWTH: f64 = power_of_two(-60);
 
 /// The root fills at most this much of `[-1, 1]`, so that it stays there when grown.
 const FILL_MAX: f64 = 1.0 - 1.0 / 1048576.0;
@@ -103,10 +104,6 @@ fn radius(bounds: &Aabb, origin: DVec3) -> f64 {
 /// The least `k` with `2^k > x`, for a positive normal `x`; a low bound for a subnormal one.
 fn exponent_above(x: f64) -> i32 {
     (x.to_bits() >> 52) as i32 - 1022
-}
-
-fn power_of_two(exponent: i32) -> f64 {
-    f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use super::crossing::Crossing;
 use super::lanes::{bits, overlapping_box, overlapping_probe};
 use super::node::{Kind, Node};
 use super::normal::Normal;
+use super::packed::PackedBox;
 use super::relative::PlacedBox;
 use super::{Traversal, Tree};
 use crate::Aabb;
@@ -29,12 +30,7 @@ impl Tree {
         traversal: &mut Traversal,
         visit: impl FnMut(&[u32]) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
-        if !query.overlaps(&self.bounds) {
-            return ControlFlow::Continue(());
-        }
-        // Within the bounds there is neither infinity nor overflow.
-        let clipped = Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
-        let query = self.normal.pack(&clipped);
+        let Some(query) = self.pack_clipped(query) else { return ControlFlow::Continue(()) };
         dispatch!(simd => self.walk(|node| overlapping_box(simd, node, &query), traversal, visit))
     }
 
@@ -56,11 +52,7 @@ impl Tree {
         traversal: &mut Traversal,
         visit: impl FnMut(&[u32]) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
-        if !query.overlaps(&self.bounds) {
-            return ControlFlow::Continue(());
-        }
-        let clipped = Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
-        let query = self.normal.pack(&clipped);
+        let Some(query) = self.pack_clipped(query) else { return ControlFlow::Continue(()) };
         let met = |hits: u32, node: &Node| {
             let met = |lane: &usize| meets(&self.normal.unpack(&node.lane(*lane)));
             bits(hits).filter(met).fold(0, |hits, lane| hits | 1 << lane)
@@ -87,6 +79,12 @@ impl Tree {
             let probe = crossing.probe(simd, &bounds);
             self.walk(|node| overlapping_probe(simd, node, &crossing, &probe).0, traversal, visit)
         })
+    }
+
+    /// The part of a box that is within the bounds, where there is neither infinity nor overflow.
+    fn pack_clipped(&self, query: &Aabb) -> Option<PackedBox> {
+        let clipped = || Aabb::new(query.min.max(self.bounds.min), query.max.min(self.bounds.max));
+        query.overlaps(&self.bounds).then(|| self.normal.pack(&clipped()))
     }
 
     /// Visits the leaves among the lanes that `test` names, depth first, lanes in order.

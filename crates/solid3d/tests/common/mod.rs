@@ -6,8 +6,11 @@ use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::Convex;
-use solid_oracle::generate::{Pair, PlacementKind, Regime, random_pair, random_placement, seeded};
-use solid3d::{ComplexShapeBuilder, Shape, glam};
+use solid_oracle::generate::{
+    Pair, PlacementKind, Regime, random_pair, random_placement, random_shape, seeded,
+};
+pub use solid_oracle::generate::{direction, in_cube, log_uniform};
+use solid3d::{ComplexShapeBuilder, Shape, glam, query};
 
 /// A union of hulls of vertices, as the oracle sees it.
 #[derive(Clone, Debug)]
@@ -50,21 +53,32 @@ impl Soup {
     }
 }
 
-pub fn in_cube(rng: &mut StdRng) -> DVec3 {
-    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
+/// Two placed soups near each other, and the extent of both.
+pub struct Case {
+    pub a: Soup,
+    pub at_a: DAffine3,
+    pub b: Soup,
+    pub at_b: DAffine3,
+    pub size: f64,
 }
 
-pub fn direction(rng: &mut StdRng) -> DVec3 {
-    loop {
-        let v = in_cube(rng);
-        if (1e-3..=1.0).contains(&v.length_squared()) {
-            return v.normalize();
-        }
+impl Case {
+    /// B's origin is put near a vertex of A, up to `away` sizes of B off; in one case of three B is smaller or larger, by up to `ratio`.
+    pub fn new(rng: &mut StdRng, a: Soup, b: Soup, away: f64, ratio: f64) -> Case {
+        let size = log_uniform(rng, 1e-6, 1e6);
+        let ratio = if rng.random_range(0..3) == 0 { log_uniform(rng, 1.0 / ratio, ratio) } else { 1.0 };
+        let (a, b) = (a.scaled(size), b.scaled(size * ratio));
+        let (at_a, mut at_b) = (placement(rng, 3.0 * size), placement(rng, size));
+        let vertex = at_a.transform_point3(a.vertices[rng.random_range(0..a.vertices.len())]);
+        let off = away * rng.random_range(0.0..=1.0) * size * ratio;
+        at_b.translation = vertex + off * direction(rng);
+        Case { size: size * (stretch(&at_a) + ratio * stretch(&at_b)), a, at_a, b, at_b }
     }
 }
 
-pub fn log_uniform(rng: &mut StdRng, low: f64, high: f64) -> f64 {
-    rng.random_range(low.ln()..=high.ln()).exp()
+/// At a point, unturned.
+pub fn at(x: f64, y: f64, z: f64) -> DAffine3 {
+    DAffine3::from_translation(DVec3::new(x, y, z))
 }
 
 /// A placement of any kind, translated by about `size`.
@@ -95,6 +109,19 @@ pub fn sheet(rows: u32, columns: u32, wrapped: [bool; 2], map: impl FnMut(f64, f
         }
     }
     Soup::mesh(vertices, triangles)
+}
+
+/// The box between two corners, outside out.
+pub fn block(min: DVec3, max: DVec3) -> Soup {
+    let corner = |i: u32| DVec3::select(glam::BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0), max, min);
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    Soup::mesh((0..8).map(corner).collect(), triangles.collect())
+}
+
+/// The same around the origin, as large in all directions.
+pub fn cube(half: f64) -> Soup {
+    block(DVec3::splat(-half), DVec3::splat(half))
 }
 
 pub fn torus(rows: u32, columns: u32, tube: f64) -> Soup {
@@ -179,6 +206,25 @@ pub fn random_complex(rng: &mut StdRng, count: u32) -> Soup {
     Soup { vertices, primitives, is_mesh: false }
 }
 
+/// A small mesh or complex shape, or a convex shape, of about unit size; by the number of a case.
+pub fn some_shape(rng: &mut StdRng, case: u32) -> Shape {
+    match case % 4 {
+        0 => random_mesh(rng, 50).shape(),
+        1 => random_complex(rng, 10).shape(),
+        _ => shape_of(&random_shape(rng, 1.0)),
+    }
+}
+
+/// A length that bounds the extents of both shapes and the distance of their origins.
+pub fn size_of(a: &Shape, pa: &DAffine3, b: &Shape, pb: &DAffine3) -> f64 {
+    let extent = |shape: &Shape, at: &DAffine3| {
+        let here = DAffine3 { translation: DVec3::ZERO, ..*at };
+        let bounds = query::bounds(shape, &here).unwrap();
+        bounds.min.abs().max(bounds.max.abs()).max_element()
+    };
+    extent(a, pa) + extent(b, pb) + (pa.translation - pb.translation).abs().max_element()
+}
+
 /// The library's shape for one of the oracle's.
 pub fn shape_of(convex: &Convex) -> Shape {
     try_shape_of(convex).unwrap()
@@ -188,9 +234,7 @@ pub fn shape_of(convex: &Convex) -> Shape {
 pub fn try_shape_of(convex: &Convex) -> solid3d::Result<Shape> {
     match convex {
         Convex::Cuboid { half } if half.min_element() == 0.0 => {
-            let corner =
-                |i: u32| DVec3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { half[k] } else { -half[k] }));
-            Shape::convex_hull(&(0..8).map(corner).collect::<Vec<_>>())
+            Shape::convex_hull(&block(*half, -*half).vertices)
         }
         Convex::Sphere { radius } => Shape::sphere(*radius),
         Convex::Cuboid { half } => Shape::cuboid(2.0 * *half),

@@ -1,6 +1,6 @@
 use rand::Rng;
 use rand::rngs::StdRng;
-use solid_oracle::generate::seeded;
+use solid_oracle::generate::{in_cube, seeded};
 use solid3d::Aabb;
 use solid3d::glam::{DAffine3, DQuat, DVec3};
 
@@ -18,13 +18,9 @@ fn solid(rng: &mut StdRng, round: usize) -> Mesh {
     Mesh::torus(triangles)
 }
 
-fn vector(rng: &mut StdRng) -> DVec3 {
-    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
-}
-
 fn placement(rng: &mut StdRng, reach: f64) -> DAffine3 {
-    let turn = DQuat::from_axis_angle(vector(rng).normalize(), rng.random_range(0.0..6.0));
-    DAffine3::from_rotation_translation(turn, vector(rng) * reach)
+    let turn = DQuat::from_axis_angle(in_cube(rng).normalize(), rng.random_range(0.0..6.0));
+    DAffine3::from_rotation_translation(turn, in_cube(rng) * reach)
 }
 
 fn tree(mesh: &Mesh) -> BspTree {
@@ -85,7 +81,7 @@ fn a_tree_contains_the_points_that_its_surface_winds_around() {
         let tree = tree(&mesh);
         let Aabb { min, max } = tree.bounds();
         for _ in 0..POINTS / 6 {
-            let point = (min + max) / 2.0 + (max - min) / 2.0 * vector(&mut rng);
+            let point = (min + max) / 2.0 + (max - min) / 2.0 * in_cube(&mut rng);
             let winds = solid_oracle::winding_number(&mesh.vertices, &mesh.triangles, point);
             let expected = winds.expect("no random point is on a surface") == 1;
             inside += usize::from(expected);

@@ -1,22 +1,17 @@
 use rand::Rng;
-use rand::rngs::StdRng;
-use solid_oracle::generate::seeded;
+use solid_oracle::generate::{in_cube, seeded};
 use solid_oracle::{Convex, distance_bounds, verdict};
 use solid3d::glam::{DAffine3, DQuat, DVec3};
 
 use super::*;
 
-fn vector(rng: &mut StdRng) -> DVec3 {
-    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
-}
-
 /// Polytopes of 4 to 40 vertices at distances at which half of them overlap.
 fn random_pairs(count: usize) -> Vec<[(Vec<DVec3>, DAffine3); 2]> {
     let mut rng = seeded(44);
     let mut placed = |reach: f64| {
-        let vertices = (0..rng.random_range(4..=40)).map(|_| vector(&mut rng)).collect::<Vec<_>>();
-        let turn = DQuat::from_axis_angle(vector(&mut rng).normalize(), rng.random_range(0.0..6.0));
-        (vertices, DAffine3::from_rotation_translation(turn, vector(&mut rng) * reach))
+        let vertices = (0..rng.random_range(4..=40)).map(|_| in_cube(&mut rng)).collect::<Vec<_>>();
+        let turn = DQuat::from_axis_angle(in_cube(&mut rng).normalize(), rng.random_range(0.0..6.0));
+        (vertices, DAffine3::from_rotation_translation(turn, in_cube(&mut rng) * reach))
     };
     (0..count).map(|_| [placed(0.0), placed(1.9)]).collect()
 }
@@ -114,7 +109,7 @@ fn climbing_finds_what_scanning_finds() {
     for [(points, _), _] in random_pairs(50) {
         let polytope = Polytope::hull_of(&points).expect("there are points");
         for start in 0..polytope.vertices().len() as u32 {
-            let d = vector(&mut rng);
+            let d = in_cube(&mut rng);
             assert_eq!(polytope.climb(d, start), polytope.scan(d));
         }
     }

@@ -76,11 +76,6 @@ impl<V> Tree<V> {
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
-
-    /// Memory of the nodes, for each triangle, in bytes.
-    pub fn node_bytes_per_triangle(&self) -> f64 {
-        (self.nodes.len() * size_of::<Node<V>>()) as f64 / self.triangles.len() as f64
-    }
 }
 
 /// Twice the midpoint of the projection: the thesis's way to put a triangle on one side of a plane.

@@ -1,27 +1,23 @@
 use rand::Rng;
 use rand::rngs::StdRng;
-use solid_oracle::generate::seeded;
+use solid_oracle::generate::{in_cube, seeded};
 use solid3d::glam::{DAffine3, DQuat, DVec3};
 
 use super::*;
-
-fn vector(rng: &mut StdRng) -> DVec3 {
-    DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
-}
 
 /// Small triangles scattered in a cube: no shape for the split to be lucky with.
 fn soup(rng: &mut StdRng, count: usize) -> Vec<Triangle> {
     (0..count)
         .map(|_| {
-            let center = vector(rng);
-            [0; 3].map(|_| center + 0.2 * vector(rng))
+            let center = in_cube(rng);
+            [0; 3].map(|_| center + 0.2 * in_cube(rng))
         })
         .collect()
 }
 
 fn placement(rng: &mut StdRng, reach: f64) -> DAffine3 {
-    let turn = DQuat::from_axis_angle(vector(rng).normalize(), rng.random_range(0.0..6.0));
-    DAffine3::from_rotation_translation(turn, vector(rng) * reach)
+    let turn = DQuat::from_axis_angle(in_cube(rng).normalize(), rng.random_range(0.0..6.0));
+    DAffine3::from_rotation_translation(turn, in_cube(rng) * reach)
 }
 
 fn indexed(triangles: &[Triangle]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -81,7 +77,7 @@ fn sat_lite_separates_only_what_sat_separates() {
     let mut rng = seeded(53);
     let mut differ = 0;
     for _ in 0..20_000 {
-        let [a, b] = [0; 2].map(|_| AlignedBox { center: vector(&mut rng), half: vector(&mut rng).abs() });
+        let [a, b] = [0; 2].map(|_| AlignedBox { center: in_cube(&mut rng), half: in_cube(&mut rng).abs() });
         let shared = AlignedBox::shared(&placement(&mut rng, 1.0));
         let [full, lite] = [Sat::Full, Sat::Lite].map(|sat| AlignedBox::exit_axis(&a, &b, &shared, &(), sat));
         assert!(lite == 0 || lite == full);

@@ -5,12 +5,14 @@ use std::rc::Rc;
 use solid_oracle::{Convex, distance_bounds, penetration_bounds, verdict};
 use solid3d::query;
 
-use super::pairs::{Scene, Truth, distance, distance_again, intersection, intersection_again, penetration};
+use super::pairs::{
+    Scene, Truth, distance, distance_again, intersection, intersection_again, penetration, report_wrong,
+};
 use super::with_commas;
 use crate::inputs::{PairPose, Polyhedron, pairs_at_overlap, track_at_overlap};
-use crate::peers::bench::Unit;
+use crate::peers::bench::{Entry, Unit};
 use crate::peers::contestants::parry::{double, single};
-use crate::peers::contestants::{Depths, Library, Ours, Thesis, each};
+use crate::peers::contestants::{Coherent, Depths, Library, Ours, Thesis, each};
 use crate::peers::{Bench, Kind, Peer};
 
 /// No polyhedra whose origins are further apart, in radii, meet; and in so large a cube hardly any do.
@@ -70,45 +72,38 @@ fn scene<L: Library>(polyhedra: &[Polyhedron; 2], poses: &[PairPose]) -> Rc<Scen
 }
 
 fn race(bench: &mut Bench, name: &str, how: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose]) {
-    let ours = &scene::<Ours>(polyhedra, poses);
-    let thesis = &scene::<Thesis>(polyhedra, poses);
-    let (parry, parry_single) =
-        (&scene::<double::Parry>(polyhedra, poses), &scene::<single::Parry>(polyhedra, poses));
-    let entries =
-        vec![intersection(ours), intersection(thesis), intersection(parry), intersection(parry_single)];
-    bench.race(&format!("{name}, intersection, {how}"), poses.len(), Unit::Nano, entries);
-    let entries = vec![distance(ours), distance(thesis), distance(parry), distance(parry_single)];
-    bench.race(&format!("{name}, closest points, {how}"), poses.len(), Unit::Nano, entries);
+    let entries = each!(questions: Ours, Thesis, double::Parry, single::Parry; (polyhedra, poses));
+    race_both(bench, name, how, poses.len(), entries);
 }
 
-fn race_depths(bench: &mut Bench, work: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose]) {
-    let ours = penetration(&scene::<Ours>(polyhedra, poses));
-    let (parry, parry_single) = (
-        penetration(&scene::<double::Parry>(polyhedra, poses)),
-        penetration(&scene::<single::Parry>(polyhedra, poses)),
-    );
-    bench.race(work, poses.len(), Unit::Nano, vec![ours, parry, parry_single]);
+fn questions<L: Library>(polyhedra: &[Polyhedron; 2], poses: &[PairPose]) -> (Entry, Entry) {
+    let scene = &scene::<L>(polyhedra, poses);
+    (intersection(scene), distance(scene))
 }
 
 fn race_again(bench: &mut Bench, name: &str, how: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose]) {
-    let ours = &scene::<Ours>(polyhedra, poses);
-    let thesis = &scene::<Thesis>(polyhedra, poses);
-    let (parry, parry_single) =
-        (&scene::<double::Parry>(polyhedra, poses), &scene::<single::Parry>(polyhedra, poses));
-    let entries = vec![
-        intersection_again(ours),
-        intersection_again(thesis),
-        intersection_again(parry),
-        intersection_again(parry_single),
-    ];
-    bench.race(&format!("{name}, intersection, {how}"), poses.len(), Unit::Nano, entries);
-    let entries = vec![
-        distance_again(ours),
-        distance_again(thesis),
-        distance_again(parry),
-        distance_again(parry_single),
-    ];
-    bench.race(&format!("{name}, closest points, {how}"), poses.len(), Unit::Nano, entries);
+    let entries = each!(questions_again: Ours, Thesis, double::Parry, single::Parry; (polyhedra, poses));
+    race_both(bench, name, how, poses.len(), entries);
+}
+
+fn questions_again<L: Coherent>(polyhedra: &[Polyhedron; 2], poses: &[PairPose]) -> (Entry, Entry) {
+    let scene = &scene::<L>(polyhedra, poses);
+    (intersection_again(scene), distance_again(scene))
+}
+
+fn race_both(bench: &mut Bench, name: &str, how: &str, count: usize, entries: Vec<(Entry, Entry)>) {
+    let (intersections, distances) = entries.into_iter().unzip();
+    bench.race(&format!("{name}, intersection, {how}"), count, Unit::Nano, intersections);
+    bench.race(&format!("{name}, closest points, {how}"), count, Unit::Nano, distances);
+}
+
+fn race_depths(bench: &mut Bench, work: &str, polyhedra: &[Polyhedron; 2], poses: &[PairPose]) {
+    let entries = each!(depths: Ours, double::Parry, single::Parry; (polyhedra, poses));
+    bench.race(work, poses.len(), Unit::Nano, entries);
+}
+
+fn depths<L: Depths>(polyhedra: &[Polyhedron; 2], poses: &[PairPose]) -> Entry {
+    penetration(&scene::<L>(polyhedra, poses))
 }
 
 /// Compares the depths of some pairs that meet, scaled, with the oracle's.
@@ -153,11 +148,7 @@ fn judge(bench: &mut Bench, name: &str, polyhedra: &[Polyhedron; 2], poses: &[Pa
     };
     let truths: Vec<Truth> = poses.iter().map(truth).collect();
     let wrong = each!(wrong: Ours, Thesis, double::Parry, single::Parry; (&polyhedra, &poses, &truths, DISTANCE_ERROR * size));
-    for (i, question) in ["intersection", "closest points"].into_iter().enumerate() {
-        let figures: Vec<(Peer, f64)> = wrong.iter().map(|(peer, wrong)| (*peer, wrong[i] as f64)).collect();
-        let work = format!("{name}, wrong answers to {question} of {}", truths.len());
-        bench.figures(&work, Kind::Wrong, "wrong", &figures);
-    }
+    report_wrong(bench, name, ["intersection", "closest points"], truths.len(), &wrong);
 }
 
 fn wrong<L: Library>(

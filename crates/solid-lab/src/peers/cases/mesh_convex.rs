@@ -1,7 +1,5 @@
 //! A mesh against convex shapes that are small beside it.
 
-use std::rc::Rc;
-
 use solid3d::glam::DVec3;
 
 use super::pairs::{Scene, distance, intersection};
@@ -10,7 +8,7 @@ use crate::inputs::{Mesh, PairPose, Polyhedron, Pose, Primitive, direction};
 use crate::peers::Bench;
 use crate::peers::bench::{Entry, Unit};
 use crate::peers::contestants::parry::{double, single};
-use crate::peers::contestants::{Ours, Primitives};
+use crate::peers::contestants::{Ours, Primitives, each};
 
 const TRIANGLES: usize = 100_000;
 
@@ -46,16 +44,10 @@ pub fn measure(bench: &mut Bench) {
     let poses = poses(bench, &terrain);
     for (what, small) in smalls {
         let work = format!("{name} and {what}");
-        let (ours, parry, parry_single) = (
-            scene::<Ours>(&terrain, &small, &poses),
-            scene::<double::Parry>(&terrain, &small, &poses),
-            scene::<single::Parry>(&terrain, &small, &poses),
-        );
-        let entries: Vec<Entry> =
-            vec![intersection(&ours), intersection(&parry), intersection(&parry_single)];
-        bench.race(&format!("{work}, intersection"), poses.len(), Unit::Micro, entries);
-        let entries: Vec<Entry> = vec![distance(&ours), distance(&parry), distance(&parry_single)];
-        bench.race(&format!("{work}, distance"), poses.len(), Unit::Micro, entries);
+        let entries = each!(questions: Ours, double::Parry, single::Parry; (&terrain, &small, &poses));
+        let (intersections, distances) = entries.into_iter().unzip();
+        bench.race(&format!("{work}, intersection"), poses.len(), Unit::Micro, intersections);
+        bench.race(&format!("{work}, distance"), poses.len(), Unit::Micro, distances);
     }
 }
 
@@ -71,12 +63,13 @@ fn poses(bench: &Bench, terrain: &Mesh) -> Vec<PairPose> {
         .collect()
 }
 
-fn scene<L: Primitives>(terrain: &Mesh, small: &Small, poses: &[PairPose]) -> Rc<Scene<L>> {
+fn questions<L: Primitives>(terrain: &Mesh, small: &Small, poses: &[PairPose]) -> (Entry, Entry) {
     let small = match small {
         Small::Primitive(primitive) => L::primitive(*primitive),
         Small::Hull(hull) => L::polyhedron(hull),
     };
-    Scene::new([L::mesh(L::buffers(terrain)), small], poses)
+    let scene = &Scene::<L>::new([L::mesh(L::buffers(terrain)), small], poses);
+    (intersection(scene), distance(scene))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use solid_oracle::{mesh_distance, mesh_pairs};
 use solid3d::glam::DVec3;
 use solid3d::{Response, Shape, World, WorldOptions, query};
 
-use super::pairs::{Scene, Truth, all_pairs, distance, distance_again, intersection};
+use super::pairs::{Scene, Truth, all_pairs, distance, distance_again, intersection, report_wrong};
 use super::with_commas;
 use crate::inputs::{Mesh, PairPose, Pose, pairs_at_overlap, track_at_overlap};
 use crate::peers::bench::Unit;
@@ -150,11 +150,7 @@ fn judge(bench: &mut Bench, name: &str, torus: &Mesh, poses: &[PairPose]) {
         })
         .unzip();
     let wrong = each!(wrong: Ours, Thesis, double::Parry, single::Parry; (torus, poses, &truths));
-    for (i, question) in ["intersection", "distance"].into_iter().enumerate() {
-        let figures: Vec<(Peer, f64)> = wrong.iter().map(|(peer, wrong)| (*peer, wrong[i] as f64)).collect();
-        let work = format!("{name}, wrong answers to {question} of {}", truths.len());
-        bench.figures(&work, Kind::Wrong, "wrong", &figures);
-    }
+    report_wrong(bench, name, ["intersection", "distance"], truths.len(), &wrong);
     let wrong = each!(wrong_counts: Ours, Thesis; (torus, poses, &counts));
     let work = format!("{name}, wrong numbers of pairs of {}", counts.len());
     bench.figures(&work, Kind::Wrong, "wrong", &wrong);

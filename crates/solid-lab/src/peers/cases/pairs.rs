@@ -5,6 +5,7 @@ use std::rc::Rc;
 use crate::inputs::PairPose;
 use crate::peers::bench::Entry;
 use crate::peers::contestants::{AllPairs, Coherent, Depths, Library};
+use crate::peers::{Bench, Kind, Peer};
 
 /// The two shapes of all pairs, and where they are, in a library's own types.
 pub struct Scene<L: Library> {
@@ -111,4 +112,19 @@ pub fn all_pairs<L: AllPairs>(scene: &Rc<Scene<L>>) -> Entry {
     Entry::new(L::PEER, move || {
         scene.each().map(|([a, b], [at_a, at_b])| L::pair_count(a, at_a, b, at_b)).sum()
     })
+}
+
+/// Reports how many of so many answers to two questions were wrong.
+pub fn report_wrong(
+    bench: &mut Bench,
+    name: &str,
+    questions: [&str; 2],
+    count: usize,
+    wrong: &[(Peer, [usize; 2])],
+) {
+    for (i, question) in questions.into_iter().enumerate() {
+        let figures: Vec<(Peer, f64)> = wrong.iter().map(|(peer, wrong)| (*peer, wrong[i] as f64)).collect();
+        let work = format!("{name}, wrong answers to {question} of {count}");
+        bench.figures(&work, Kind::Wrong, "wrong", &figures);
+    }
 }

@@ -4,7 +4,7 @@ use crate::inputs::{Mesh, direction};
 use crate::peers::Bench;
 use crate::peers::bench::{Entry, Unit};
 use crate::peers::contestants::parry::{double, single};
-use crate::peers::contestants::{Ours, Rays};
+use crate::peers::contestants::{Ours, Rays, each};
 use solid3d::glam::DVec3;
 
 use super::with_commas;
@@ -29,11 +29,7 @@ pub fn measure(bench: &mut Bench) {
             [origin, (direction(&mut rng) - origin).normalize()]
         })
         .collect();
-    let entries = vec![
-        entry::<Ours>(&torus, &rays),
-        entry::<double::Parry>(&torus, &rays),
-        entry::<single::Parry>(&torus, &rays),
-    ];
+    let entries = each!(entry: Ours, double::Parry, single::Parry; (&torus, &rays));
     bench.race(&name, rays.len(), Unit::Nano, entries);
 }
 

@@ -1,7 +1,8 @@
 //! Distinct points, with exact predicates.
 
-use glam::{DVec2, DVec3};
-use robust::{Coord, Coord3D};
+use glam::DVec3;
+
+use crate::exact::{flatten, orient2d, orient3d};
 
 /// A distinct corner: an index into [`Sites`].
 pub(super) type Site = u32;
@@ -34,31 +35,19 @@ impl Sites {
 
     /// The side of a plane that a site lies on: exact. Zero also where the three sites span no plane.
     pub fn height(&self, [a, b, c]: [Site; 3], d: Site) -> f64 {
-        let at = |site: Site| {
-            let p = self.at(site);
-            Coord3D { x: p.x, y: p.y, z: p.z }
-        };
-        robust::orient3d(at(a), at(b), at(c), at(d))
+        orient3d(self.at(a), self.at(b), self.at(c), self.at(d))
     }
 
     /// Whether three sites turn to the left, when a coordinate axis is left out: exact.
     pub fn turn(&self, dropped_axis: usize, [a, b, c]: [Site; 3]) -> f64 {
-        let at = |site: Site| {
-            let p = flat(dropped_axis, self.at(site));
-            Coord { x: p.x, y: p.y }
-        };
-        robust::orient2d(at(a), at(b), at(c))
+        let at = |site: Site| flatten(dropped_axis, self.at(site));
+        orient2d(at(a), at(b), at(c))
     }
 
     /// The first axis that can be left out without making three sites collinear; `None` if they are.
     pub fn dropped_axis(&self, sites: [Site; 3]) -> Option<usize> {
         (0..3).find(|&axis| self.turn(axis, sites) != 0.0)
     }
-}
-
-/// A point without one of its coordinates.
-pub(super) fn flat(dropped_axis: usize, p: DVec3) -> DVec2 {
-    DVec2::new(p[(dropped_axis + 1) % 3], p[(dropped_axis + 2) % 3])
 }
 
 fn lexicographic(p: &DVec3, q: &DVec3) -> std::cmp::Ordering {

@@ -301,41 +301,23 @@ fn at_least<S: Simd>(simd: S, lanes: f32x8<S>, limit: f64) -> u32 {
 }
 
 #[cfg(test)]
+pub(super) mod scenes;
+
+#[cfg(test)]
 mod tests {
+    use super::scenes::{triangles, turned};
     use super::*;
     use crate::pair::complex_convex::CLEARLY_APART;
-    use crate::shape::Complex;
-    use glam::{DAffine3, DQuat};
+    use glam::DAffine3;
     use rand::Rng;
     use rand::rngs::StdRng;
     use solid_convex::simd::{dispatch, levels};
     use solid_convex::{Capsule, Cone, Cuboid, Polytope, Sphere, gjk};
-    use solid_oracle::generate::seeded;
-
-    fn point(rng: &mut StdRng, size: f64) -> DVec3 {
-        DVec3::from_array(std::array::from_fn(|_| rng.random_range(-size..size)))
-    }
-
-    /// Triangles of a size, near each other: thin, flat and of no area too.
-    fn mesh(rng: &mut StdRng, case: usize, size: f64, far: DVec3) -> Complex {
-        let count = rng.random_range(1..=60);
-        let vertices = (0..count).flat_map(|_| {
-            let (p, q, r) = (point(rng, 1.0), point(rng, 0.2), point(rng, 0.2));
-            match case % 5 {
-                0 => [p, p + q, p + 0.4 * q + r * 1e-6],
-                1 => [p, p + q, p + r].map(|corner| corner.with_z(0.3)),
-                2 => [p, p + q, p],
-                _ => [p, p + q, p + r],
-            }
-        });
-        let vertices: Vec<DVec3> = vertices.map(|corner| corner * size + far).collect();
-        let indices: Vec<[u32; 3]> = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Complex::mesh(vertices, indices).expect("it is well formed")
-    }
+    use solid_oracle::generate::{in_cube, seeded};
 
     fn convex(rng: &mut StdRng, case: usize, size: f64) -> Box<dyn Support> {
         let mut hull = |count: usize| {
-            let points: Vec<DVec3> = (0..count).map(|_| point(rng, size)).collect();
+            let points: Vec<DVec3> = (0..count).map(|_| size * in_cube(rng)).collect();
             Box::new(Polytope::new(points).expect("there are points"))
         };
         match case % 7 {
@@ -359,20 +341,15 @@ mod tests {
         let (mut lanes, mut apart, mut farther, mut passed_over) = (0, 0, 0, 0);
         for case in 0..3000 {
             let size = 10f64.powi(rng.random_range(-30..30));
-            let far = if case % 11 == 0 { point(&mut rng, 1e6 * size) } else { DVec3::ZERO };
-            let complex = mesh(&mut rng, case, size, far);
-            let turn = DQuat::from_axis_angle(point(&mut rng, 1.0).normalize(), rng.random_range(0.0..6.0));
-            let mut at_complex = DAffine3::from_quat(turn);
-            if case % 3 == 0 {
-                at_complex.matrix3.x_axis =
-                    at_complex.matrix3.x_axis * -1.5 + at_complex.matrix3.y_axis * 0.7;
-            }
+            let far = if case % 11 == 0 { 1e6 * size * in_cube(&mut rng) } else { DVec3::ZERO };
+            let complex = triangles(&mut rng, case, 60, size, far);
+            let (turn, at_complex) = turned(&mut rng, case);
             let target = at_complex.transform_point3(complex.vertices()[0]);
             let half = size * 10f64.powf(rng.random_range(-2.0..0.0));
             let convex = convex(&mut rng, case / 3, half);
             let convex = &*convex;
             let mut at_convex =
-                DAffine3::from_rotation_translation(turn.inverse(), target + point(&mut rng, size));
+                DAffine3::from_rotation_translation(turn.inverse(), target + size * in_cube(&mut rng));
             if case % 5 == 0 {
                 at_convex.matrix3.y_axis *= 3.0;
             }
@@ -431,7 +408,7 @@ mod tests {
     #[test]
     fn extremes_are_refused() {
         let mut rng = seeded(96);
-        let complex = mesh(&mut rng, 3, 1.0, DVec3::ZERO);
+        let complex = triangles(&mut rng, 3, 60, 1.0, DVec3::ZERO);
         for (size, away, taken) in
             [(1.0, 1.0, true), (1e12, 1.0, false), (1.0, 1e12, false), (1e-30, 1.0, true)]
         {

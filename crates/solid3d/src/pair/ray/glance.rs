@@ -125,18 +125,14 @@ mod tests {
     use rand::rngs::StdRng;
     use solid_convex::simd::{dispatch, levels};
     use solid_convex::unit_scale;
-    use solid_oracle::generate::seeded;
-
-    fn point(rng: &mut StdRng) -> DVec3 {
-        DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)))
-    }
+    use solid_oracle::generate::{in_cube, seeded};
 
     /// Up to eight triangles in a mesh of many, at a place and of a size of their own: near each other, thin, flat or of no area.
     fn leaf(rng: &mut StdRng, case: usize) -> Vec<Triangle> {
-        let (place, size) = (point(rng), 10f64.powi(-(case as i32 % 7)));
+        let (place, size) = (in_cube(rng), 10f64.powi(-(case as i32 % 7)));
         (0..rng.random_range(1..=8))
             .map(|_| {
-                let (p, q, r) = (point(rng), point(rng), point(rng));
+                let (p, q, r) = (in_cube(rng), in_cube(rng), in_cube(rng));
                 let corners = match case % 5 {
                     0 => [p, q, p.lerp(q, 0.3) + r * 1e-6],
                     1 => [p, q, r].map(|corner| corner.with_z(0.3)),
@@ -171,10 +167,11 @@ mod tests {
             let aimed = triangles[rng.random_range(0..count)];
             let [a, b, c] = aimed;
             let extent = (b - a).abs().max((c - a).abs()).max_element();
-            let beside = point(&mut rng) * extent * [0.0, 1e-12, 1e-5, 1e-3][case % 4];
+            let beside = in_cube(&mut rng) * extent * [0.0, 1e-12, 1e-5, 1e-3][case % 4];
             let inside = a.lerp(b, rng.random_range(0.0..1.0)).lerp(c, rng.random_range(0.0..1.0));
-            let target = [a, a.lerp(b, 0.4), inside, a + point(&mut rng) * extent][case / 4 % 4] + beside;
-            let mut from = target + point(&mut rng) * size * if case % 2 == 0 { 2.0 } else { extent / size };
+            let target = [a, a.lerp(b, 0.4), inside, a + in_cube(&mut rng) * extent][case / 4 % 4] + beside;
+            let mut from =
+                target + in_cube(&mut rng) * size * if case % 2 == 0 { 2.0 } else { extent / size };
             if case % 11 == 0 {
                 from = target + DVec3::Z * size;
             }

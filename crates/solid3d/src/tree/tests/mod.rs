@@ -5,4 +5,5 @@ mod nearest;
 mod overlap;
 mod pairs;
 pub mod scenes;
+mod slabs;
 mod timing;

@@ -1,0 +1,219 @@
+//! Which primitive is closest to the convex shape.
+
+use fearless_simd::Simd;
+use glam::DVec3;
+use solid_convex::simd::level;
+use solid_convex::{Closest, Witness, gjk};
+
+use super::super::Scratch;
+use super::super::direct::{Direct, Round};
+use super::super::frame::{Frame, ROUNDINGS, Stretch};
+use super::super::gaps::Gaps;
+use super::super::row::{CONFIRMED, Row, distances_of_core};
+use super::super::table::{PlacedComplex, PlacedConvex};
+use super::CLEARLY_APART;
+use super::shadow::Shadow;
+use crate::tree::{Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves};
+
+/// The closest primitive, without points where the distance has a closed form; of shapes that are farther apart than a bound, `None` or
+/// some primitive.
+pub(super) fn closest_primitive(
+    complex: PlacedComplex,
+    convex: PlacedConvex,
+    frame: &Frame,
+    bound: f64,
+    scratch: &mut Scratch,
+) -> Option<(u32, Option<Closest>)> {
+    let Scratch { traversal, row, primitive_tests, .. } = scratch;
+    let row = row.get_or_insert_default();
+    row.clear();
+    let metric = frame.stretch_of_a().metric(&Stretch::NONE);
+    // The best distance so far is kept in the common frame, as the bounds are.
+    let mut best = frame.beyond(bound);
+    // Of a box the distance has no closed form here.
+    let direct = Direct::round(convex.0, frame);
+    let shadow = Shadow::new(convex.0, frame, &direct, ROUNDINGS);
+    let around = shadow.around(&direct);
+    let from = [convex.0.center(); 2];
+    let gaps = Gaps::new(convex.0, &direct, frame, complex.0.tree().normal());
+    let images = complex.0.images();
+    let mut approach = Approach {
+        complex,
+        convex,
+        frame,
+        direct,
+        shadow,
+        gaps,
+        images,
+        from,
+        row,
+        primitive_tests,
+        answer: None,
+    };
+    complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut best, traversal, &mut approach);
+    approach.answer
+}
+
+/// Looks for the primitive closest to the convex shape.
+struct Approach<'s> {
+    complex: PlacedComplex<'s>,
+    convex: PlacedConvex<'s>,
+    frame: &'s Frame,
+    direct: Direct,
+    /// Its axis is from the closest point of the convex shape to that of the complex one so far.
+    shadow: Shadow<'s>,
+    /// What tells, by boxes and images, which primitives may be nearest.
+    gaps: Option<Gaps>,
+    images: Option<&'s LeafImages>,
+    /// Points of the convex shape, in its space, from which to look: the way to what is closest to one of them is a direction
+    /// along which the shapes may be far apart. The first is its centre, the second one near to the closest so far.
+    from: [DVec3; 2],
+    row: &'s mut Row,
+    primitive_tests: &'s mut u64,
+    /// The closest primitive so far; without points where the distance has a closed form.
+    answer: Option<(u32, Option<Closest>)>,
+}
+
+impl NearLeaves for Approach<'_> {
+    #[inline(always)]
+    fn prefetch(&self, leaf: &Leaf) {
+        if let Some(images) = self.images {
+            images.prefetch(leaf);
+        }
+    }
+
+    #[inline(always)]
+    fn raise<S: Simd>(&self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
+        if let Some(gaps) = self.gaps.as_ref().filter(|_| !matches!(self.direct, Direct::Round(_))) {
+            gaps.raise(simd, boxes, bounds);
+        }
+    }
+
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, best: &mut f64) {
+        let (mut near, mut is_known) = (leaf.lanes(), false);
+        if let (Some(gaps), Some(images)) = (&self.gaps, self.images) {
+            near = gaps.prospects(simd, &images.of(leaf), near, *best + CLEARLY_APART, CLEARLY_APART);
+            is_known = true;
+            if near == 0 {
+                return;
+            }
+        }
+        self.row.place(simd, self.complex.0, leaf.primitives, &self.frame.common[0]);
+        near &= self.row.nearer(simd, &self.shadow.bounds, *best * *best);
+        if near == 0 {
+            return;
+        }
+        match self.direct {
+            Direct::Round(round) => self.look_from_core(simd, &round, near, best),
+            _ => {
+                let near = near & !self.shadow.beyond(simd, self.row, sought(*best));
+                self.look(simd, near, is_known, best);
+            }
+        }
+    }
+}
+
+/// The distance within which a nearer primitive is sought: one that is nearer by no more than [`CONFIRMED`] is not, since primitives that
+/// share their closest point are many; but where the shapes may touch, every one.
+fn sought(best: f64) -> f64 {
+    if best > CLEARLY_APART { best - CONFIRMED } else { best }
+}
+
+impl Approach<'_> {
+    /// Looks at some lanes of the row from the core of a round shape.
+    #[inline(always)]
+    fn look_from_core<S: Simd>(&mut self, simd: S, round: &Round, mut near: u32, best: &mut f64) {
+        let known = round.distances(simd, self.row, near);
+        *self.primitive_tests += u64::from(near.count_ones());
+        while let Some(lane) = known.nearest(near) {
+            near &= !(1 << lane);
+            if self.row.triangles() >> lane & 1 == 1 {
+                if known.least[lane] - round.radius >= sought(*best) {
+                    continue;
+                }
+                let gap = known.distance[lane] - round.radius;
+                if gap > CLEARLY_APART && known.distance[lane] - known.least[lane] <= CONFIRMED {
+                    if gap < *best {
+                        *best = gap;
+                        self.answer = Some((self.row.primitive(lane), None));
+                        if let Some(gaps) = &mut self.gaps {
+                            gaps.turn(simd, self.from[0], -known.axis(lane));
+                        }
+                    }
+                    continue;
+                }
+            }
+            self.ask(lane, best);
+            if *best == 0.0 {
+                return;
+            }
+        }
+    }
+
+    /// Looks at some lanes of the row from points of the shape; `is_known`: it is known already that all of them may be nearest.
+    #[inline(always)]
+    fn look<S: Simd>(&mut self, simd: S, mut near: u32, is_known: bool, best: &mut f64) {
+        if near == 0 {
+            return;
+        }
+        let from_convex = &self.frame.common[1];
+        let [center, nearest] = self.from.map(|point| from_convex.transform_point3(point));
+        let of_center = distances_of_core(simd, &[center], self.row, near);
+        let mut of_nearest = None;
+        while let Some(lane) = of_center.nearest(near) {
+            let left = near;
+            near &= !(1 << lane);
+            if !is_known && self.row.triangles() >> lane & 1 == 1 {
+                if self.shadow.parted(center, &of_center, lane, sought(*best)) {
+                    continue;
+                }
+                let row = &*self.row;
+                if nearest != center {
+                    let known = of_nearest.get_or_insert_with(
+                        #[inline(always)]
+                        || distances_of_core(simd, &[nearest], row, left),
+                    );
+                    if self.shadow.parted(nearest, known, lane, sought(*best)) {
+                        continue;
+                    }
+                }
+            }
+            *self.primitive_tests += 1;
+            near &= !self.improve(simd, lane, best);
+        }
+    }
+
+    /// Asks GJK of a lane; the lanes that are then known not to be nearer, as bits.
+    #[inline(always)]
+    fn improve<S: Simd>(&mut self, simd: S, lane: usize, best: &mut f64) -> u32 {
+        let Some(points) = self.ask(lane, best) else { return 0 };
+        if *best == 0.0 {
+            return u32::MAX;
+        }
+        let [from_complex, from_convex] = &self.frame.common;
+        let way = from_complex.transform_point3(points.on_a) - from_convex.transform_point3(points.on_b);
+        self.shadow.turn(way.normalize_or_zero());
+        self.from[1] = points.on_b;
+        if let Some(gaps) = &mut self.gaps {
+            gaps.turn(simd, points.on_b, way);
+        }
+        self.shadow.beyond(simd, self.row, sought(*best))
+    }
+
+    /// Asks GJK of a lane: the closest points, if they are nearer than all before.
+    #[inline(always)]
+    fn ask(&mut self, lane: usize, best: &mut f64) -> Option<Witness> {
+        let primitive = self.row.primitive(lane);
+        let points = self.complex.0.primitive_hull(primitive);
+        let bound = sought(*best) / self.frame.scale;
+        let closest =
+            gjk::closest_points_within(&points, self.complex.1, self.convex.0, self.convex.1, bound)?;
+        let distance = closest.distance * self.frame.scale;
+        (distance < *best).then(|| {
+            *best = distance;
+            self.answer = Some((primitive, Some(closest)));
+            closest.points
+        })
+    }
+}

@@ -1,0 +1,122 @@
+//! The convex shape as the primitives of the complex one see it.
+
+use std::cell::OnceCell;
+
+use fearless_simd::Simd;
+use glam::{DAffine3, DVec3};
+use solid_convex::Support;
+
+use super::super::direct::Direct;
+use super::super::frame::Frame;
+use super::super::reach::convex_bounds;
+use super::super::row::{Near, Row, exceed};
+use crate::bounds::Aabb;
+use crate::tree::Around;
+
+/// The convex shape in the common frame.
+pub(super) struct Shadow<'s> {
+    shape: &'s dyn Support,
+    frame: &'s Frame,
+    map: DAffine3,
+    pub bounds: Aabb,
+    /// A box around it in the space of the complex one, found when first asked for.
+    in_complex: OnceCell<Aabb>,
+    /// What tells the primitives looked at last from the shape, pointing to them; at first none.
+    axis: DVec3,
+    /// The greatest coordinate of the shape along it.
+    greatest: f64,
+}
+
+impl<'s> Shadow<'s> {
+    /// With bounds grown by a margin.
+    pub fn new(shape: &'s dyn Support, frame: &'s Frame, direct: &Direct, margin: f64) -> Self {
+        let map = frame.common[1];
+        let bounds = match direct {
+            Direct::Round(round) => round.bounds(),
+            _ => {
+                let Aabb { min, max } = convex_bounds(shape, &map.matrix3);
+                Aabb::new(min + map.translation, max + map.translation)
+            }
+        };
+        Shadow {
+            shape,
+            frame,
+            map,
+            bounds: bounds.inflated(margin),
+            in_complex: OnceCell::new(),
+            axis: DVec3::ZERO,
+            greatest: 0.0,
+        }
+    }
+
+    /// A box around the shape in the space of the complex one.
+    pub fn in_complex(&self) -> &Aabb {
+        self.in_complex.get_or_init(|| bounds_in_complex(self.shape, self.frame))
+    }
+
+    /// Where the shape is, in the space of the complex one.
+    pub fn around(&self, direct: &Direct) -> Places {
+        let frame = self.frame;
+        let in_complex = |point: DVec3| frame.b_to_a.transform_point3(point);
+        if let Direct::Round(round) = direct {
+            let bounds = Aabb::of_points(round.local_ends.map(in_complex));
+            let bounds = bounds.inflated(frame.slack_in_a);
+            return Places::One([Around { bounds, radius: round.radius }]);
+        }
+        let center = self.shape.center();
+        let local = in_complex(center);
+        let bounds = Aabb::new(local, local).inflated(frame.slack_in_a);
+        let placed = self.map.transform_point3(center);
+        let furthest = (self.bounds.max - placed).max(placed - self.bounds.min);
+        Places::Two([
+            Around { bounds: *self.in_complex(), radius: 0.0 },
+            Around { bounds, radius: furthest.length() },
+        ])
+    }
+
+    /// Takes another axis.
+    pub fn turn(&mut self, axis: DVec3) {
+        (self.axis, self.greatest) = (axis, self.reach(axis));
+    }
+
+    /// How far the shape reaches along a direction.
+    fn reach(&self, direction: DVec3) -> f64 {
+        let furthest = self.shape.support(self.map.matrix3.transpose() * direction);
+        direction.dot(self.map.transform_point3(furthest))
+    }
+
+    /// Whether the triangle in a lane is apart from the shape by a gap, along the way from a point to what is closest to it.
+    #[inline(always)]
+    pub fn parted(&self, from: DVec3, known: &Near, lane: usize, gap: f64) -> bool {
+        let way = -known.axis(lane);
+        known.least[lane] - (self.reach(way) - way.dot(from)) >= gap
+    }
+
+    /// The lanes that are further along the axis than the shape, by a gap, as bits.
+    #[inline(always)]
+    pub fn beyond<S: Simd>(&self, simd: S, row: &Row, gap: f64) -> u32 {
+        exceed(simd, &row.least_along(simd, self.axis), self.greatest + gap)
+    }
+}
+
+/// Where a convex shape is.
+pub(super) enum Places {
+    One([Around; 1]),
+    Two([Around; 2]),
+}
+
+impl Places {
+    pub fn as_slice(&self) -> &[Around] {
+        match self {
+            Places::One(around) => around,
+            Places::Two(around) => around,
+        }
+    }
+}
+
+/// A box around a convex shape in the space of the complex one, grown by the error of the map.
+pub(super) fn bounds_in_complex(convex: &dyn Support, frame: &Frame) -> Aabb {
+    let map = frame.b_to_a;
+    let bounds = convex_bounds(convex, &map.matrix3);
+    Aabb::new(bounds.min + map.translation, bounds.max + map.translation).inflated(frame.slack_in_a)
+}

@@ -1,0 +1,293 @@
+//! Two trees that face each other: bounds on distances, by boxes that are cut with slabs.
+//!
+//! The body that counts is the box of a lane cut with its slab ([`slabs`](super::slabs)). Along a
+//! direction it reaches no further than the box does along what is left of the direction without a multiple of the
+//! slab's normal, and the slab along that multiple; for any multiple, so for the projection on the normal. There are three
+//! directions to look along: from centre to centre, and across each of the two slabs.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::simd::part;
+
+use super::lanes::splat;
+use super::node::{Node, WIDTH};
+use super::slabs::{Eight, Slabs, center};
+use super::{Place, Tree};
+
+/// Two trees, in a space in which distances count.
+pub(crate) struct Facing<'t> {
+    pub slabs: [&'t Slabs; 2],
+    /// Takes the local space of each tree to that space.
+    pub placements: [DAffine3; 2],
+}
+
+/// The error of a bound, relative to how far the two roots reach from one of their origins. With u = 2^-24, and in units of that
+/// reach: the direction has a norm of 1, so a sum of coordinates of 1.74. Then the distance of the centres along it is off by
+/// 14u; a support point's height by 60u at most for each of both, in proportion to their share of the reach (8.7u from the direction taken
+/// to tree coordinates, 27u from the box, 24u from the slab); and the two subtractions add 25u. This is 128u.
+const MARGIN: f64 = 64.0 * f32::EPSILON as f64;
+
+/// Pays for a direction's norm that is 1 up to rounding only.
+const NORM: f64 = 1.0 - 8.0 * f32::EPSILON as f64;
+
+/// What is divided by is at least this.
+const TINY: f32 = f32::MIN_POSITIVE;
+
+/// A tree in a common space, of which the unit is the reach of both.
+struct Side<'t> {
+    tree: &'t Tree,
+    slabs: &'t [Eight],
+    /// From tree coordinates; by rows.
+    linear: [[f32; 3]; 3],
+    exact: DMat3,
+    /// Takes normals of planes there, up to a factor.
+    cofactors: [[f32; 3]; 3],
+}
+
+/// Two trees that face each other.
+pub(super) struct Faces<'t> {
+    sides: [Side<'t>; 2],
+    /// From the origin of the tree coordinates of `b` to that of `a`.
+    offset: DVec3,
+    unit: f64,
+    margin: f64,
+}
+
+impl<'t> Faces<'t> {
+    /// `None` where no unit suits.
+    pub fn new(facing: &Facing<'t>, a: &'t Tree, b: &'t Tree) -> Option<Self> {
+        let linear = |at: &DAffine3, tree: &Tree| at.matrix3 * tree.normal.scale;
+        let [at_a, at_b] = &facing.placements;
+        let (of_a, of_b) = (linear(at_a, a), linear(at_b, b));
+        let offset = at_a.transform_point3(a.normal.origin) - at_b.transform_point3(b.normal.origin);
+        let reach = |m: &DMat3| (m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs()).max_element();
+        let unit = reach(&of_a) + reach(&of_b) + offset.abs().max_element();
+        if !unit.is_normal() || !unit.recip().is_normal() {
+            return None;
+        }
+        let side = |tree: &'t Tree, linear: DMat3, slabs: &'t Slabs| {
+            let exact = linear * unit.recip();
+            let rows = exact.transpose().to_cols_array_2d();
+            let DMat3 { x_axis: x, y_axis: y, z_axis: z } = exact;
+            let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+            let largest = cofactors.to_cols_array().iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+            let cofactors = if largest.is_normal() { cofactors * largest.recip() } else { DMat3::ZERO };
+            Side {
+                tree,
+                slabs: &slabs.eights,
+                linear: rows.map(|row| row.map(|x| x as f32)),
+                exact,
+                cofactors: cofactors.transpose().to_cols_array_2d().map(|row| row.map(|x| x as f32)),
+            }
+        };
+        let [slabs_a, slabs_b] = facing.slabs;
+        Some(Faces {
+            sides: [side(a, of_a, slabs_a), side(b, of_b, slabs_b)],
+            offset: offset * unit.recip(),
+            unit,
+            margin: MARGIN * unit,
+        })
+    }
+
+    /// Raises lower bounds of the distances of the lanes of a node and what hangs at a place of the other tree, until none is below `best`; the
+    /// node is of the first tree for `OF` = 0, of the second for 1. What was near was apart along `kept`, of length one, or zero.
+    #[inline(always)]
+    pub fn raise<S: Simd, const OF: usize>(
+        &self,
+        simd: S,
+        node: usize,
+        place: Place,
+        kept: DVec3,
+        best: f64,
+        bounds: &mut [f64; WIDTH],
+    ) {
+        let (many, one) = (&self.sides[OF], &self.sides[1 - OF]);
+        let offset = if OF == 0 { -self.offset } else { self.offset };
+        part!(simd => {
+            let lanes = Patch::lanes(simd, &many.tree.nodes[node], &many.slabs[node]);
+            let single = Patch::one(simd, one, place);
+            let gaps = Gaps::new(simd, many, lanes, one, single, offset);
+            let zero = splat(simd, 0.0);
+            let kept = [splat(simd, kept.x as f32), splat(simd, kept.y as f32), splat(simd, kept.z as f32)];
+            if !self.take(gaps.along(simd, &kept).max(zero).to_array(), best, bounds) {
+                return;
+            }
+            let mut gap = zero;
+            for direction in &gaps.directions(simd) {
+                let squared = dot(direction, direction);
+                let per_length = splat(simd, 1.0) / squared.max(splat(simd, TINY)).sqrt();
+                let unit = [direction[0] * per_length, direction[1] * per_length, direction[2] * per_length];
+                gap = gap.max(gaps.along(simd, &unit));
+            }
+            self.take(gap.to_array(), best, bounds);
+        });
+    }
+
+    /// Raises bounds by gaps; whether any is below `best` then.
+    #[inline(always)]
+    fn take(&self, gaps: [f32; WIDTH], best: f64, bounds: &mut [f64; WIDTH]) -> bool {
+        let mut some_below = false;
+        for (bound, gap) in bounds.iter_mut().zip(gaps) {
+            let raised = (f64::from(gap) * self.unit - self.margin) * NORM;
+            if raised > *bound {
+                *bound = raised;
+            }
+            some_below |= *bound < best;
+        }
+        some_below
+    }
+}
+
+/// A vector in each lane.
+type Vector<S> = [f32x8<S>; 3];
+
+/// Boxes cut with slabs, in tree coordinates.
+struct Patch<S: Simd> {
+    center: Vector<S>,
+    extents: Vector<S>,
+    normal: Vector<S>,
+    middle: f32x8<S>,
+    half: f32x8<S>,
+}
+
+impl<S: Simd> Patch<S> {
+    #[inline(always)]
+    fn lanes(simd: S, node: &Node, slabs: &Eight) -> Self {
+        let half = splat(simd, 0.5);
+        let none = splat(simd, 0.0);
+        let [mut center, mut extents, mut normal] = [[none; 3]; 3];
+        for axis in 0..3 {
+            let min = f32x8::load_array_ref(simd, &node.min[axis]);
+            let max = f32x8::load_array_ref(simd, &node.max[axis]);
+            center[axis] = half * (min + max);
+            extents[axis] = half * (max - min);
+            normal[axis] = f32x8::load_array_ref(simd, &slabs.normal[axis]);
+        }
+        Patch {
+            center,
+            extents,
+            normal,
+            middle: f32x8::load_array_ref(simd, &slabs.middle),
+            half: f32x8::load_array_ref(simd, &slabs.half),
+        }
+    }
+
+    /// The same in all lanes.
+    #[inline(always)]
+    fn one(simd: S, side: &Side, place: Place) -> Self {
+        let bounds = side.tree.box_at(place);
+        let (min, max) = (bounds.min(), bounds.max());
+        let none = splat(simd, 0.0);
+        let [mut centers, mut extents, mut normal] = [[none; 3]; 3];
+        let (mut middle, mut half) = (none, none);
+        for axis in 0..3 {
+            centers[axis] = splat(simd, center(min[axis], max[axis]));
+            extents[axis] = splat(simd, 0.5 * (max[axis] - min[axis]));
+        }
+        if let Some((node, lane)) = place.split() {
+            let slabs = &side.slabs[node];
+            for (x, row) in normal.iter_mut().zip(&slabs.normal) {
+                *x = splat(simd, row[lane]);
+            }
+            (middle, half) = (splat(simd, slabs.middle[lane]), splat(simd, slabs.half[lane]));
+        }
+        Patch { center: centers, extents, normal, middle, half }
+    }
+
+    /// How far it reaches from its centre along a direction of tree coordinates, at most.
+    #[inline(always)]
+    fn reach(&self, along: &Vector<S>) -> f32x8<S> {
+        let multiple = dot(along, &self.normal);
+        let mut rest = *along;
+        for axis in 0..3 {
+            rest[axis] = along[axis] - multiple * self.normal[axis];
+        }
+        let of_slab = multiple * self.middle + multiple.abs() * self.half;
+        (self.reach_of_box(&rest) + of_slab).min(self.reach_of_box(along))
+    }
+
+    #[inline(always)]
+    fn reach_of_box(&self, along: &Vector<S>) -> f32x8<S> {
+        let [x, y, z] = &self.extents;
+        along[0].abs() * *x + along[1].abs() * *y + along[2].abs() * *z
+    }
+}
+
+/// The lanes and the one, held against each other.
+struct Gaps<'s, S: Simd> {
+    many: &'s Side<'s>,
+    lanes: Patch<S>,
+    one: &'s Side<'s>,
+    single: Patch<S>,
+    /// From the centre of the one to those of the lanes.
+    away: Vector<S>,
+}
+
+impl<'s, S: Simd> Gaps<'s, S> {
+    #[inline(always)]
+    fn new(
+        simd: S,
+        many: &'s Side<'s>,
+        lanes: Patch<S>,
+        one: &'s Side<'s>,
+        single: Patch<S>,
+        offset: DVec3,
+    ) -> Self {
+        let [x, y, z] = &single.center;
+        let center =
+            DVec3::new(f64::from(x.to_array()[0]), f64::from(y.to_array()[0]), f64::from(z.to_array()[0]));
+        let from = (one.exact * center + offset).to_array();
+        let mut away = product(simd, &many.linear, &lanes.center);
+        for axis in 0..3 {
+            away[axis] -= splat(simd, from[axis] as f32);
+        }
+        Gaps { many, lanes, one, single, away }
+    }
+
+    /// From centre to centre, and across each of the two slabs.
+    #[inline(always)]
+    fn directions(&self, simd: S) -> [Vector<S>; 3] {
+        let across = product(simd, &self.one.cofactors, &self.single.normal);
+        let across_lanes = product(simd, &self.many.cofactors, &self.lanes.normal);
+        [self.away, across, across_lanes]
+    }
+
+    /// How far the lanes and the one are apart along unit vectors or against them, up to the margin: no more than their distances.
+    #[inline(always)]
+    fn along(&self, simd: S, unit: &Vector<S>) -> f32x8<S> {
+        let height = dot(unit, &self.away);
+        // From the one to the lanes.
+        let back = height.simd_lt(splat(simd, 0.0));
+        let unit =
+            [back.select(-unit[0], unit[0]), back.select(-unit[1], unit[1]), back.select(-unit[2], unit[2])];
+        let to_one = transposed_product(simd, &self.one.linear, &unit);
+        let to_lanes = transposed_product(simd, &self.many.linear, &unit);
+        let to_lanes = [-to_lanes[0], -to_lanes[1], -to_lanes[2]];
+        height.abs() - self.single.reach(&to_one) - self.lanes.reach(&to_lanes)
+    }
+}
+
+#[inline(always)]
+fn product<S: Simd>(simd: S, rows: &[[f32; 3]; 3], v: &Vector<S>) -> Vector<S> {
+    let mut sums = *v;
+    for axis in 0..3 {
+        let [a, b, c] = &rows[axis];
+        sums[axis] = splat(simd, *a) * v[0] + splat(simd, *b) * v[1] + splat(simd, *c) * v[2];
+    }
+    sums
+}
+
+#[inline(always)]
+fn transposed_product<S: Simd>(simd: S, [x, y, z]: &[[f32; 3]; 3], v: &Vector<S>) -> Vector<S> {
+    let mut sums = *v;
+    for axis in 0..3 {
+        sums[axis] = splat(simd, x[axis]) * v[0] + splat(simd, y[axis]) * v[1] + splat(simd, z[axis]) * v[2];
+    }
+    sums
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: &Vector<S>, b: &Vector<S>) -> f32x8<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
