@@ -85,8 +85,9 @@ impl Vertices {
 }
 
 impl Proof {
-    /// Whether two objects intersect, where they are now, and why, in place of why they did or did not. It may be of other objects. Cost:
-    /// while the same shows it, one support point of each; of polytopes that intersect, none. Else that of a search from there.
+    /// Whether two objects intersect, where they are now, and why, in place of why they did or did not. What was kept may be of other objects:
+    /// it is looked at, not believed. The placements must be finite, with entries of at most [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX). Cost: while
+    /// the same shows it, one support point of each; of polytopes that intersect, none. Else that of a search from there.
     pub fn renew<A, B>(&mut self, a: &A, at_a: &DAffine3, b: &B, at_b: &DAffine3) -> Decision
     where
         A: Support + ?Sized,
