@@ -577,3 +577,43 @@ fn a_deformation_to_the_same_positions_answers_alike() {
     }
     assert_rate("meshes and convex shapes", hits, cases);
 }
+
+/// Which of two meshes comes first changes nothing about which of their triangles meet, even where they touch up to rounding.
+#[test]
+fn either_order_says_the_same() {
+    let seed = 99;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut hits, cases) = (0, 4000);
+    for case in 0..cases {
+        let count = log_uniform(&mut rng, 20.0, 200.0) as u32;
+        let soups = [random_mesh(&mut rng, count), random_mesh(&mut rng, count)];
+        let mut at = [placement(&mut rng, 10.0), placement(&mut rng, 10.0)];
+        // They touch at a vertex that is the last of each along some way, up to rounding; or overlap, with two vertices in one place.
+        let way = direction(&mut rng);
+        let mut point = |k: usize, way: DVec3| {
+            let placed = soups[k].placed(&at[k]);
+            let last = placed.iter().copied().max_by(|p, q| p.dot(way).total_cmp(&q.dot(way))).unwrap();
+            if case % 4 == 0 { placed[rng.random_range(0..placed.len())] } else { last }
+        };
+        let (on_a, on_b) = (point(0, way), point(1, -way));
+        at[1].translation += on_a - on_b;
+        let [a, b] = [soups[0].shape(), soups[1].shape()];
+        let pairs = |x: usize, y: usize| {
+            let (shapes, mut found) = ([&a, &b], Vec::new());
+            query::intersecting_primitives(shapes[x], &at[x], shapes[y], &at[y], |i, j| {
+                found.push(if x == 0 { [i, j] } else { [j, i] });
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+            found.sort_unstable();
+            let meet = query::intersects(shapes[x], &at[x], shapes[y], &at[y]).unwrap();
+            assert_eq!(meet, !found.is_empty(), "case {case}");
+            found
+        };
+        let found = pairs(0, 1);
+        assert_eq!(found, pairs(1, 0), "case {case}");
+        hits += usize::from(!found.is_empty());
+    }
+    assert_rate("pairs that nearly touch", hits, cases);
+}

@@ -20,9 +20,12 @@ pub(super) struct Frame {
     pub b_to_a: DAffine3,
     /// How far, in any coordinate of `A`, the computed image of a point of `B` may be from where it truly lies.
     pub slack_in_a: f64,
-    /// Takes points of either space to one where exact predicates neither overflow nor underflow: the world's axes, the
-    /// origin of `A`, and a unit of length that is a power of two near the size of the data.
+    /// Takes points of either space to one where exact predicates neither overflow nor underflow: the world's axes, the origin of that of the
+    /// two which comes first by its coordinates, and a unit of length that is a power of two near the size of the data. So it is the same space
+    /// whichever is `A`.
     pub common: [DAffine3; 2],
+    /// The origin of that space, in the world.
+    origin: DVec3,
     /// World lengths times this are lengths of the common frame.
     pub scale: f64,
     /// The linear parts of the placements of `A` and `B`, and the inverse of the first.
@@ -52,14 +55,20 @@ impl Frame {
             + image_reach(&at_b.matrix3, reach_b).max_element()
             + offset.abs().max_element();
         let scale = unit_scale(size);
+        let (origin, [from_a, from_b]) = if comes_first(offset) {
+            (at_a.translation, [DVec3::ZERO, -offset * scale])
+        } else {
+            (at_b.translation, [offset * scale, DVec3::ZERO])
+        };
         let common = [
-            DAffine3 { matrix3: at_a.matrix3 * scale, translation: DVec3::ZERO },
-            DAffine3 { matrix3: at_b.matrix3 * scale, translation: -offset * scale },
+            DAffine3 { matrix3: at_a.matrix3 * scale, translation: from_a },
+            DAffine3 { matrix3: at_b.matrix3 * scale, translation: from_b },
         ];
         Frame {
             b_to_a: DAffine3 { matrix3: inverse_a * at_b.matrix3, translation: inverse_a * -offset },
             slack_in_a: slack(&at_a.matrix3, &inverse_a, size),
             common,
+            origin,
             scale,
             linear: [at_a.matrix3, at_b.matrix3],
             inverse_a,
@@ -81,6 +90,11 @@ impl Frame {
         }
     }
 
+    /// Takes a point of the common frame to the world.
+    pub fn to_world(&self, point: DVec3) -> DVec3 {
+        point / self.scale + self.origin
+    }
+
     /// Bounds on how distances local to `A` and `B` show in the common frame.
     pub fn stretch(&self) -> [Stretch; 2] {
         [self.stretch_of_a(), Stretch::new(&inverse_linear(&self.linear[1]), self.scale)]
@@ -96,6 +110,13 @@ impl Frame {
     pub fn beyond(&self, length: f64) -> f64 {
         length * self.scale * (1.0 + gjk::TOUCHING_ERROR) + 2.0 * gjk::TOUCHING_ERROR
     }
+}
+
+/// Whether what is so far from another comes before it, by the first coordinate in which they differ.
+#[inline(always)]
+fn comes_first(offset: DVec3) -> bool {
+    let DVec3 { x, y, z } = offset;
+    x < 0.0 || (x == 0.0 && (y < 0.0 || (y == 0.0 && z <= 0.0)))
 }
 
 /// The error of a world point of magnitude `size`, taken to local space by an inverse that has an error of its own.

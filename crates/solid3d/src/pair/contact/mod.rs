@@ -188,10 +188,9 @@ impl Pair<'_> {
         if let Some(most) = options.max_points {
             region::reduce(&mut points, normal, most.max(1));
         }
-        let world = |p: DVec3| p / self.frame.scale + self.a.placement.translation;
         let points = points.into_iter().map(|(primitives, touch)| ContactPoint {
-            point_on_a: world(touch.on_a),
-            point_on_b: world(touch.on_b),
+            point_on_a: self.frame.to_world(touch.on_a),
+            point_on_b: self.frame.to_world(touch.on_b),
             depth: touch.depth / self.frame.scale,
             primitives: [self.owner(self.a, primitives[0]), self.owner(self.b, primitives[1])],
             features: touch.features,

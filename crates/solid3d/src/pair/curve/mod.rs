@@ -29,7 +29,6 @@ mod sites;
 
 use std::ops::ControlFlow;
 
-use glam::DVec3;
 
 pub use polyline::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 
@@ -52,9 +51,8 @@ pub(crate) fn intersection_curve(a: Placed, b: Placed, scratch: &mut Scratch) ->
     let candidates = candidates(complex_a, complex_b, &frame, scratch);
     let facets = Facets::new([complex_a, complex_b], &frame.common, &candidates);
     let chains = join::chains(meeting::all(&facets, &candidates));
-    let world = |p: DVec3| p / frame.scale + a.placement.translation;
     let polyline = |chain: Chain| Polyline {
-        points: chain.nodes.iter().map(|node| world(facets.sites.position(node))).collect(),
+        points: chain.nodes.iter().map(|node| frame.to_world(facets.sites.position(node))).collect(),
         primitives: chain.pairs.iter().map(|&pair| named(pair, &on_a, &on_b)).collect(),
         closed: chain.closed,
     };

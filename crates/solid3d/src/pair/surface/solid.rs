@@ -69,7 +69,7 @@ pub(super) fn surface_point((mesh, at): PlacedComplex, point: DVec3, scratch: &m
     };
     SurfacePoint {
         distance: if foot.distance > 0.0 { side * foot.distance / frame.scale } else { 0.0 },
-        point: at.translation + foot.point / frame.scale,
+        point: frame.to_world(foot.point),
         normal,
     }
 }
