@@ -157,8 +157,9 @@ pub fn level() -> Level {
 #[inline(always)]
 #[doc(hidden)]
 pub fn on_level<R>(run: impl FnOnce(Level) -> R) -> R {
+    // Being cold it is not inlined, but stands beside the kernel: elsewhere the wide one would be compiled again for it.
     #[cold]
-    #[inline(never)]
+    #[inline]
     fn at_first<R>(run: impl FnOnce(Level) -> R) -> R {
         run(level())
     }

@@ -161,7 +161,7 @@ impl PairLists {
         while link != END {
             let (id, next) = (link / 2, self.next(link));
             if !stays(self.partner(link)) {
-                debug_assert!(!self.overlaps.is(id) && !self.shown.is(id));
+                assert!(!self.overlaps.is(id) && !self.shown.is(id));
                 self.remove(id);
             }
             link = next;
@@ -172,7 +172,7 @@ impl PairLists {
     ///
     /// All lists are made anew: to take out one by one costs more, since the pairs before and after in both lists are somewhere else.
     pub fn forget_apart(&mut self) {
-        debug_assert!(self.touched.is_empty());
+        assert!(self.touched.is_empty());
         self.heads.fill(END);
         self.unused = END;
         for id in (0..self.ends.len() as PairId).rev() {

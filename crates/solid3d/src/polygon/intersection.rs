@@ -136,7 +136,7 @@ pub(super) fn intersection(a: &Polygon, b: &Polygon) -> Intersection {
                 }));
                 ControlFlow::Continue(())
             });
-            debug_assert!(all.is_continue());
+            assert!(all.is_continue());
             if segments.is_empty() { Intersection::Apart } else { Intersection::Segments(segments) }
         }
     }

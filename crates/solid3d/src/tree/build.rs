@@ -382,7 +382,7 @@ fn share_out<T: Send>(
     }
     #[cfg(feature = "rayon")]
     if share {
-        debug_assert!(nodes.is_empty(), "what is above a node that is shared was shared too");
+        assert!(nodes.is_empty(), "what is above a node that is shared was shared too");
         let subtree = |(part, items): (&Part, &mut &mut [T])| {
             let mut nodes = Vec::new();
             below(&mut nodes, items, part);

@@ -113,7 +113,7 @@ impl Child {
     }
 
     pub fn leaf(range: Range<usize>) -> Self {
-        debug_assert!((1..=LEAF_SIZE).contains(&range.len()) && range.end <= PRIMITIVES_MAX);
+        assert!((1..=LEAF_SIZE).contains(&range.len()) && range.end <= PRIMITIVES_MAX);
         Child(LEAF_BIT | ((range.len() - 1) as u32) << START_BITS | range.start as u32)
     }
 
