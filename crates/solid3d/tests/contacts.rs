@@ -262,6 +262,55 @@ fn cubes_of_triangles_are_as_deep_as_cubes() {
     assert_eq!(contacts(&small, &at(0.1, 0.0, 0.0), &solid, &DAffine3::IDENTITY).len(), 1);
 }
 
+/// What is inside a surface that is closed and convex, but not solid, is beside its triangles: as near as it is to them, and no nearer.
+#[test]
+fn what_is_inside_a_surface_is_near_its_triangles() {
+    let (hollow, ball) = (common::cube(1.0).shape(), Shape::sphere(0.25).unwrap());
+    let (here, inside) = (at(0.0, 0.0, 0.0), at(0.625, 0.125, 0.25));
+    let near = |margin| query::contacts(&ball, &inside, &hollow, &here, &within(margin)).unwrap();
+    assert!(near(0.0).is_empty() && near(0.1).is_empty());
+    let found = near(0.25);
+    assert_eq!((found.len(), found[0].normal, found[0].points.len()), (1, DVec3::NEG_X, 1));
+    let ContactPoint { point_on_a, point_on_b, depth, .. } = found[0].points[0];
+    assert!((depth + 0.125).abs() < 1e-12, "{depth}");
+    assert!(point_on_a.distance(DVec3::new(0.875, 0.125, 0.25)) < 1e-6, "{point_on_a}");
+    assert!(point_on_b.distance(DVec3::new(1.0, 0.125, 0.25)) < 1e-6, "{point_on_b}");
+    // So it is of two such surfaces, whichever is inside. A solid has the other in it.
+    let small = common::cube(0.5).shape();
+    assert!(query::contacts(&small, &here, &hollow, &here, &within(0.25)).unwrap().is_empty());
+    let found = query::contacts(&hollow, &here, &small, &here, &within(0.625)).unwrap();
+    assert_eq!(found.len(), 6);
+    assert!(
+        found.iter().flat_map(|m| &m.points).all(|point| (point.depth + 0.5).abs() < 1e-12),
+        "{found:#?}"
+    );
+    let solid = hollow.into_solid().unwrap();
+    assert!(deepest(&query::contacts(&solid, &here, &ball, &inside, &within(0.25)).unwrap()) > 0.5);
+}
+
+/// Near a solid that is not convex, what is apart is in none of its walls, also where the margin reaches through them.
+#[test]
+fn a_margin_does_not_lead_through_walls() {
+    let mut rng = seeded(SEED + 9);
+    let ring = common::torus(24, 8, 0.25).shape().into_solid().unwrap();
+    let (mut near, cases) = (0, 300);
+    for case in 0..cases {
+        let (at_ring, mut at_box) = (placement(&mut rng, 0.0), placement(&mut rng, 0.0));
+        at_box.translation = common::in_cube(&mut rng);
+        let block = Shape::cuboid([0.2, 0.3, 0.4]).unwrap();
+        if query::intersects(&ring, &at_ring, &block, &at_box).unwrap() {
+            continue;
+        }
+        let distance = query::distance(&ring, &at_ring, &block, &at_box).unwrap().distance;
+        let found = query::contacts(&ring, &at_ring, &block, &at_box, &within(distance + 0.5)).unwrap();
+        near += 1;
+        let deepest = deepest(&found);
+        assert!((deepest + distance).abs() < 1e-9, "case {case}: {deepest}, {distance} apart");
+    }
+    println!("{near} of {cases} are apart");
+    assert!(near > cases / 3);
+}
+
 /// Sliding over a floor of triangles gives what one big box would: its normal, and the corners of what slides.
 #[test]
 fn internal_edges_have_no_normals() {

@@ -17,7 +17,8 @@ use crate::shape::Shape;
 /// - **Meshes and complex shapes** have a region for each part of the surface that is connected and has one normal there,
 ///   up to 0.001 radians. An edge or a corner inside the surface gives no normals of its own unless the surface is convex there: a
 ///   flat floor has only its own normal, however it is divided, and only the corners of the whole region.
-/// - **A closed convex mesh** counts as the body that it bounds, where it collides.
+/// - **A closed convex mesh** counts as the body that it bounds. What is inside one that is not solid, and does not collide with it, is
+///   near its triangles.
 /// - **In a [solid](Shape::into_solid) mesh** that is not convex, normals point out of it. What is wholly inside has the
 ///   one contact of its [`penetration`](super::penetration).
 ///

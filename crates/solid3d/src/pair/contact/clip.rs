@@ -6,6 +6,9 @@ use glam::DVec2;
 /// Coordinates are below some units: a point this far outside an edge is on it.
 const ON_EDGE: f64 = 1e-9;
 
+/// The same where a polygon is so thin that its edges, moved by that, would meet far from where they do: above rounding.
+const ON_EDGE_MIN: f64 = 1e-14;
+
 /// Segments whose directions have a lesser sine between them run side by side.
 const PARALLEL_SINE: f64 = 0.01;
 
@@ -63,7 +66,10 @@ enum On {
 
 /// The subject cut by each edge of a polygon of area.
 fn against(subject: &[DVec2], by: &[DVec2]) -> Vec<Clipped> {
-    let turn = area(by).signum();
+    let area = area(by);
+    let turn = area.signum();
+    let extent_squared = by.iter().map(|p| p.distance_squared(by[0])).fold(0.0, f64::max);
+    let slack = (ON_EDGE * area.abs() / extent_squared).clamp(ON_EDGE_MIN, ON_EDGE);
     let mut left: Vec<(Clipped, On)> = subject
         .iter()
         .enumerate()
@@ -77,7 +83,7 @@ fn against(subject: &[DVec2], by: &[DVec2]) -> Vec<Clipped> {
         for (i, &(corner, on)) in left.iter().enumerate() {
             let following = left[(i + 1) % left.len()].0;
             let (here, there) = (inside(corner.at), inside(following.at));
-            let (in_here, in_there) = (here >= -ON_EDGE, there >= -ON_EDGE);
+            let (in_here, in_there) = (here >= -slack, there >= -slack);
             if in_here {
                 next.push((corner, on));
             }
@@ -173,6 +179,20 @@ mod tests {
         assert!(cut.iter().all(|corner| corner.at.x > -0.8 - 1e-9 && corner.at.length() < 1.2 + 1e-9));
         let reversed: Vec<DVec2> = small.iter().rev().copied().collect();
         assert_eq!(clip(&unit, &reversed).len(), 4);
+    }
+
+    /// What runs along a sliver ends where that does.
+    #[test]
+    fn slivers() {
+        for thin in [1e-2, 1e-4, 1e-6, 1e-8] {
+            let sliver = [DVec2::ZERO, DVec2::X, DVec2::new(0.5, thin)];
+            for height in [0.0, 1e-12, 1e-10, 0.1 * thin] {
+                let along = [DVec2::new(-1.0, height), DVec2::new(2.0, height)];
+                for corner in clip(&along, &sliver) {
+                    assert!((-1e-5..=1.0 + 1e-5).contains(&corner.at.x), "{thin:e}, {height:e}: {corner:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -136,25 +136,25 @@ pub(crate) fn contacts(
     options: &ContactOptions,
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
-    let (part_a, part_b) = (part(a), part(b));
+    let (mut part_a, mut part_b) = (part(a), part(b));
     let frame = Frame::new(a.placement, reach(a), b.placement, reach(b));
     let margin = options.margin * frame.scale;
     let pair = Pair { a, b, frame, margin };
     // A surface that is taken for the body it bounds does not collide with what is inside.
-    let hollow = [a, b].iter().any(|placed| match placed.shape.class() {
-        Class::Complex(complex) => !complex.is_solid() && complex.topology().convex().is_some(),
-        Class::Convex(_) => false,
-    });
-    let mut apart = || matches!(table::intersection(a, b, scratch), Relation::Separated { .. });
-    if hollow && options.margin == 0.0 && apart() {
+    let hollow = is_hollow(a) || is_hollow(b);
+    let apart = |scratch: &mut _| matches!(table::intersection(a, b, scratch), Relation::Separated { .. });
+    if hollow && options.margin == 0.0 && apart(scratch) {
         return Vec::new();
     }
-    let mut patches = match (&part_a, &part_b) {
-        (Part::Body(..), Part::Body(..)) => soup::body_body(&pair, &part_a, &part_b),
-        (Part::Soup(_), Part::Body(..)) => soup::soup_body(&pair, &part_a, &part_b, false, scratch),
-        (Part::Body(..), Part::Soup(_)) => soup::soup_body(&pair, &part_b, &part_a, true, scratch),
-        (Part::Soup(of_a), Part::Soup(of_b)) => soup::soup_soup(&pair, of_a, of_b, scratch),
-    };
+    let mut patches = pair.patches(&part_a, &part_b, scratch);
+    // What is apart has a normal of each surface between them, and none that leads through one.
+    if options.margin > 0.0 && patches.iter().any(Patch::is_deep) && apart(scratch) {
+        if hollow {
+            (part_a, part_b) = (surface(a), surface(b));
+            patches = pair.patches(&part_a, &part_b, scratch);
+        }
+        patches.retain(|patch| !patch.is_deep());
+    }
     if patches.iter().any(|patch| !patch.is_inward) {
         patches.retain(|patch| !patch.is_inward);
     }
@@ -165,6 +165,7 @@ pub(crate) fn contacts(
     regions.into_iter().map(|region| pair.manifold(region, options)).collect()
 }
 
+/// What a shape is in contact with: of a closed convex mesh the body that it bounds.
 fn part<'a>(placed: Placed<'a>) -> Part<'a> {
     match placed.shape.class() {
         Class::Convex(support) => Part::Body(placed.shape.body().expect("a convex shape is a body"), support),
@@ -175,6 +176,19 @@ fn part<'a>(placed: Placed<'a>) -> Part<'a> {
     }
 }
 
+/// The same, of a surface without an inside the triangles, whether they bound a body or not.
+fn surface<'a>(placed: Placed<'a>) -> Part<'a> {
+    match placed.shape.class() {
+        Class::Complex(complex) if !complex.is_solid() => Part::Soup(complex),
+        _ => part(placed),
+    }
+}
+
+/// Whether a surface without an inside counts as the body that it bounds.
+fn is_hollow(placed: Placed) -> bool {
+    !placed.shape.is_solid() && matches!(part(placed), Part::Body(..))
+}
+
 fn reach(placed: Placed) -> DVec3 {
     match placed.shape.class() {
         Class::Convex(convex) => convex.reach(),
@@ -182,7 +196,23 @@ fn reach(placed: Placed) -> DVec3 {
     }
 }
 
+impl Patch {
+    /// Whether the surfaces are in each other here.
+    fn is_deep(&self) -> bool {
+        self.touches.iter().any(|touch| touch.depth > SAME_DEPTH)
+    }
+}
+
 impl Pair<'_> {
+    fn patches(&self, a: &Part, b: &Part, scratch: &mut Scratch) -> Vec<Patch> {
+        match (a, b) {
+            (Part::Body(..), Part::Body(..)) => soup::body_body(self, a, b),
+            (Part::Soup(_), Part::Body(..)) => soup::soup_body(self, a, b, false, scratch),
+            (Part::Body(..), Part::Soup(_)) => soup::soup_body(self, b, a, true, scratch),
+            (Part::Soup(of_a), Part::Soup(of_b)) => soup::soup_soup(self, of_a, of_b, scratch),
+        }
+    }
+
     fn manifold(&self, region: region::Region, options: &ContactOptions) -> Manifold {
         let region::Region { normal, mut points } = region;
         if let Some(most) = options.max_points {

@@ -9,7 +9,7 @@ use fearless_simd::{Simd, SimdBase, SimdMask, f64x8};
 use glam::{DVec2, DVec3};
 use solid_convex::simd::dispatch;
 
-use crate::exact::orient2d;
+use crate::exact::difference_of_products;
 use crate::triangle_triangle::Triangle;
 
 /// Space as a ray sees it.
@@ -51,6 +51,10 @@ pub(super) fn put(corners: &mut Corners, lane: usize, triangle: [&DVec3; 3]) {
 
 /// Rounding of a determinant of two products is below this times the sum of their magnitudes.
 const DETERMINANT_ERROR: f64 = 2.0 * f64::EPSILON;
+
+/// Where the rounding of areas may be above this share of the area of their triangle, they are found to the last bits: they are the
+/// weights of the corners.
+const WEIGHT_ERROR: f64 = 32.0 * f64::EPSILON;
 
 impl Shear {
     /// `scale` is a power of two that takes the size of the data to about 1.
@@ -110,20 +114,19 @@ impl Shear {
     #[inline]
     pub fn hit(&self, triangle: &Triangle) -> Option<TriangleHit> {
         let [a, b, c] = triangle.map(|p| self.point(p));
-        // Twice the areas that the origin makes with the edges, each opposite to a corner.
-        let area = |p: DVec3, q: DVec3| (p.x * q.y, p.y * q.x);
-        let products = [area(b, c), area(c, a), area(a, b)];
+        // Of each corner twice the area that the origin makes with the edge opposite to it.
+        let edges = [[b, c], [c, a], [a, b]];
+        let products = edges.map(|[p, q]| (p.x * q.y, p.y * q.x));
         let mut areas = products.map(|(x, y)| x - y);
         let doubts = products.map(|(x, y)| DETERMINANT_ERROR * (x.abs() + y.abs()));
         let sure = |sign: f64| (0..3).any(|i| sign * areas[i] > doubts[i]);
-        match (sure(1.0), sure(-1.0)) {
-            (true, true) => return None,
-            _ => {
-                for (i, [p, q]) in [[b, c], [c, a], [a, b]].into_iter().enumerate() {
-                    if areas[i].abs() <= doubts[i] {
-                        areas[i] = orient2d(p.truncate(), q.truncate(), DVec2::ZERO);
-                    }
-                }
+        if sure(1.0) && sure(-1.0) {
+            return None;
+        }
+        let exactly = |[p, q]: [DVec3; 2]| difference_of_products(p.x, q.y, p.y, q.x);
+        for ((area, doubt), edge) in areas.iter_mut().zip(doubts).zip(edges) {
+            if area.abs() <= doubt {
+                *area = exactly(edge);
             }
         }
         let turns = |sign: f64| areas.iter().any(|area| sign * area > 0.0);
@@ -131,9 +134,14 @@ impl Shear {
         if left && right {
             return None;
         }
-        let sum = areas[0] + areas[1] + areas[2];
+        let mut sum = areas[0] + areas[1] + areas[2];
         if !(left || right) || sum == 0.0 {
             return self.edge_on([a, b, c]);
+        }
+        // A sliver, or a triangle that is seen nearly edge on.
+        if doubts.iter().any(|&doubt| doubt > WEIGHT_ERROR * sum.abs()) {
+            areas = edges.map(exactly);
+            sum = areas[0] + areas[1] + areas[2];
         }
         let barycentric = areas.map(|area| area / sum);
         // Divided last: from a triangle on a lattice a ray that starts on it has no way to go, exactly.
@@ -229,6 +237,30 @@ mod tests {
         }
         println!("{hits} of {cases} hit, {edge_on} edge on");
         assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))) && edge_on > 1000);
+    }
+
+    /// Slivers and grazing rays too: a hit is on the ray and on the triangle, up to the rounding of positions.
+    #[test]
+    fn a_sliver_is_hit_where_it_is() {
+        let mut rng = seeded(84);
+        let mut hits = 0;
+        for case in 0..40_000 {
+            let mut random = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+            let [a, b, beside, off] = std::array::from_fn(|_| random());
+            let (thin, grazing) = (10f64.powi(-(case % 18)), 10f64.powi(-(case / 18 % 18)));
+            let triangle = [a, b, a.lerp(b, 0.3) + beside * thin];
+            let target = triangle[0] * 0.2 + triangle[1] * 0.3 + triangle[2] * 0.5;
+            let direction = (target - a) + off * grazing;
+            let origin = target - direction * f64::from(case / 324 % 2);
+            let Some(hit) = Shear::new(origin, direction, 1.0).hit(&triangle) else { continue };
+            hits += 1;
+            let at = origin + direction * hit.t;
+            let weighed: DVec3 = (0..3).map(|i| triangle[i] * hit.barycentric[i]).sum();
+            let apart = (at - weighed).length();
+            assert!(apart < 1e-14, "case {case}: {apart:e}, {triangle:?} {origin} {direction} {hit:?}");
+        }
+        println!("{hits} of 40000 hit");
+        assert!(hits > 10_000);
     }
 
     /// Eight at once, on every level of instructions, are those that one by one may be hit.
