@@ -29,7 +29,6 @@ mod sites;
 
 use std::ops::ControlFlow;
 
-
 pub use polyline::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 
 use super::complex_complex::place;
