@@ -186,8 +186,8 @@ mod tests {
     fn slivers() {
         for thin in [1e-2, 1e-4, 1e-6, 1e-8] {
             let sliver = [DVec2::ZERO, DVec2::X, DVec2::new(0.5, thin)];
-            for height in [0.0, 1e-12, 1e-10, 0.1 * thin] {
-                let along = [DVec2::new(-1.0, height), DVec2::new(2.0, height)];
+            for (height, beyond) in [0.0, 1e-12, 1e-10, 0.1 * thin].into_iter().zip([1e-4, 1e-3, 1e-2, 1.0]) {
+                let along = [DVec2::new(-beyond, height), DVec2::new(1.0 + beyond, height)];
                 for corner in clip(&along, &sliver) {
                     assert!((-1e-5..=1.0 + 1e-5).contains(&corner.at.x), "{thin:e}, {height:e}: {corner:?}");
                 }
