@@ -1,6 +1,8 @@
 //! Rays that are cast in every frame.
 
-use anyhow::{Context, Result};
+use std::collections::HashSet;
+
+use anyhow::{Context, Result, bail};
 use solid3d::World;
 use solid3d::glam::DVec3;
 use solid3d::query::{Ray, RayOptions};
@@ -23,13 +25,23 @@ impl NamedRay {
 }
 
 /// The rays of the command line: origins and directions in turn. They are numbered from 1.
-pub fn of_arguments(vectors: &[DVec3]) -> Result<Vec<NamedRay>> {
+fn of_arguments(vectors: &[DVec3]) -> Result<Vec<NamedRay>> {
     let numbered = (1..).zip(vectors.chunks_exact(2));
     let ray = |(number, vectors): (u32, &[DVec3])| {
         let ray = Ray::new(vectors[0], vectors[1]);
         NamedRay::new(number.to_string(), ray, &format!("--ray {number}"))
     };
     numbered.map(ray).collect()
+}
+
+/// The rays of the command line, and those of the rules: an error where two have one name, since nobody could tell what each meets.
+pub fn all(vectors: &[DVec3], of_rules: &[NamedRay]) -> Result<Vec<NamedRay>> {
+    let rays = [of_arguments(vectors)?.as_slice(), of_rules].concat();
+    let mut names = HashSet::new();
+    if let Some(NamedRay { name, .. }) = rays.iter().find(|ray| !names.insert(&ray.name)) {
+        bail!("two rays have the name {name:?}: [[ray]] needs another (those of --ray are numbered from 1)");
+    }
+    Ok(rays)
 }
 
 /// A point or direction written as `X,Y,Z`.
@@ -60,5 +72,18 @@ mod tests {
         assert!(format!("{error:#}").starts_with("--ray 2: ray.direction is (0.0, 0.0, 0.0)"), "{error:#}");
         let rays = of_arguments(&[DVec3::ZERO, DVec3::X]).expect("it has a direction");
         assert_eq!((rays.len(), rays[0].name.as_str()), (1, "1"));
+    }
+
+    #[test]
+    fn a_name_stands_for_one_ray() {
+        let named = |name: &str| {
+            NamedRay::new(name.to_owned(), Ray::new(DVec3::ZERO, DVec3::X), "").expect("it has a direction")
+        };
+        let numbered = [DVec3::ZERO, DVec3::X];
+        assert_eq!(all(&numbered, &[named("a"), named("b")]).map(|rays| rays.len()).ok(), Some(3));
+        for (of_rules, name) in [([named("a"), named("a")], "a"), ([named("a"), named("1")], "1")] {
+            let error = all(&numbered, &of_rules).expect_err("two have one name").to_string();
+            assert!(error.starts_with(&format!("two rays have the name \"{name}\":")), "{error}");
+        }
     }
 }

@@ -19,7 +19,7 @@ use solid3d::Response;
 use crate::args::CheckArgs;
 use crate::output::{self, is_stdout};
 use crate::placements::Placements;
-use crate::rays::{self, NamedRay};
+use crate::rays;
 use crate::record::{CsvColumns, CsvRecorder, JsonRecorder, Recorder};
 use crate::rules::{self, Objects, Rules};
 use crate::table::Style;
@@ -38,7 +38,7 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let mut rules = args.rules.as_deref().map(Rules::read).transpose()?.unwrap_or_default();
     rules.declare_solid(&args.solid);
     rules.declare_decomposed(&args.decompose);
-    let rays: Vec<NamedRay> = [rays::of_arguments(&args.ray)?.as_slice(), rules.rays()].concat();
+    let rays = rays::all(&args.ray, rules.rays())?;
     let scene = scene::load(&args.scene)?;
     scene::warnings(&scene).for_each(|warning| complain("warning", warning));
     let placements = placements(args, &scene)?;
