@@ -44,7 +44,7 @@ Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any char
     response = \"smart\"
     clearance = 0.2                 # optional: of this pair alone
 
-    [[ray]]                         # as --ray, under a name
+    [[ray]]                         # as --ray, under a name of its own
     name = \"barrier\"
     origin = [0, 0.5, 2]
     to = [0, 0.5, -2]               # the end of a segment; or, without end: direction = [0, 0, -1]
