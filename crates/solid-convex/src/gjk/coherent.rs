@@ -11,8 +11,9 @@ use super::clock::Clock;
 use super::descent::{End, Goal, descend_robustly};
 use super::distance::{Answer, Measure, Measured, measure};
 use super::intersection::is_clear;
-use super::lean::{self, Lean, Sure, Task};
+use super::lean::{Lean, Sure};
 use super::pairs::{Pair, Pairs};
+use super::task::{self, Task};
 use super::{Closest, ClosestInWorld, Glance, Witness, closest_points, nearby_feature};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::simd::dispatch;
@@ -178,7 +179,7 @@ impl Memory {
         B: Support + ?Sized,
     {
         let (placed_a, placed_b) = ((a, placement_a), (b, placement_b));
-        match lean::run(a, placement_a, b, placement_b, Intersects { memory: self }) {
+        match task::run(a, placement_a, b, placement_b, Intersects { memory: self }) {
             Said::Apart { gap } => {
                 self.clock.set_apart(placed_a, placed_b, self.axis, gap);
                 false
@@ -326,7 +327,7 @@ impl Memory {
         b: &Polytope,
         placement_b: &DAffine3,
     ) -> Option<ClosestInWorld> {
-        lean::run_in_world(a, placement_a, b, placement_b, Renew { memory: self })
+        task::run_in_world(a, placement_a, b, placement_b, Renew { memory: self })
     }
 
     /// The pairs, to be changed: what is known otherwise is forgotten.

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::lean::{self, Lean, Search, Sure};
+use super::lean::{Lean, Search, Sure};
+use super::task;
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::simd;
@@ -77,7 +78,7 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let lean = lean::run_on(simd::level(), difference, Search { goal, warm: &[] });
+    let lean = task::run_on(simd::level(), difference, Search { goal, warm: &[] });
     finished(&lean, goal).unwrap_or_else(|| descend_robustly(difference, goal))
 }
 

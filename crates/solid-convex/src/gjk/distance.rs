@@ -3,8 +3,9 @@
 use glam::{DAffine3, DVec3};
 
 use super::descent::{Descent, End, Goal, descend_robustly};
-use super::lean::{self, Lean, Search, Sure, Task};
+use super::lean::{Lean, Search, Sure};
 use super::pairs::Pair;
+use super::task::{self, Task};
 use super::{TOUCHING_ERROR, Witness, intersects};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::rounded::Core;
@@ -191,7 +192,7 @@ pub fn quickly_closest(
     b: &Polytope,
     placement_b: &DAffine3,
 ) -> Option<ClosestInWorld> {
-    lean::run_in_world(a, placement_a, b, placement_b, MeasureSurely)
+    task::run_in_world(a, placement_a, b, placement_b, MeasureSurely)
 }
 
 /// From nothing, and nothing where that is not sure.
@@ -222,7 +223,7 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    match lean::run(a, placement_a, b, placement_b, MeasureAnew { bound }) {
+    match task::run(a, placement_a, b, placement_b, MeasureAnew { bound }) {
         Answer::Beyond => None,
         Answer::Closest(closest, v) => Some((closest, v)),
         Answer::Unknown => {
@@ -256,7 +257,7 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    match lean::run(a, placement_a, b, placement_b, task) {
+    match task::run(a, placement_a, b, placement_b, task) {
         (Answer::Beyond, _) => None,
         (Answer::Closest(closest, v), lean) => {
             Some(Measured { closest, v, points: lean.points, len: lean.points().len() })

@@ -4,7 +4,8 @@ use glam::{DAffine3, DVec3};
 
 use super::balls;
 use super::descent::{End, Goal, descend_robustly};
-use super::lean::{self, Lean, Search, Sure, Task};
+use super::lean::{Lean, Search, Sure};
+use super::task::{self, Task};
 use crate::Support;
 use crate::difference::{Difference, MinkowskiDifference};
 use crate::simplex::Simplex;
@@ -71,7 +72,7 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let lean = lean::run(a, placement_a, b, placement_b, SEARCH);
+    let lean = task::run(a, placement_a, b, placement_b, SEARCH);
     match lean.sure {
         Sure::Separated(_) => Outcome::Separated { axis: lean.v.normalize() },
         Sure::Inside => Outcome::Intersecting(lean.common_point()),
@@ -163,7 +164,7 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    match lean::run(a, placement_a, b, placement_b, Verdict) {
+    match task::run(a, placement_a, b, placement_b, Verdict) {
         Sure::Separated(_) => false,
         Sure::Inside => true,
         Sure::Nothing | Sure::Near(_) | Sure::Beyond => {
@@ -192,7 +193,7 @@ where
     if balls::decide(a, placement_a, b, placement_b) == Some(true) {
         return None;
     }
-    match lean::run(a, placement_a, b, placement_b, Axis) {
+    match task::run(a, placement_a, b, placement_b, Axis) {
         (Sure::Separated(_), v) => Some(v.normalize()),
         (Sure::Inside, _) => None,
         (Sure::Nothing | Sure::Near(_) | Sure::Beyond, _) => {
@@ -250,5 +251,5 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    lean::run(a, placement_a, b, placement_b, Separates { axis })
+    task::run(a, placement_a, b, placement_b, Separates { axis })
 }

@@ -4,31 +4,22 @@
 //! the rounding error, a tetrahedron whose signs exceed theirs, a lower bound that is as good as the distance. For the rest
 //! it says nothing, and the robust descent begins anew. So it may leave out whatever makes that one robust: no sliver is measured
 //! twice, nothing is recomputed or taken back, and closest points are kept as quotients whose division is not needed to go on.
-//!
-//! It is compiled into one piece with the support mappings of polytopes, once for each level of instructions.
 
-use fearless_simd::Simd;
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 
 use super::Witness;
 use super::descent::Goal;
-use super::distance::{Closest, ClosestInWorld};
+use super::nearest::{Nearest, Square, closest_of_any, edge, face, tetrahedron};
 use super::pairs::Pair;
-use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
-use crate::polytope_difference::{PolytopeDifference, Scanned, in_world, is_plain};
-use crate::simd::{self, Level, dispatch};
+use super::task::Task;
+use crate::difference::{MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::simplex::{
-    SLIVER_SINE_SQUARED, Simplex, VOLUME_ERROR, Within, sides_of_origin, weights_of_origin, within_edge,
-    within_face,
+    SLIVER_SINE_SQUARED, Simplex, Within, sides_of_origin, weights_of_origin, within_edge, within_face,
 };
-use crate::{Polytope, Support};
 
 /// Support points after which it gives up. A random pair of polytopes takes 3 of each object, in the mean, to tell whether it
 /// intersects, and 5 to tell how far it is apart; what takes many times that is about to touch.
 const STEPS_MAX: usize = 24;
-
-/// A step that shortens `v` squared by less than this part of it: the robust descent sees to it.
-const PROGRESS_MIN: f64 = 4.0 * f64::EPSILON;
 
 /// The least square of twice a face's area, or of an edge: of slivers whose closest points have few right digits.
 const DIVISOR_MIN: f64 = 1e-24;
@@ -137,6 +128,20 @@ impl Lean {
     pub fn simplex(&self) -> Simplex {
         Simplex::of(self.points())
     }
+
+    /// Drops those of up to three points whose bits are not set.
+    #[inline(always)]
+    fn keep(&mut self, bits: u8) {
+        match bits {
+            0b000 => {}
+            0b010 => self.points[0] = self.points[1],
+            0b100 => self.points[0] = self.points[2],
+            0b101 => self.points[1] = self.points[2],
+            0b110 => (self.points[0], self.points[1]) = (self.points[1], self.points[2]),
+            _ => {}
+        }
+        self.len = bits.count_ones() as usize;
+    }
 }
 
 /// Where the origin is in a tetrahedron, by the volumes that it makes with the faces, as a point of each object; `None` where that is not precise.
@@ -149,153 +154,6 @@ fn common_point(points: &[SupportPoint; 4], sides: [f64; 4]) -> Option<Witness> 
         on_b += point.b * weight;
     }
     (w.length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR).then_some(Witness { on_a, on_b })
-}
-
-/// The closest point of a hull: `v / divisor`, on the newest point and those older ones whose bits are set.
-#[derive(Clone, Copy)]
-struct Nearest {
-    v: DVec3,
-    divisor: f64,
-    older: u8,
-}
-
-impl Nearest {
-    /// The same, where the older point is the second of two.
-    #[inline(always)]
-    fn of_second(self) -> Nearest {
-        Nearest { older: self.older << 1, ..self }
-    }
-
-    /// The nearer one to the origin of two.
-    #[inline(always)]
-    fn or_nearer(self, other: Nearest) -> Nearest {
-        if other.is_nearer_than(&self) { other } else { self }
-    }
-
-    /// Whether it is nearer to the origin than another.
-    #[inline(always)]
-    fn is_nearer_than(&self, other: &Nearest) -> bool {
-        let (mine, its) = (self.square(), other.square());
-        mine.dividend * its.divisor < its.dividend * mine.divisor
-    }
-
-    /// Its distance to the origin, squared.
-    #[inline(always)]
-    fn square(&self) -> Square {
-        Square { dividend: self.v.length_squared(), divisor: self.divisor * self.divisor }
-    }
-}
-
-/// A squared length as a quotient, for which no division is waited.
-#[derive(Clone, Copy)]
-struct Square {
-    dividend: f64,
-    divisor: f64,
-}
-
-impl Square {
-    const INFINITE: Square = Square { dividend: f64::INFINITY, divisor: 1.0 };
-
-    /// Whether it is more than rounding makes of nothing.
-    #[inline(always)]
-    fn is_sure(self) -> bool {
-        self.dividend > SUPPORT_ERROR * SUPPORT_ERROR * self.divisor
-    }
-
-    /// Whether a step made it so much smaller that it is progress.
-    #[inline(always)]
-    fn is_progress_from(self, before: Square) -> bool {
-        self.dividend * before.divisor < before.dividend * self.divisor * (1.0 - PROGRESS_MIN)
-    }
-}
-
-/// Something that is found of a difference by its support points.
-pub(super) trait Task {
-    /// What is found.
-    type Found;
-
-    /// Finds it. To be inlined.
-    fn run(self, difference: &impl MinkowskiDifference) -> Self::Found;
-}
-
-/// Runs a task on two placed objects: on polytopes in one piece, compiled for the level of instructions.
-#[inline]
-pub(super) fn run<A, B, T>(a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3, task: T) -> T::Found
-where
-    A: Support + ?Sized,
-    B: Support + ?Sized,
-    T: Task,
-{
-    match (a.as_polytope(), b.as_polytope()) {
-        (Some(a), Some(b)) => run_on_polytopes(a, placement_a, b, placement_b, task),
-        _ => {
-            let difference = Difference::new(a, placement_a, b, placement_b);
-            task.run(&difference)
-        }
-    }
-}
-
-fn run_on_polytopes<T: Task>(
-    a: &Polytope,
-    placement_a: &DAffine3,
-    b: &Polytope,
-    placement_b: &DAffine3,
-    task: T,
-) -> T::Found {
-    dispatch!(simd => run_in_kernel(simd, (a, placement_a), (b, placement_b), task))
-}
-
-#[inline(always)]
-fn run_in_kernel<S: Simd, T: Task>(
-    simd: S,
-    (a, placement_a): (&Polytope, &DAffine3),
-    (b, placement_b): (&Polytope, &DAffine3),
-    task: T,
-) -> T::Found {
-    if simd::is_scalar::<S>() {
-        let difference = Difference::new(a, placement_a, b, placement_b);
-        task.run(&Scanned { simd, difference: &difference, polytopes: [a, b] })
-    } else {
-        task.run(&PolytopeDifference::new(simd, (a, placement_a), (b, placement_b)))
-    }
-}
-
-/// Runs a search for closest points on two polytopes, of whose placements nothing was asked, and places what it finds; `None` where a
-/// placement is not plain, or nothing is found.
-#[inline]
-pub(super) fn run_in_world<T: Task<Found = Option<Closest>>>(
-    a: &Polytope,
-    placement_a: &DAffine3,
-    b: &Polytope,
-    placement_b: &DAffine3,
-    task: T,
-) -> Option<ClosestInWorld> {
-    dispatch!(simd => {
-        if !(is_plain(simd, placement_a) & is_plain(simd, placement_b)) {
-            return None;
-        }
-        let Closest { distance, points } = run_in_kernel(simd, (a, placement_a), (b, placement_b), task)?;
-        let point_on_a = in_world(simd, placement_a, points.on_a);
-        let point_on_b = in_world(simd, placement_b, points.on_b);
-        Some(ClosestInWorld { distance, point_on_a, point_on_b })
-    })
-}
-
-/// Runs a task on a difference.
-#[inline]
-pub(super) fn run_on<A, B, T>(level: Level, difference: &Difference<A, B>, task: T) -> T::Found
-where
-    A: Support + ?Sized,
-    B: Support + ?Sized,
-    T: Task,
-{
-    let (a, b) = difference.objects();
-    match (a.as_polytope(), b.as_polytope()) {
-        (Some(a), Some(b)) => {
-            dispatch!(level, simd => task.run(&Scanned { simd, difference, polytopes: [a, b] }))
-        }
-        _ => task.run(difference),
-    }
 }
 
 /// A lean descent.
@@ -374,25 +232,7 @@ impl Search<'_> {
             before = square;
         }
     }
-}
 
-impl Lean {
-    /// Drops those of up to three points whose bits are not set.
-    #[inline(always)]
-    fn keep(&mut self, bits: u8) {
-        match bits {
-            0b000 => {}
-            0b010 => self.points[0] = self.points[1],
-            0b100 => self.points[0] = self.points[2],
-            0b101 => self.points[1] = self.points[2],
-            0b110 => (self.points[0], self.points[1]) = (self.points[1], self.points[2]),
-            _ => {}
-        }
-        self.len = bits.count_ones() as usize;
-    }
-}
-
-impl Search<'_> {
     /// What is sure, after `v` was found to separate the objects: `vw` is its product with a support point against it.
     #[inline(always)]
     fn reached(self, v: DVec3, divisor: f64, vw: f64, len: usize) -> Sure {
@@ -413,93 +253,4 @@ impl Search<'_> {
             Sure::Nothing
         }
     }
-}
-
-/// Of the edge from an older point to the newest, which is needed in any case (Theorem 4.8).
-#[inline(always)]
-fn edge(p: DVec3, newest: DVec3) -> Nearest {
-    let d = newest - p;
-    let along = newest.dot(d);
-    if along <= 0.0 {
-        return Nearest { v: newest, divisor: 1.0, older: 0 };
-    }
-    let square = d.length_squared();
-    Nearest { v: newest * square - d * along, divisor: square, older: 1 }
-}
-
-/// Of the face of two older points and the newest.
-#[inline(always)]
-fn face(p: DVec3, q: DVec3, newest: DVec3) -> Nearest {
-    let (to_p, to_q) = (p - newest, q - newest);
-    let n = to_p.cross(to_q);
-    let square = n.length_squared();
-    // -newest = x to_p + y to_q + an offset along n; all times n^2.
-    let across = newest.cross(n);
-    let (x, y) = (to_q.dot(across), -to_p.dot(across));
-    if x > 0.0 && y > 0.0 && x + y < square {
-        return Nearest { v: n * n.dot(newest), divisor: square, older: 3 };
-    }
-    let with_p = || edge(p, newest);
-    let with_q = || edge(q, newest).of_second();
-    // Beyond one edge it is on that one; beyond both, where an angle is obtuse, on the one that leads to the origin.
-    match (x > 0.0, y > 0.0) {
-        (true, false) => with_p(),
-        (false, true) => with_q(),
-        (false, false) if newest.dot(to_q) < 0.0 => with_q(),
-        (false, false) => with_p(),
-        (true, true) => with_p().or_nearer(with_q()),
-    }
-}
-
-/// Of the tetrahedron of three older points and the newest; `None` when it certainly contains the origin.
-#[inline(always)]
-fn tetrahedron(p: DVec3, q: DVec3, r: DVec3, newest: DVec3) -> Option<Nearest> {
-    let (sides, least) = sides_of_origin([p, q, r, newest]);
-    let [pq, qr, rp, old] = sides.map(|side| side > 0.0);
-    if pq && qr && rp {
-        // Of what is too flat to tell, nothing: no divisor is that small.
-        let unknown = Nearest { v: newest, divisor: 0.0, older: 7 };
-        return if old && least > VOLUME_ERROR { None } else { Some(unknown) };
-    }
-    // On a face with the newest point that has the origin outside.
-    let mut closest = Nearest { v: DVec3::INFINITY, divisor: 1.0, older: 0 };
-    if !pq {
-        closest = face(p, q, newest);
-    }
-    if !qr {
-        let found = face(q, r, newest);
-        closest = closest.or_nearer(Nearest { older: found.older << 1, ..found });
-    }
-    if !rp {
-        let found = face(p, r, newest);
-        closest = closest.or_nearer(Nearest { older: found.older & 1 | (found.older & 2) << 1, ..found });
-    }
-    Some(closest)
-}
-
-/// The closest point of the hull of up to three points in any order, of which those that it does not need are dropped.
-#[inline(always)]
-fn closest_of_any(points: &mut [SupportPoint; 4], len: &mut usize) -> Nearest {
-    let [p, q, r, _] = *points;
-    if *len == 3 {
-        let closest = face(p.w, q.w, r.w);
-        if closest.older == 3 {
-            return closest;
-        }
-    }
-    // Off their face, the two that are nearest are a start as good as any.
-    let squares = [p, q, r].map(|p| p.w.length_squared());
-    let pair = match *len {
-        1 => [p, p],
-        2 => [p, q],
-        _ if squares[0] >= squares[1] && squares[0] >= squares[2] => [q, r],
-        _ if squares[1] >= squares[2] => [p, r],
-        _ => [p, q],
-    };
-    let [near, far] =
-        if pair[0].w.length_squared() < pair[1].w.length_squared() { pair } else { [pair[1], pair[0]] };
-    let closest = edge(far.w, near.w);
-    (points[0], points[1]) = if closest.older == 1 { (far, near) } else { (near, far) };
-    *len = 1 + usize::from(closest.older);
-    closest
 }

@@ -21,8 +21,10 @@ mod distance;
 mod intersection;
 mod lean;
 mod nearby_feature;
+mod nearest;
 mod pairs;
 mod proof;
+mod task;
 #[cfg(test)]
 mod tests;
 

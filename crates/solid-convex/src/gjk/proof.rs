@@ -6,8 +6,9 @@ use glam::{DAffine3, DVec3};
 
 use super::again::{contains_origin, search_from};
 use super::intersection::{is_clear, robust_axis};
-use super::lean::{self, Lean, Sure, Task};
+use super::lean::{Lean, Sure};
 use super::pairs::Pair;
+use super::task::{self, Task};
 use crate::Support;
 use crate::difference::{Difference, MinkowskiDifference, NO_VERTEX, SupportPoint};
 
@@ -93,7 +94,7 @@ impl Proof {
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        match lean::run(a, at_a, b, at_b, Renew(self)) {
+        match task::run(a, at_a, b, at_b, Renew(self)) {
             Renewed::Same => {
                 return Decision { intersect: matches!(self, Proof::Common(_)), by_the_same: true };
             }

@@ -6,7 +6,8 @@ use rand::rngs::StdRng;
 use solid_oracle::generate::seeded;
 
 use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_robustly, descend_within};
-use super::lean::{self, Search, Sure};
+use super::lean::{Search, Sure};
+use super::task;
 use super::{
     CAST_ERROR, Closest, ClosestInWorld, Coherent, DISTANCE_TOLERANCE, Memory, Outcome, TOUCHING_ERROR, cast,
     closest_points, intersection, intersects, quickly_closest, separates,
@@ -335,7 +336,7 @@ fn the_lean_descent_says_what_the_robust_one_says() {
                 let difference = Difference::new(&**a, &at_a, &**b, &at_b);
                 for goal in [Goal::Separation, Goal::Distance { tolerance: DISTANCE_TOLERANCE }] {
                     let search = Search { goal, warm: &[] };
-                    let [scalar, wide] = simd::levels().map(|level| lean::run_on(level, &difference, search));
+                    let [scalar, wide] = simd::levels().map(|level| task::run_on(level, &difference, search));
                     assert_eq!((scalar.sure, scalar.v), (wide.sure, wide.v), "{i} {j} {k}");
                     assert_eq!(scalar.points(), wide.points(), "{i} {j} {k}");
                     let slow = descend_robustly(&difference, goal);
