@@ -8,6 +8,7 @@ mod clearance;
 mod collision;
 mod contacts;
 mod event;
+mod examine;
 mod findings;
 mod lapsed;
 mod motion;
@@ -101,7 +102,7 @@ pub struct World {
     /// Working memory: the candidates that a test examines.
     to_examine: Vec<pair_map::Place>,
     /// Working memory: what examining them gave, part by part.
-    news: Vec<test::News>,
+    news: Vec<examine::News>,
     workers: Workers,
     statistics: Statistics,
 }

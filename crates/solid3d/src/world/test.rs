@@ -1,68 +1,19 @@
 //! The test: every candidate pair is examined, in creation order.
 
-use std::sync::Arc;
+use solid_convex::gjk::Proof;
 
-use glam::DVec3;
-use solid_convex::gjk::{Decision, Proof};
-
-use super::arena::Arena;
 use super::candidates::{Candidate, PairKey};
-use super::object::Object;
+use super::examine::Examiner;
 use super::pair_map::Place;
-use super::response::ResponseTable;
 use super::threads::{PART, Workers};
-use super::{Collision, Contact, ObjectId, Response, Statistics, When, World};
+use super::{Collision, ObjectId, Response, World};
 use crate::error::Result;
-use crate::pair::swept::{self, Encounter};
-use crate::pair::{self, Relation, Scratch};
 
 /// How far a test has come that is made collision by collision: see [`World::test_next`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TestProgress {
     /// The pair examined last.
     last: Option<PairKey>,
-}
-
-/// What examining a candidate gave.
-#[derive(Clone, Copy, Debug, Default)]
-struct Verdict {
-    /// Whether its response is not to ignore it.
-    matters: bool,
-    outcome: Outcome,
-}
-
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Outcome {
-    #[default]
-    Apart,
-    /// A collision of which nothing is known but that it is there now.
-    Plain,
-    /// A collision of which more is known, which stands elsewhere: it is large, and most pairs have none.
-    Described,
-}
-
-impl Outcome {
-    /// What was found, if anything was. What stands elsewhere is the next there.
-    fn found(self, next_described: impl FnOnce() -> Option<(When, Contact)>) -> Option<(When, Contact)> {
-        match self {
-            Outcome::Apart => None,
-            Outcome::Plain => Some((When::Now, Contact::Simple)),
-            Outcome::Described => next_described(),
-        }
-    }
-}
-
-/// What examining some candidates gave that is not of one of them alone.
-#[derive(Debug, Default)]
-pub(super) struct News {
-    /// Those whose collision is not what it was, or may not be, with their place in the order of pairs.
-    changed: Vec<(Place, PairKey, Outcome)>,
-    /// Of collisions that are so, in the order of the candidates.
-    described: Vec<(When, Contact)>,
-    /// How many matter, and how many did.
-    matter: u64,
-    mattered: u64,
-    work: Statistics,
 }
 
 /// # Tests
@@ -262,190 +213,12 @@ impl World {
     }
 }
 
-/// What examining a pair depends on, beside the pair.
-struct Examiner<'a> {
-    objects: &'a Arena,
-    responses: &'a ResponseTable,
-    caching: bool,
-}
-
-impl Examiner<'_> {
-    /// Examines a candidate, and keeps what is of it alone; the rest is news.
-    fn renew(&self, place: Place, candidate: &mut Option<Candidate>, news: &mut News, scratch: &mut Scratch) {
-        let candidate = candidate.as_mut().expect("what waits to be examined is a candidate");
-        let &mut Candidate { a, b, ref mut proof, found, .. } = candidate;
-        let Verdict { matters, outcome } =
-            self.examine(a, b, proof, scratch, &mut news.described, &mut news.work);
-        let was_plain = std::mem::replace(&mut candidate.is_plain, outcome == Outcome::Plain);
-        news.matter += u64::from(matters);
-        news.mattered += u64::from(std::mem::replace(&mut candidate.matters, matters));
-        let is_as_it_was = match (found, outcome) {
-            (None, outcome) => outcome == Outcome::Apart,
-            (Some(_), outcome) => was_plain && outcome == Outcome::Plain,
-        };
-        if !is_as_it_was {
-            let key = (self.objects[a].order, self.objects[b].order);
-            push_of_part(&mut news.changed, (place, key, outcome));
-        }
-    }
-
-    /// Whether two objects collide, of which `a` comes first; a function of the two and their response alone, whatever proof is tried first,
-    /// in place of which that is put which there is now. What more is known of a collision is put into `described`, and the work is added
-    /// to that done before.
-    fn examine(
-        &self,
-        a: ObjectId,
-        b: ObjectId,
-        proof: &mut Proof,
-        scratch: &mut Scratch,
-        described: &mut Vec<(When, Contact)>,
-        work: &mut Statistics,
-    ) -> Verdict {
-        let response = self.responses.of(a, b);
-        if response == Response::Ignore {
-            *proof = Proof::None;
-            return Verdict::default();
-        }
-        work.examined += 1;
-        let (a, b) = (&self.objects[a], &self.objects[b]);
-        let has_way = a.has_way() || b.has_way();
-        if !self.caching {
-            *proof = Proof::None;
-        }
-        let before = scratch.work();
-        let Found { outcome, by_the_same } = if has_way {
-            now_or_on_the_way([a, b], response, proof, scratch, described, work)
-        } else {
-            now([a, b], response, proof, scratch, described)
-        };
-        let after = scratch.work();
-        work.cache_hits += u64::from(by_the_same);
-        work.box_tests += after.0 - before.0;
-        work.primitive_tests += after.1 - before.1;
-        Verdict { matters: true, outcome }
-    }
-}
-
-/// What examining two objects gave.
-struct Found {
-    outcome: Outcome,
-    /// Whether what was kept showed it.
-    by_the_same: bool,
-}
-
-/// What two objects do as they are.
-fn now(
-    [a, b]: [&Object; 2],
-    response: Response,
-    proof: &mut Proof,
-    scratch: &mut Scratch,
-    described: &mut Vec<(When, Contact)>,
-) -> Found {
-    let (placed_a, placed_b) = (a.placed(), b.placed());
-    if response == Response::Simple {
-        let Decision { intersect, by_the_same } = pair::decide(placed_a, placed_b, proof, scratch);
-        return Found { outcome: if intersect { Outcome::Plain } else { Outcome::Apart }, by_the_same };
-    }
-    if let Proof::Apart(axis) = proof
-        && pair::still_separated(axis, placed_a, placed_b)
-    {
-        return Found { outcome: Outcome::Apart, by_the_same: true };
-    }
-    let witness = match pair::intersection(placed_a, placed_b, scratch) {
-        Relation::Separated { axis } => {
-            *proof = axis.into();
-            return Found { outcome: Outcome::Apart, by_the_same: false };
-        }
-        Relation::Common(witness) => witness,
-    };
-    *proof = Proof::None;
-    let contact = match response {
-        Response::Ignore | Response::Simple => Contact::Simple,
-        Response::Witness => Contact::witness(placed_a, placed_b, &witness),
-        Response::Smart => smart([a, b], scratch),
-        Response::Curve => Contact::curve(placed_a, placed_b, &witness, scratch),
-        Response::Depth => Contact::depth(placed_a, placed_b, scratch),
-        Response::Contacts => Contact::contacts(placed_a, placed_b, &witness, scratch),
-    };
-    Found { outcome: describe(When::Now, contact, described), by_the_same: false }
-}
-
-fn describe(when: When, contact: Contact, described: &mut Vec<(When, Contact)>) -> Outcome {
-    push_of_part(described, (when, contact));
-    Outcome::Described
-}
-
-/// Adds something of one of the candidates of a part.
-fn push_of_part<T>(list: &mut Vec<T>, element: T) {
-    // No part ever has more: so a world in which as much happens as before takes no memory.
-    list.reserve_exact(PART.saturating_sub(list.len()));
-    list.push(element);
-}
-
-/// What two objects do as they are; of those that are apart, what they did on the way. The proof is one for all the way.
-fn now_or_on_the_way(
-    objects: [&Object; 2],
-    response: Response,
-    proof: &mut Proof,
-    scratch: &mut Scratch,
-    described: &mut Vec<(When, Contact)>,
-    work: &mut Statistics,
-) -> Found {
-    let [a, b] = objects.map(Object::moving);
-    if let Proof::Apart(axis) = proof
-        && swept::still_separated(axis, &a, &b)
-    {
-        return Found { outcome: Outcome::Apart, by_the_same: true };
-    }
-    let found = now(objects, response, proof, scratch, described);
-    if found.outcome != Outcome::Apart {
-        return found;
-    }
-    work.sweeps += 1;
-    let outcome = match swept::encounter(&a, &b, scratch) {
-        Encounter::None { axis } => {
-            *proof = axis.into();
-            Outcome::Apart
-        }
-        Encounter::At(point) => {
-            *proof = Proof::None;
-            on_the_way(objects, point, response, scratch, described)
-        }
-    };
-    Found { outcome, by_the_same: false }
-}
-
-/// A collision at a point on the way of two objects that are apart now.
-fn on_the_way(
-    [a, b]: [&Object; 2],
-    point: DVec3,
-    response: Response,
-    scratch: &mut Scratch,
-    described: &mut Vec<(When, Contact)>,
-) -> Outcome {
-    let contact = match response {
-        Response::Ignore | Response::Simple => Contact::Simple,
-        Response::Witness => Contact::witness_on_the_way(a.placed(), b.placed(), point),
-        Response::Smart => smart([a, b], scratch),
-        // As they are now, the surfaces do not meet.
-        Response::Curve => Contact::Curve { point, curve: Arc::default() },
-        Response::Depth => Contact::depth(a.placed(), b.placed(), scratch),
-        Response::Contacts => Contact::Contacts { point, manifolds: Arc::default() },
-    };
-    describe(When::OnTheWay, contact, described)
-}
-
-fn smart([a, b]: [&Object; 2], scratch: &mut Scratch) -> Contact {
-    let now = [a.placed(), b.placed()];
-    Contact::smart(now, [a.previously_placed(), b.previously_placed()], scratch)
-}
-
 #[cfg(test)]
 mod tests {
-    use glam::DAffine3;
+    use glam::{DAffine3, DVec3};
 
     use super::*;
-    use crate::{BroadPhaseKind, Shape, WorldOptions};
+    use crate::{BroadPhaseKind, Shape, Statistics, WorldOptions};
 
     /// Balls in a row, each touching the next.
     fn row(count: usize) -> (World, Vec<ObjectId>) {
