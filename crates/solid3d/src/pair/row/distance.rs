@@ -10,9 +10,10 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::DVec3;
 
-use super::{
-    Lanes, Row, Vector, Wide, along, cross, dot, minus, one, splat, splat_triangle, steps_with, store, times,
+use super::vector::{
+    Vector, Wide, along, cross, dot, minus, one, splat, splat_triangle, steps_with, store, times,
 };
+use super::{Lanes, Row};
 use crate::pair::triangle_triangle::Triangle;
 use crate::tree::bits;
 

@@ -6,10 +6,12 @@
 //! | `rows` | the rows placed lately |
 //! | `distance` | the distances of a triangle, a segment or a point, and eight, each with a lower bound |
 //! | `unit_box` | the lanes that meet a box, and that do not, certainly |
+//! | `vector` | points in vectors as wide as the level has |
 
 mod distance;
 mod rows;
 mod unit_box;
+mod vector;
 mod verdict;
 
 use fearless_simd::Simd;
@@ -19,6 +21,7 @@ use glam::{DAffine3, DVec3};
 pub(super) use distance::{CONFIRMED, Near, distances, distances_of_core};
 pub(crate) use rows::Rows;
 pub(super) use unit_box::{Cube, stretch_max};
+use vector::{Vector, Wide, dot, load, one, splat, steps, store};
 pub(super) use verdict::{Verdict, verdict};
 
 use super::triangle_triangle::Triangle;
@@ -365,88 +368,6 @@ pub(super) fn exceed<S: Simd>(simd: S, lanes: &Lanes, limit: f64) -> u32 {
         bits |= (exceed.to_bitmask() as u32) << from;
     }
     bits
-}
-
-/// As many numbers as a vector of the level holds, two to eight. On levels with shorter vectors, vectors of eight took
-/// minutes to compile.
-type Wide<S> = <S as Simd>::f64s;
-
-/// As many vectors.
-#[derive(Clone, Copy)]
-struct Vector<S: Simd>([Wide<S>; 3]);
-
-/// The first lanes of the vectors that make up a row.
-#[inline(always)]
-fn steps<S: Simd>() -> impl Iterator<Item = usize> {
-    (0..LEAF_SIZE).step_by(width::<S>())
-}
-
-/// Those of them in which some lanes are, given as bits.
-#[inline(always)]
-fn steps_with<S: Simd>(lanes: u32) -> impl Iterator<Item = usize> {
-    steps::<S>().filter(
-        #[inline(always)]
-        move |from| lanes >> from & ((1 << width::<S>()) - 1) != 0,
-    )
-}
-
-#[inline(always)]
-const fn width<S: Simd>() -> usize {
-    <Wide<S> as SimdBase<S>>::LEN
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, lanes: &Lanes, from: usize) -> Wide<S> {
-    Wide::<S>::from_slice(simd, &lanes[from..from + width::<S>()])
-}
-
-#[inline(always)]
-fn store<S: Simd>(_: S, v: Wide<S>, lanes: &mut Lanes, from: usize) {
-    v.store_slice(&mut lanes[from..from + width::<S>()]);
-}
-
-/// The same number in all lanes.
-#[inline(always)]
-fn one<S: Simd>(simd: S, x: f64) -> Wide<S> {
-    Wide::<S>::splat(simd, x)
-}
-
-/// The same vector in all lanes.
-#[inline(always)]
-fn splat<S: Simd>(simd: S, v: DVec3) -> Vector<S> {
-    Vector([one(simd, v.x), one(simd, v.y), one(simd, v.z)])
-}
-
-#[inline(always)]
-fn minus<S: Simd>(Vector(a): Vector<S>, Vector(b): Vector<S>) -> Vector<S> {
-    Vector([a[0] - b[0], a[1] - b[1], a[2] - b[2]])
-}
-
-/// `a + b * t`.
-#[inline(always)]
-fn along<S: Simd>(Vector(a): Vector<S>, Vector(b): Vector<S>, t: Wide<S>) -> Vector<S> {
-    Vector([a[0] + b[0] * t, a[1] + b[1] * t, a[2] + b[2] * t])
-}
-
-#[inline(always)]
-fn times<S: Simd>(Vector(a): Vector<S>, t: Wide<S>) -> Vector<S> {
-    Vector([a[0] * t, a[1] * t, a[2] * t])
-}
-
-/// The same triangle in all lanes.
-#[inline(always)]
-fn splat_triangle<S: Simd>(simd: S, t: &Triangle) -> [Vector<S>; 3] {
-    [splat(simd, t[0]), splat(simd, t[1]), splat(simd, t[2])]
-}
-
-#[inline(always)]
-fn dot<S: Simd>(Vector(a): Vector<S>, Vector(b): Vector<S>) -> Wide<S> {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn cross<S: Simd>(Vector(a): Vector<S>, Vector(b): Vector<S>) -> Vector<S> {
-    Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }
 
 #[cfg(test)]

@@ -22,7 +22,8 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::{Row, Vector, Verdict, Wide, cross, load, minus, one, steps, width};
+use super::vector::{Vector, Wide, cross, dot, load, minus, one, steps, width};
+use super::{Row, Verdict};
 use crate::bounds::Aabb;
 
 /// Overlaps are this many margins deep: see the module.
@@ -97,8 +98,7 @@ impl Cube {
         let edges =
             [minus(corners[1], corners[0]), minus(corners[2], corners[1]), minus(corners[0], corners[2])];
         let normal = cross(edges[0], edges[1]);
-        let heights =
-            [super::dot(normal, corners[0]), super::dot(normal, corners[1]), super::dot(normal, corners[2])];
+        let heights = [dot(normal, corners[0]), dot(normal, corners[1]), dot(normal, corners[2])];
         axes.look_at_three(heights, normal.0[0].abs() + normal.0[1].abs() + normal.0[2].abs());
         for j in 0..3 {
             let (Vector(e), Vector(p), Vector(q)) = (edges[j], corners[j], corners[(j + 2) % 3]);
