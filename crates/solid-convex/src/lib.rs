@@ -23,6 +23,7 @@
 mod chord;
 mod difference;
 pub mod epa;
+mod feature;
 pub mod gjk;
 mod kinds;
 mod polytope_difference;

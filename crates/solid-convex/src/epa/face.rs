@@ -109,7 +109,7 @@ impl Face {
         let [p, q, r] = points;
         let sides = [(p, q), (q, r), (r, p)];
         let squares = sides.map(|(x, y)| x.w.distance_squared(y.w));
-        // The two shortest: see `simplex::normal`.
+        // The two shortest: see `feature::normal`.
         let longest = (1..3).fold(0, |i, j| if squares[j] > squares[i] { j } else { i });
         let edge = |i: usize| difference.edge_with_size(sides[i % 3].0, sides[i % 3].1);
         let [(x, size_x), (y, size_y)] = [edge(longest + 1), edge(longest + 2)];

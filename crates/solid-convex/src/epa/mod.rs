@@ -29,9 +29,10 @@ mod zonotope;
 use glam::{DAffine3, DVec3};
 
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
+use crate::feature::SLIVER_SINE_SQUARED;
 use crate::gjk::{End, Goal, descend};
 use crate::rounded::Core;
-use crate::simplex::{Reduced, SLIVER_SINE_SQUARED, Simplex};
+use crate::simplex::{Reduced, Simplex};
 use crate::{Support, Witness};
 use face::Face;
 use polytope::Polytope;

@@ -9,7 +9,7 @@ use super::intersection::is_clear;
 use super::lean::{Lean, Search, Sure};
 use super::pairs::Pair;
 use crate::difference::MinkowskiDifference;
-use crate::simplex::{VOLUME_ERROR, sides_of_origin};
+use crate::feature::{VOLUME_ERROR, sides_of_origin};
 
 /// Whether the tetrahedron of the differences of four pairs certainly contains the origin; else the three of the face by which that went out, and
 /// the fourth.

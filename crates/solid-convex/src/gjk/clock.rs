@@ -12,9 +12,9 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::balls::{Balls, Look};
 use super::intersection::CACHED_GAP_MIN;
 use super::pairs::{Pairs, images};
+use crate::feature::VOLUME_ERROR;
 use crate::simd::dispatch;
 use crate::similarity::STRETCH_ERROR;
-use crate::simplex::VOLUME_ERROR;
 use crate::{Polytope, Support};
 
 /// What was last sure of two objects, and how far that goes.

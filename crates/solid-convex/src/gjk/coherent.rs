@@ -16,8 +16,9 @@ use super::pairs::{Pair, Pairs};
 use super::task::{self, Task};
 use super::{Closest, ClosestInWorld, Glance, Witness, closest_points, nearby_feature};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
+use crate::feature::sides_of_origin;
 use crate::simd::dispatch;
-use crate::simplex::{Simplex, sides_of_origin};
+use crate::simplex::Simplex;
 use crate::{Polytope, Support, epa};
 
 /// Two convex objects about which the same is asked frame after frame, as they move a little: what was found last is tried

@@ -6,8 +6,9 @@ use super::lean::{Lean, Search, Sure};
 use super::task;
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
+use crate::feature::{normal, perpendicular};
 use crate::simd;
-use crate::simplex::{Reduced, Simplex, normal, perpendicular};
+use crate::simplex::{Reduced, Simplex};
 
 /// When a descent may stop.
 #[derive(Clone, Copy, Debug)]

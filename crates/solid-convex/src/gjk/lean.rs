@@ -13,9 +13,10 @@ use super::nearest::{Nearest, Square, closest_of_any, edge, face, tetrahedron};
 use super::pairs::Pair;
 use super::task::Task;
 use crate::difference::{MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
-use crate::simplex::{
-    SLIVER_SINE_SQUARED, Simplex, Within, sides_of_origin, weights_of_origin, within_edge, within_face,
+use crate::feature::{
+    SLIVER_SINE_SQUARED, Within, sides_of_origin, weights_of_origin, within_edge, within_face,
 };
+use crate::simplex::Simplex;
 
 /// Support points after which it gives up. A random pair of polytopes takes 3 of each object, in the mean, to tell whether it
 /// intersects, and 5 to tell how far it is apart; what takes many times that is about to touch.

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::difference::{SUPPORT_ERROR, SupportPoint};
-use crate::simplex::{VOLUME_ERROR, sides_of_origin};
+use crate::feature::{VOLUME_ERROR, sides_of_origin};
 
 /// A step that shortens `v` squared by less than this part of it: the robust descent sees to it.
 const PROGRESS_MIN: f64 = 4.0 * f64::EPSILON;
