@@ -139,6 +139,32 @@ fn flat_shapes_have_a_depth() {
     }
 }
 
+/// In one plane, and the narrower the more nearly parallel they are: segments that cross, and slivers. They have no depth, however narrow.
+#[test]
+fn narrow_flat_shapes_have_no_depth() {
+    for power in 0..14 {
+        let narrow = 0.1f64.powi(power);
+        for k in 0..50 {
+            let along = placement(k).translation.normalize();
+            let aside = placement(k + 1).translation.cross(along) * narrow;
+            let in_plane = |x: f64, y: f64| along * x + aside * y;
+            // Their rounding is off the plane by 1e-16, where the narrower are not 1e-16 wide.
+            let segment = [in_plane(-0.7, -0.7), in_plane(0.7, 0.7)];
+            let sliver = [in_plane(-1.0, 0.0), in_plane(1.0, 0.1), in_plane(0.3, 0.4)];
+            let across = [segment[0], in_plane(0.8, 0.0)];
+            let (here, at) = (DAffine3::IDENTITY, placement(k + 2));
+            let shapes =
+                [&segment[..], &sliver, &across].map(|points| Points::new(points).expect("some points"));
+            for (a, b) in [(0, 1), (0, 2), (1, 1), (1, 2)] {
+                for (here, there) in [(here, here), (at, at)] {
+                    let Some(found) = penetration(&shapes[a], &here, &shapes[b], &there) else { continue };
+                    assert!(found.upper <= 1e-13, "{narrow:e}, {k}, {a} and {b}: {found:?}");
+                }
+            }
+        }
+    }
+}
+
 /// Touching: a depth of nothing, and the normal of the common plane.
 #[test]
 fn touching_shapes_have_a_direction() {
