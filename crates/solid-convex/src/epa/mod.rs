@@ -165,7 +165,7 @@ where
             let found = expand(difference, &mut polytope);
             let better = match found.is_certain(difference) {
                 true => None,
-                false => stretched(difference, polytope.vertices()),
+                false => stretched(difference, polytope.vertices(), ended),
             };
             polytope.recycle();
             better.filter(|better| better.uncertainty() < found.uncertainty()).unwrap_or(found)
@@ -174,10 +174,15 @@ where
     }
 }
 
-/// The same for a difference as thin as a needle, of which some points are known: see [`Stretch`].
+/// The same for a difference as thin as a needle, of which some points are known, and those that a descent ended with: see
+/// [`Stretch`].
 #[cold]
 #[inline(never)]
-fn stretched<A, B>(difference: &Difference<A, B>, points: &[SupportPoint]) -> Option<Nearest>
+fn stretched<A, B>(
+    difference: &Difference<A, B>,
+    points: &[SupportPoint],
+    ended: &[SupportPoint],
+) -> Option<Nearest>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
@@ -190,7 +195,14 @@ where
     polytope.recycle();
     let normal = stretch.normal(found.normal).normalize();
     let height = normal.dot(difference.support_against(-normal).w);
-    Some(Nearest { height, normal, ..found })
+    // Of a needle that is all but flat, where its stretched boundary is may be lost; what a descent ended with is off by the depth alone.
+    let missed = |points: &Witness| {
+        let p = difference.point(points.on_a, points.on_b);
+        p.w.distance_squared(normal * height)
+    };
+    let at_rest = closest(ended, DVec3::ZERO).1;
+    let points = if missed(&at_rest) < missed(&found.points) { at_rest } else { found.points };
+    Some(Nearest { height, normal, points, ..found })
 }
 
 /// The point of the boundary of `A - B` nearest to the origin.

@@ -358,6 +358,30 @@ fn parallel_needles_are_as_deep_as_their_sections() {
     }
 }
 
+/// A splinter in a ribbon, both all but flat: where they lie along each other may be lost, but not that they lie on each other.
+#[test]
+fn the_points_of_ribbons_lie_on_each_other() {
+    let mut count = 0;
+    for thickness in [1e-9, 1e-11, 1e-12, 1e-13] {
+        let size = DVec3::new(1.0, f64::sqrt(thickness), thickness);
+        for k in 0..300 {
+            let at = placement(k);
+            let corner = |i: u32| placement(11 * k + i).translation;
+            let ribbon: Vec<DVec3> =
+                (0..5).map(|i| at.transform_vector3((corner(i) - corner(5)) * size)).collect();
+            let middle = ribbon.iter().sum::<DVec3>() / 5.0;
+            let splinter: Vec<DVec3> = (6..10).map(|i| middle + corner(i) * thickness).collect();
+            let (ribbon, splinter) = (Points::new(&ribbon).unwrap(), Points::new(&splinter).unwrap());
+            let here = DAffine3::IDENTITY;
+            let Some(found) = penetration(&ribbon, &here, &splinter, &here) else { continue };
+            count += 1;
+            let missed = (found.points.on_b - found.points.on_a).distance(found.direction * found.depth);
+            assert!(missed <= found.depth + 1e-10, "{thickness:e}, {k}: {missed:e} off, {found:?}");
+        }
+    }
+    assert!(count > 1_000, "{count} of 1,200 overlap");
+}
+
 /// A support mapping that is none: it must not hang nor crash whoever asks it.
 struct Liar(std::sync::atomic::AtomicU32);
 
