@@ -79,8 +79,8 @@ pub struct Penetration {
 /// given, the same for the same input. Scaling both by a power of two scales the answer and changes no other bit.
 ///
 /// The placements must be finite, with entries of at most [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX). The error is what `lower` and `upper`
-/// say: for polytopes some 1e-14 of the size of the data, for others [`DEPTH_TOLERANCE`] of the depth unless [`VERTICES_MAX`] ended
-/// the search. Cost: of two boxes some hundred nanoseconds; of others that of [`intersection`](crate::gjk::intersection), and some ten support
+/// say: for polytopes some 1e-14 of the size of the data, more where one is thin and meets a corner with its end; for others
+/// [`DEPTH_TOLERANCE`] of the depth unless [`VERTICES_MAX`] ended the search. Cost: of two boxes some hundred nanoseconds; of others that of [`intersection`](crate::gjk::intersection), and some ten support
 /// points of each object, more the deeper they are.
 ///
 /// ```

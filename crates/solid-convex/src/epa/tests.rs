@@ -382,6 +382,37 @@ fn the_points_of_ribbons_lie_on_each_other() {
     assert!(count > 1_000, "{count} of 1,200 overlap");
 }
 
+/// A needle that meets a corner with its end: the faces there are slivers of all lengths, and the bounds say how well they are known. Judged
+/// by the directions across any two edges, one of which is that of the depth.
+#[test]
+fn needles_at_a_corner_are_as_deep_as_said() {
+    for thickness in [1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9, 1e-10] {
+        for k in 0..400 {
+            let corner = |i: u32| placement(13 * k + i).translation;
+            let at = placement(k);
+            let body: Vec<DVec3> = (0..4).map(corner).collect();
+            let slim = |i: u32| at.transform_vector3(corner(i) * DVec3::new(1.0, thickness, thickness));
+            let needle: Vec<DVec3> = (4..9).map(|i| slim(i) - slim(4) + body[0]).collect();
+            let (of_body, of_needle) = (Points::new(&body).unwrap(), Points::new(&needle).unwrap());
+            let found = penetration(&of_body, &DAffine3::IDENTITY, &of_needle, &DAffine3::IDENTITY).unwrap();
+            let edges_of = |points: &[DVec3]| -> Vec<DVec3> {
+                points.iter().flat_map(|p| points.iter().map(move |q| *q - *p)).collect()
+            };
+            let edges = [edges_of(&body), edges_of(&needle)].concat();
+            let normals = edges.iter().flat_map(|x| edges.iter().filter_map(|y| x.cross(*y).try_normalize()));
+            let reach = |points: &[DVec3], normal: DVec3| {
+                points.iter().map(|p| normal.dot(*p)).fold(f64::NEG_INFINITY, f64::max)
+            };
+            let expected =
+                normals.map(|n| reach(&body, n) + reach(&needle, -n)).fold(f64::INFINITY, f64::min);
+            let context = || format!("{thickness:e}, {k}: {found:?}, not {expected:e}");
+            let limit = if thickness > 1e-4 { 3e-12 } else { 3e-8 };
+            assert!(found.upper - found.lower <= limit, "{}", context());
+            assert!(found.lower <= expected + 1e-14 && found.depth <= expected + limit, "{}", context());
+        }
+    }
+}
+
 /// A support mapping that is none: it must not hang nor crash whoever asks it.
 struct Liar(std::sync::atomic::AtomicU32);
 
