@@ -19,13 +19,16 @@ mod voxels;
 use piece::{Corner, Piece};
 use solid3d::convex::unit_scale;
 use solid3d::glam::DVec3;
-use solid3d::{ComplexShapeBuilder, Shape, ShapeKind};
+use solid3d::{Aabb, ComplexShapeBuilder, Shape, ShapeKind};
 
 pub use error::{Error, Result};
 pub use options::{Options, PIECES_MAX, RESOLUTION_MAX, RESOLUTION_MIN, TESTS_MAX};
 
 /// How much of the area of a triangle may be in no region: what rounding makes.
 const UNCOVERED: f64 = 1e-6;
+
+/// A triangle with less area than this, in squares of the longest side of its box, has none that rounding lets be compared.
+const SLIVER: f64 = 1e-9;
 
 /// A mesh as a union of convex pieces.
 #[derive(Clone, Debug)]
@@ -38,8 +41,8 @@ pub struct Decomposition {
 
 /// Decomposes a mesh, which need not be [solid](Shape::into_solid), into convex pieces.
 ///
-/// - The pieces cover the whole surface: every vertex that a triangle names is a point of a piece, exactly, and every other point is
-///   within 1e-11 of the size of the mesh.
+/// - The pieces cover the whole surface, within 1e-11 of the size of the mesh; their corners are vertices of it, and points at which it was
+///   cut, which are rounded.
 /// - They cover what the mesh encloses, but for gaps of less than two voxels. Cavities count as enclosed, too.
 /// - They cover more: by what [`Options::concavity`] allows, where there are pieces enough.
 /// - A mesh with holes wider than a voxel encloses nothing, and is covered as the surface that it is. A flat mesh has flat
@@ -80,22 +83,32 @@ pub fn decompose(mesh: &Shape, options: &Options) -> Result<Decomposition> {
     else {
         return Err(Error::NotAMesh { kind: mesh.kind() });
     };
-    // Of the vertices that triangles name, in a unit of length near the size of the mesh: a power of two, which changes no digit.
+    // Of the vertices that triangles name, from a point beside the mesh, in a unit of length near its size: a power of two. Neither
+    // changes a vertex.
     let corners = || triangles.as_flattened().iter().map(|&i| vertices[i as usize]);
     let (min, max) =
         corners().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), v| (min.min(v), max.max(v)));
     let extent = (max - min).max_element();
     let pieces = if extent > 0.0 {
-        let scale = unit_scale(extent);
+        let (beside, scale) = (beside(min, max), unit_scale(extent));
         let faces: Vec<[DVec3; 3]> =
-            triangles.iter().map(|t| t.map(|i| vertices[i as usize] * scale)).collect();
+            triangles.iter().map(|t| t.map(|i| (vertices[i as usize] - beside) * scale)).collect();
         let pieces = pieces(&faces, options)?;
         let pieces = pieces.iter().map(Piece::corners).collect::<solid3d::Result<Vec<_>>>()?;
-        pieces.into_iter().map(|corners| corners.into_iter().map(|p| p / scale).collect()).collect()
+        pieces.into_iter().map(|corners| corners.into_iter().map(|p| p / scale + beside).collect()).collect()
     } else {
         vec![vec![min]]
     };
     assemble(&pieces)
+}
+
+/// A point from which a mesh in a box is not far, and from which all of its coordinates have exact differences: those between a number
+/// and its double do (Sterbenz), and where they are farther apart than that, the origin is as near as they are wide.
+fn beside(min: DVec3, max: DVec3) -> DVec3 {
+    DVec3::from([0, 1, 2].map(|k| {
+        let (near, far) = if min[k] > 0.0 { (min[k], max[k]) } else { (max[k].min(0.0), min[k]) };
+        if far.abs() <= 2.0 * near.abs() { near } else { 0.0 }
+    }))
 }
 
 /// The pieces of a mesh whose size is about one.
@@ -107,7 +120,8 @@ fn pieces(faces: &[[DVec3; 3]], options: &Options) -> Result<Vec<Piece>> {
         for (part, cloud) in parts.iter().zip(&mut clouds) {
             covered += clip::clip(face, &part.region, cloud);
         }
-        if covered >= clip::area(face) * (1.0 - UNCOVERED) {
+        let (area, side) = (clip::area(face), 2.0 * Aabb::of_points(*face).half_extents().max_element());
+        if area > SLIVER * side * side && covered >= area * (1.0 - UNCOVERED) {
             continue;
         }
         for (part, cloud) in parts.iter().zip(&mut clouds) {

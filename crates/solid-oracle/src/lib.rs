@@ -1,7 +1,7 @@
 //! Slow and right answers to collision queries, independent of the library they judge.
 //!
 //! # What is proven, and how
-//! An answer is *searched* with GJK in double-double arithmetic ([`search`](crate::verdict)) and then *proven* with
+//! An answer is *searched* with GJK in double-double arithmetic ([`search`](crate::verdict())) and then *proven* with
 //! exact dyadic arithmetic, which shares no code with the search. Every `f64` is a dyadic rational, so placing a point
 //! (a product and a sum) never rounds; the only roots, those of the round shapes, are bounded from the proper side.
 //!

@@ -258,3 +258,42 @@ fn a_mesh_wholly_inside_another_collides() {
     let depth = query::penetration(&solid, &here, &solid, &small).unwrap().unwrap().depth;
     assert!((depth - 0.625).abs() < 1e-9, "{depth}");
 }
+
+/// With a bound of 0, boxes that are 0.25 apart were said to collide.
+#[test]
+fn a_bound_of_nothing_finds_nothing_apart() {
+    let block = Shape::cuboid([0.75, 0.5, 0.5]).unwrap();
+    let (upper, lower) = (at(-1.125, 0.5, 0.0), at(-1.125, 0.5, -0.75));
+    let within = |bound: f64| query::distance_within(&block, &upper, &block, &lower, bound).unwrap();
+    assert_eq!(within(0.0), None);
+    assert_eq!(within(0.3).map(|found| found.distance), Some(0.25));
+}
+
+/// Triangles that are segments or points gave distances that are no numbers, and errors.
+#[test]
+fn triangles_without_area_have_distances_and_depths() {
+    let corners = [DVec3::ZERO, DVec3::X * 0.5, DVec3::X, DVec3::Y];
+    let segment = Shape::mesh(corners, [[0, 1, 2]]).unwrap();
+    let point = Shape::mesh(corners, [[1, 1, 1]]).unwrap();
+    let triangle = Shape::mesh(corners, [[0, 2, 3]]).unwrap();
+    let ball = Shape::sphere(0.25).unwrap();
+    let here = DAffine3::IDENTITY;
+    let above = at(0.0, 0.0, 0.75);
+    for (a, b, expected) in [
+        (&segment, &segment, 0.75),
+        (&segment, &point, 0.75),
+        (&point, &point, 0.75),
+        (&point, &triangle, 0.75),
+        (&triangle, &segment, 0.75),
+        (&segment, &ball, 0.5),
+    ] {
+        for (a, b) in [(a, b), (b, a)] {
+            let found = query::distance(a, &here, b, &above).unwrap().distance;
+            assert!((found - expected).abs() <= 1e-15, "{found}, not {expected}");
+            // On each other they have no depth, but in the ball they have.
+            let found = query::penetration(a, &here, b, &here).unwrap().unwrap();
+            let depth = 0.75 - expected;
+            assert!((found.depth - depth).abs() <= 1e-14, "{found:?}, not {depth}");
+        }
+    }
+}

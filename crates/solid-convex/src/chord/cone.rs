@@ -10,19 +10,20 @@ struct Quadratic {
     a: f64,
     b: f64,
     c: f64,
+    /// What `b^2 - a c` is, found without that difference.
+    discriminant: f64,
 }
 
 impl Quadratic {
     /// The roots in ascending order, endless when they are; `None` without real ones. A double root by rounding of a
     /// quadratic that opens downward counts: such a line runs through the apex.
     fn roots(&self) -> Option<[f64; 2]> {
-        let Quadratic { a, b, c } = *self;
-        let squared = b * b - a * c;
-        if squared < 0.0 && a > 0.0 {
+        let Quadratic { a, b, c, discriminant } = *self;
+        if discriminant < 0.0 && a > 0.0 {
             return None;
         }
         // No difference of nearly equal numbers (Press et al., *Numerical Recipes*, section 5.6).
-        let q = -(b + squared.max(0.0).sqrt().copysign(b));
+        let q = -(b + discriminant.max(0.0).sqrt().copysign(b));
         if q == 0.0 {
             return Some([0.0, 0.0]);
         }
@@ -37,7 +38,11 @@ fn endless_cone(foot: DVec3, along: DVec3, apex: f64, radius: f64, height: f64) 
     // (height s)^2 - (radius w)^2 <= 0.
     let (h, r) = (height * height, radius * radius);
     let depth = apex - foot.y;
+    // In b^2 - a c of a flat cone nearly all would cancel, and its sides be lost.
+    let at_apex = foot * along.y + along * depth;
+    let turn = foot.x * along.z - foot.z * along.x;
     let quadratic = Quadratic {
+        discriminant: h * (r * (at_apex.x * at_apex.x + at_apex.z * at_apex.z) - h * turn * turn),
         a: h * (along.x * along.x + along.z * along.z) - r * along.y * along.y,
         b: h * (foot.x * along.x + foot.z * along.z) + r * depth * along.y,
         c: h * (foot.x * foot.x + foot.z * foot.z) - r * depth * depth,

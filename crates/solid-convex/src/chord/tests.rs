@@ -94,6 +94,34 @@ fn chords_end_where_casts_do() {
     }
 }
 
+/// Cones flat or slim down to 1e-12: a line through a point inside has a chord, that point is on it, and both its ends are on the cone.
+#[test]
+fn chords_of_flat_cones_end_on_them() {
+    for power in 0..=12 {
+        for (radius, height) in [(1.0, 0.1f64.powi(power)), (0.1f64.powi(power), 1.0)] {
+            let cone = Cone::new(radius, height).unwrap();
+            for i in 0..500 {
+                let part = |step: f64| 0.5 + 0.5 * spread(i, step);
+                let (share, turn) = (part(0.7549), 6.0 * part(0.5698));
+                let across = DVec3::new(turn.cos(), 0.0, turn.sin()) * radius * share * 0.9 * part(0.3247);
+                let inside = across + DVec3::Y * height * (0.5 - share);
+                let away = DVec3::new(spread(i, 0.618), spread(i, 0.414), spread(i, 0.732)).normalize();
+                let chord = cone.chord(&Line::new(inside - away, away).unwrap()).unwrap();
+                let context = || format!("{radius:e} {height:e}, {i}: {chord:?}");
+                assert!(chord.enter.t <= 1.0 + 1e-15 && 1.0 - 1e-15 <= chord.leave.t, "{}", context());
+                for t in [chord.enter.t, chord.leave.t] {
+                    let end = inside + away * (t - 1.0);
+                    let below = 0.5 - end.y / height;
+                    let error = 1e-15 * (1.0 + 1.0 / height);
+                    assert!((-error..=1.0 + error).contains(&below), "{}", context());
+                    let off = DVec3::new(end.x, 0.0, end.z).length() - radius * below;
+                    assert!(off <= radius * error + 1e-15, "{}: {off:e} off", context());
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn special_lines() {
     let through = |shape: &dyn Fn(&Line) -> Option<Chord>, origin: DVec3, direction: DVec3| {

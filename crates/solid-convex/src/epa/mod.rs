@@ -80,8 +80,8 @@ pub struct Penetration {
 /// given, the same for the same input. Scaling both by a power of two scales the answer and changes no other bit.
 ///
 /// The placements must be finite, with entries of at most [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX). The error is what `lower` and `upper`
-/// say: for polytopes some 1e-14 of the size of the data, for others [`DEPTH_TOLERANCE`] of the depth unless [`VERTICES_MAX`] ended
-/// the search. Cost: of two boxes some hundred nanoseconds; of others that of [`intersection`](crate::gjk::intersection), and some ten support
+/// say: for polytopes some 1e-14 of the size of the data, more where one is thin and meets a corner with its end; for others
+/// [`DEPTH_TOLERANCE`] of the depth unless [`VERTICES_MAX`] ended the search. Cost: of two boxes some hundred nanoseconds; of others that of [`intersection`](crate::gjk::intersection), and some ten support
 /// points of each object, more the deeper they are.
 ///
 /// ```
@@ -166,7 +166,7 @@ where
             let found = expand(difference, &mut polytope);
             let better = match found.is_certain(difference) {
                 true => None,
-                false => stretched(difference, polytope.vertices()),
+                false => stretched(difference, polytope.vertices(), ended),
             };
             polytope.recycle();
             better.filter(|better| better.uncertainty() < found.uncertainty()).unwrap_or(found)
@@ -175,10 +175,15 @@ where
     }
 }
 
-/// The same for a difference as thin as a needle, of which some points are known: see [`Stretch`].
+/// The same for a difference as thin as a needle, of which some points are known, and those that a descent ended with: see
+/// [`Stretch`].
 #[cold]
 #[inline(never)]
-fn stretched<A, B>(difference: &Difference<A, B>, points: &[SupportPoint]) -> Option<Nearest>
+fn stretched<A, B>(
+    difference: &Difference<A, B>,
+    points: &[SupportPoint],
+    ended: &[SupportPoint],
+) -> Option<Nearest>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
@@ -191,7 +196,14 @@ where
     polytope.recycle();
     let normal = stretch.normal(found.normal).normalize();
     let height = normal.dot(difference.support_against(-normal).w);
-    Some(Nearest { height, normal, ..found })
+    // Of a needle that is all but flat, where its stretched boundary is may be lost; what a descent ended with is off by the depth alone.
+    let missed = |points: &Witness| {
+        let p = difference.point(points.on_a, points.on_b);
+        p.w.distance_squared(normal * height)
+    };
+    let at_rest = closest(ended, DVec3::ZERO).1;
+    let points = if missed(&at_rest) < missed(&found.points) { at_rest } else { found.points };
+    Some(Nearest { height, normal, points, ..found })
 }
 
 /// The point of the boundary of `A - B` nearest to the origin.

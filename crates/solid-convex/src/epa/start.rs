@@ -88,17 +88,18 @@ where
         return Err(DVec3::X);
     }
     let line = from_p(&q) / length;
-    let off_line = |x: &SupportPoint| from_p(x).reject_from_normalized(line).length();
-    let (mut r, mut width) = furthest(points, off_line);
+    let off_line = |x: &SupportPoint| from_p(x).reject_from_normalized(line);
+    let (mut r, mut width) = furthest(points, |x| off_line(x).length());
     if width <= HEIGHT_ERROR {
         let (u, v) = line.any_orthonormal_pair();
         look_along(difference, &[u, v], points);
-        (r, width) = furthest(points, off_line);
+        (r, width) = furthest(points, |x| off_line(x).length());
     }
     if width <= HEIGHT_ERROR {
         return Err(line.any_orthonormal_vector());
     }
-    let normal = line.cross(from_p(&r)).normalize();
+    // Of what is off the line, however long its points are along it.
+    let normal = line.cross(off_line(&r)).normalize();
     let off_plane = |x: &SupportPoint| {
         let flat = side([p.w, q.w, r.w], x.w) == 0.0;
         if flat { 0.0 } else { normal.dot(from_p(x)).abs() }

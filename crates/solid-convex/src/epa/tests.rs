@@ -139,6 +139,32 @@ fn flat_shapes_have_a_depth() {
     }
 }
 
+/// In one plane, and the narrower the more nearly parallel they are: segments that cross, and slivers. They have no depth, however narrow.
+#[test]
+fn narrow_flat_shapes_have_no_depth() {
+    for power in 0..14 {
+        let narrow = 0.1f64.powi(power);
+        for k in 0..50 {
+            let along = placement(k).translation.normalize();
+            let aside = placement(k + 1).translation.cross(along) * narrow;
+            let in_plane = |x: f64, y: f64| along * x + aside * y;
+            // Their rounding is off the plane by 1e-16, where the narrower are not 1e-16 wide.
+            let segment = [in_plane(-0.7, -0.7), in_plane(0.7, 0.7)];
+            let sliver = [in_plane(-1.0, 0.0), in_plane(1.0, 0.1), in_plane(0.3, 0.4)];
+            let across = [segment[0], in_plane(0.8, 0.0)];
+            let (here, at) = (DAffine3::IDENTITY, placement(k + 2));
+            let shapes =
+                [&segment[..], &sliver, &across].map(|points| Points::new(points).expect("some points"));
+            for (a, b) in [(0, 1), (0, 2), (1, 1), (1, 2)] {
+                for (here, there) in [(here, here), (at, at)] {
+                    let Some(found) = penetration(&shapes[a], &here, &shapes[b], &there) else { continue };
+                    assert!(found.upper <= 1e-13, "{narrow:e}, {k}, {a} and {b}: {found:?}");
+                }
+            }
+        }
+    }
+}
+
 /// Touching: a depth of nothing, and the normal of the common plane.
 #[test]
 fn touching_shapes_have_a_direction() {
@@ -329,6 +355,61 @@ fn parallel_needles_are_as_deep_as_their_sections() {
             assert!(found.lower - error <= expected && expected <= found.upper + error, "{k}: {found:?}");
         }
         assert!((60..=180).contains(&deep), "{deep} of 200: not representative");
+    }
+}
+
+/// A splinter in a ribbon, both all but flat: where they lie along each other may be lost, but not that they lie on each other.
+#[test]
+fn the_points_of_ribbons_lie_on_each_other() {
+    let mut count = 0;
+    for thickness in [1e-9, 1e-11, 1e-12, 1e-13] {
+        let size = DVec3::new(1.0, f64::sqrt(thickness), thickness);
+        for k in 0..300 {
+            let at = placement(k);
+            let corner = |i: u32| placement(11 * k + i).translation;
+            let ribbon: Vec<DVec3> =
+                (0..5).map(|i| at.transform_vector3((corner(i) - corner(5)) * size)).collect();
+            let middle = ribbon.iter().sum::<DVec3>() / 5.0;
+            let splinter: Vec<DVec3> = (6..10).map(|i| middle + corner(i) * thickness).collect();
+            let (ribbon, splinter) = (Points::new(&ribbon).unwrap(), Points::new(&splinter).unwrap());
+            let here = DAffine3::IDENTITY;
+            let Some(found) = penetration(&ribbon, &here, &splinter, &here) else { continue };
+            count += 1;
+            let missed = (found.points.on_b - found.points.on_a).distance(found.direction * found.depth);
+            assert!(missed <= found.depth + 1e-10, "{thickness:e}, {k}: {missed:e} off, {found:?}");
+        }
+    }
+    assert!(count > 1_000, "{count} of 1,200 overlap");
+}
+
+/// A needle that meets a corner with its end: the faces there are slivers of all lengths, and the bounds say how well they are known. Judged
+/// by the directions across any two edges, one of which is that of the depth.
+#[test]
+fn needles_at_a_corner_are_as_deep_as_said() {
+    for thickness in [1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9, 1e-10] {
+        for k in 0..400 {
+            let corner = |i: u32| placement(13 * k + i).translation;
+            let at = placement(k);
+            let body: Vec<DVec3> = (0..4).map(corner).collect();
+            let slim = |i: u32| at.transform_vector3(corner(i) * DVec3::new(1.0, thickness, thickness));
+            let needle: Vec<DVec3> = (4..9).map(|i| slim(i) - slim(4) + body[0]).collect();
+            let (of_body, of_needle) = (Points::new(&body).unwrap(), Points::new(&needle).unwrap());
+            let found = penetration(&of_body, &DAffine3::IDENTITY, &of_needle, &DAffine3::IDENTITY).unwrap();
+            let edges_of = |points: &[DVec3]| -> Vec<DVec3> {
+                points.iter().flat_map(|p| points.iter().map(move |q| *q - *p)).collect()
+            };
+            let edges = [edges_of(&body), edges_of(&needle)].concat();
+            let normals = edges.iter().flat_map(|x| edges.iter().filter_map(|y| x.cross(*y).try_normalize()));
+            let reach = |points: &[DVec3], normal: DVec3| {
+                points.iter().map(|p| normal.dot(*p)).fold(f64::NEG_INFINITY, f64::max)
+            };
+            let expected =
+                normals.map(|n| reach(&body, n) + reach(&needle, -n)).fold(f64::INFINITY, f64::min);
+            let context = || format!("{thickness:e}, {k}: {found:?}, not {expected:e}");
+            let limit = if thickness > 1e-4 { 3e-12 } else { 3e-8 };
+            assert!(found.upper - found.lower <= limit, "{}", context());
+            assert!(found.lower <= expected + 1e-14 && found.depth <= expected + limit, "{}", context());
+        }
     }
 }
 

@@ -54,7 +54,7 @@ const NORMAL_GAP: f64 = 1e-7;
 /// Conservative: the time is never later than the first contact, and no contact is missed. At the time given the gap is
 /// below [`CAST_ERROR`] of the size of the data; on a grazing motion that may be some 1e-5 of the size before the contact. The placements and the
 /// motion must be finite, with entries of at most [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX). Cost: some three to ten times
-/// [`intersection`](super::intersection).
+/// [`intersection`](super::intersection()).
 ///
 /// ```
 /// use solid_convex::{Sphere, gjk};

@@ -117,7 +117,7 @@ impl Memory {
         self.clock.answer(&self.pairs, placement_a, placement_b)
     }
 
-    /// Whether they intersect: exactly when [`intersection`](super::intersection) does not say
+    /// Whether they intersect: exactly when [`intersection`](super::intersection()) does not say
     /// [`Separated`](super::Outcome::Separated). Cost: while they moved by less than the room that the last answer had, no support
     /// point; then, while the axis that separated them does, one of each; while the four pairs of points that showed an overlap do, none.
     pub fn intersects<A, B>(&mut self, a: &A, placement_a: &DAffine3, b: &B, placement_b: &DAffine3) -> bool
@@ -244,7 +244,7 @@ impl Memory {
         Some(epa::penetration_from(a, placement_a, b, placement_b, &simplex))
     }
 
-    /// The closest points, as [`closest_points`](super::closest_points) within the same error. Cost: where the points lie on the same
+    /// The closest points, as [`closest_points`] within the same error. Cost: where the points lie on the same
     /// features as before, one support point of each object.
     pub fn closest_points<A, B>(
         &mut self,

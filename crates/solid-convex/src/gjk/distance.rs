@@ -17,7 +17,7 @@ pub struct Closest {
     /// Their distance; 0 when the objects intersect or touch. World units.
     pub distance: f64,
     /// The closest points; a common point when the distance is 0. Each is in its object, and they are as far apart as the distance, to
-    /// within [`TOUCHING_ERROR`](super::TOUCHING_ERROR) of the size of the data; of needles and plates thin to 10^-9, a hundred times that.
+    /// within [`TOUCHING_ERROR`] of the size of the data; of needles and plates thin to 10^-9, a hundred times that.
     pub points: Witness,
 }
 
@@ -27,7 +27,7 @@ pub(crate) const DISTANCE_TOLERANCE: f64 = 1e-12;
 
 /// The closest points of two placed convex objects, and their distance. Algorithm 4.1 of the thesis.
 ///
-/// The error of the distance is at most 1e-12 of the distance plus [`TOUCHING_ERROR`](super::TOUCHING_ERROR) of the size
+/// The error of the distance is at most 1e-12 of the distance plus [`TOUCHING_ERROR`] of the size
 /// of the data. The placements must be finite, with entries of at most [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX).
 ///
 /// ```

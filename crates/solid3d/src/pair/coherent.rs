@@ -7,7 +7,7 @@ use super::table::convex;
 use super::{Placed, Scratch, closed_form, closest, intersects, penetration};
 
 /// What [`intersects`] says, found faster. The memory must be of the same two shapes, and say nothing by itself, nor a
-/// [`glance`](super::glance).
+/// [`glance`](super::glance()).
 pub(crate) fn intersects_again(a: Placed, b: Placed, memory: &mut Memory, scratch: &mut Scratch) -> bool {
     if let (Some(on_a), Some(on_b)) = (a.shape.polytope(), b.shape.polytope()) {
         return memory.intersects_anew(on_a, a.placement, on_b, b.placement);

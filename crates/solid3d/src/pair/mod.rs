@@ -91,7 +91,7 @@ pub(crate) fn glance<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
     }
 }
 
-/// What [`intersects`] says of shapes of which a [`glance`] told nothing but that their placements are good.
+/// What [`intersects`] says of shapes of which a [`glance`](glance()) told nothing but that their placements are good.
 #[inline(never)]
 pub(crate) fn intersects_closely(a: Placed, b: Placed) -> bool {
     if let (Some(on_a), Some(on_b)) = (a.shape.polytope(), b.shape.polytope()) {

@@ -10,7 +10,7 @@ use crate::shape::Shape;
 /// The distance of two placed shapes, with their closest points, if it is at most `bound`, in world units; `None` if they are
 /// further apart.
 ///
-/// The same as [`distance`](super::distance), of which only answers up to the bound are taken: for convex shapes to the bit, for meshes and
+/// The same as [`distance`](super::distance()), of which only answers up to the bound are taken: for convex shapes to the bit, for meshes and
 /// complex shapes up to the error of a distance. It costs less: of convex shapes the search ends as soon as a lower bound of the distance exceeds `bound` (the mu of Algorithm 4.1 of the
 /// thesis), of meshes and complex shapes what is further apart than that is never opened. A bound of infinity is none. With a bound
 /// of 0 it answers for shapes that intersect or touch.

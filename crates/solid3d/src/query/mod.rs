@@ -7,7 +7,7 @@
 //! **How exact.** Relative to the size of the data (the sum of the two shapes' extents and of the distance between
 //! their local origins), answers are right beyond 1e-12, at any size: scaling everything by a power of two changes no
 //! answer. Within it, shapes may count as touching, and touching shapes intersect. Of shapes for which [`intersects`] is true the
-//! [`distance`] is 0, always; it may also be 0 for some that it keeps apart. Which of two convex shapes is the first changes no
+//! [`distance`](distance()) is 0, always; it may also be 0 for some that it keeps apart. Which of two convex shapes is the first changes no
 //! answer; of meshes it may, where they touch up to the rounding of positions. See
 //! [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR).
 
@@ -199,7 +199,7 @@ pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAff
     distance_at_length(on_a, on_b)
 }
 
-/// What [`distance`] says, where nothing was said yet.
+/// What [`distance`](distance()) says, where nothing was said yet.
 #[inline(never)]
 fn distance_at_length(a: Placed, b: Placed) -> Result<Distance> {
     let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);

@@ -94,7 +94,7 @@ impl PairCache {
         Ok(pair::intersects_again(a, b, memory, scratch))
     }
 
-    /// What [`distance`](super::distance) says, with the same error, but not always the same bits.
+    /// What [`distance`](super::distance()) says, with the same error, but not always the same bits.
     pub fn distance(&mut self, placement_a: &DAffine3, placement_b: &DAffine3) -> Result<Distance> {
         dispatch!(move simd => {
             // Written once, where the caller has it: what is copied by wider words than it was written in is waited for.
@@ -125,7 +125,7 @@ impl PairCache {
         Ok(Distance::new(a, b, &pair::closest_again(a, b, memory, scratch)))
     }
 
-    /// What [`penetration`](super::penetration) says, with the same error, but not always the same bits.
+    /// What [`penetration`](super::penetration()) says, with the same error, but not always the same bits.
     ///
     /// ```
     /// use solid3d::{Shape, query::PairCache, glam::{DAffine3, DVec3}};

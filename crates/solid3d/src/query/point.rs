@@ -25,7 +25,7 @@ pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Resu
 }
 
 /// The point of a placed shape that is closest to a point, and their distance: of solids 0 inside, where the point itself is the
-/// closest; [`signed_distance`](super::signed_distance) is that to the surface. Cost and error are those of [`distance`].
+/// closest; [`signed_distance`](super::signed_distance) is that to the surface. Cost and error are those of [`distance`](distance()).
 ///
 /// ```
 /// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};

@@ -38,7 +38,7 @@ pub struct SignedDistance {
 /// changes by no more than the point is moved.
 ///
 /// The error is 1e-12 of the size of the data, and outside also 1e-12 of the distance; inside cones, cylinders, balls and capsules that
-/// their placement stretches unevenly it is that of [`penetration`](super::penetration). On curved surfaces that are stretched, the
+/// their placement stretches unevenly it is that of [`penetration`](super::penetration()). On curved surfaces that are stretched, the
 /// nearest point may be off by the square root of that. At an edge or a corner the normal leads to the point, or, within
 /// 1e-11 of the size of the data, is that of one of the faces there.
 ///

@@ -67,7 +67,7 @@ impl World {
     /// The boxes of all objects in the broad phase are grown by half of the greatest clearance that is set; so a clearance costs
     /// tests of pairs that are apart, and no answer of a test changes. Cost of setting one: as if everything had moved.
     ///
-    /// Errors: a clearance that is not from 0 to [`MAGNITUDE_MAX`](crate::convex::MAGNITUDE_MAX).
+    /// Errors: a clearance that is not from 0 to [`MAGNITUDE_MAX`].
     ///
     /// ```
     /// use solid3d::World;

@@ -1,7 +1,7 @@
 //! A complex shape against a convex one: the tree is walked from the convex shape, nearest first (thesis, section 6.3.4).
 //!
 //! Balls, capsules and boxes are held against eight triangles at a time in closed form ([`direct`](super::direct)), and what is clear
-//! is not asked of GJK; where any triangle that meets will do, images of triangles come first ([`glance`](super::glance)). Of other
+//! is not asked of GJK; where any triangle that meets will do, images of triangles come first ([`glance`](mod@super::glance)). Of other
 //! shapes, what parts one primitive mostly parts its neighbours too: so an axis is kept, and leaves are tested along it before GJK looks
 //! at what remains. Where the distance is sought, [`gaps`](super::gaps) bounds that of the boxes of a node and of the images of triangles, all
 //! eight at a time, and only what may be nearest is placed and measured.

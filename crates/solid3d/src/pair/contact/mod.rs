@@ -1,7 +1,7 @@
 //! The contacts of two shapes: all points where their surfaces meet, or are in each other.
 //!
 //! Of two convex bodies: the normal is that of the penetration depth, or of the closest points of what is apart; the faces of
-//! both that lie across it are clipped against each other ([`clip`]), and each corner of what they have in common is a contact, as deep as
+//! both that lie across it are clipped against each other ([`clip`](mod@clip)), and each corner of what they have in common is a contact, as deep as
 //! the surfaces overlap there along the normal. The deepest point is always among them.
 //!
 //! Of meshes and complex shapes: the contacts of all pairs of primitives, each with a normal that the surface around the

@@ -14,7 +14,7 @@
 //!
 //! Complex shapes are tested primitive by primitive, each with its vertices as they were and as they are.
 //!
-//! [`impact`] says when two shapes first meet on their way, straight or turning ([`Path`]).
+//! [`impact`](mod@impact) says when two shapes first meet on their way, straight or turning ([`Path`]).
 
 mod advance;
 mod bodies;
