@@ -24,9 +24,6 @@ use solid3d::{ComplexShapeBuilder, Shape, ShapeKind};
 pub use error::{Error, Result};
 pub use options::{Options, PIECES_MAX, RESOLUTION_MAX, RESOLUTION_MIN, TESTS_MAX};
 
-/// How much of the area of a triangle may be in no region: what rounding makes.
-const UNCOVERED: f64 = 1e-6;
-
 /// A mesh as a union of convex pieces.
 #[derive(Clone, Debug)]
 pub struct Decomposition {
@@ -38,8 +35,8 @@ pub struct Decomposition {
 
 /// Decomposes a mesh, which need not be [solid](Shape::into_solid), into convex pieces.
 ///
-/// - The pieces cover the whole surface: every vertex that a triangle names is a point of a piece, exactly, and every other point is
-///   within 1e-11 of the size of the mesh.
+/// - The pieces cover the whole surface, but for 1e-11 of the size of the mesh. Their corners are vertices of it, and points at which it
+///   was cut, which are rounded as its coordinates are.
 /// - They cover what the mesh encloses, but for gaps of less than two voxels. Cavities count as enclosed, too.
 /// - They cover more: by what [`Options::concavity`] allows, where there are pieces enough.
 /// - A mesh with holes wider than a voxel encloses nothing, and is covered as the surface that it is. A flat mesh has flat
@@ -103,11 +100,10 @@ fn pieces(faces: &[[DVec3; 3]], options: &Options) -> Result<Vec<Piece>> {
     let parts = voxels::parts(faces, options)?;
     let mut clouds: Vec<Vec<Corner>> = parts.iter().map(|part| part.inner_corners.clone()).collect();
     for face in faces {
-        let mut covered = 0.0;
         for (part, cloud) in parts.iter().zip(&mut clouds) {
-            covered += clip::clip(face, &part.region, cloud);
+            clip::clip(face, &part.region, cloud);
         }
-        if covered >= clip::area(face) * (1.0 - UNCOVERED) {
+        if !clip::is_left(face, parts.iter().map(|part| &part.region)) {
             continue;
         }
         for (part, cloud) in parts.iter().zip(&mut clouds) {
