@@ -77,22 +77,32 @@ pub fn decompose(mesh: &Shape, options: &Options) -> Result<Decomposition> {
     else {
         return Err(Error::NotAMesh { kind: mesh.kind() });
     };
-    // Of the vertices that triangles name, in a unit of length near the size of the mesh: a power of two, which changes no digit.
+    // Of the vertices that triangles name, from a point beside the mesh, in a unit of length near its size: a power of two. Neither
+    // changes a vertex.
     let corners = || triangles.as_flattened().iter().map(|&i| vertices[i as usize]);
     let (min, max) =
         corners().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), v| (min.min(v), max.max(v)));
     let extent = (max - min).max_element();
     let pieces = if extent > 0.0 {
-        let scale = unit_scale(extent);
+        let (beside, scale) = (beside(min, max), unit_scale(extent));
         let faces: Vec<[DVec3; 3]> =
-            triangles.iter().map(|t| t.map(|i| vertices[i as usize] * scale)).collect();
+            triangles.iter().map(|t| t.map(|i| (vertices[i as usize] - beside) * scale)).collect();
         let pieces = pieces(&faces, options)?;
         let pieces = pieces.iter().map(Piece::corners).collect::<solid3d::Result<Vec<_>>>()?;
-        pieces.into_iter().map(|corners| corners.into_iter().map(|p| p / scale).collect()).collect()
+        pieces.into_iter().map(|corners| corners.into_iter().map(|p| p / scale + beside).collect()).collect()
     } else {
         vec![vec![min]]
     };
     assemble(&pieces)
+}
+
+/// A point from which a mesh in a box is not far, and from which all of its coordinates have exact differences: those between a number
+/// and its double do (Sterbenz), and where they are farther apart than that, the origin is as near as they are wide.
+fn beside(min: DVec3, max: DVec3) -> DVec3 {
+    DVec3::from([0, 1, 2].map(|k| {
+        let (near, far) = if min[k] > 0.0 { (min[k], max[k]) } else { (max[k].min(0.0), min[k]) };
+        if far.abs() <= 2.0 * near.abs() { near } else { 0.0 }
+    }))
 }
 
 /// The pieces of a mesh whose size is about one.

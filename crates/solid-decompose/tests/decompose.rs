@@ -226,10 +226,24 @@ fn the_unit_of_length_changes_nothing() {
             assert_eq!(piece.vertices().unwrap(), back, "2^{power}");
         }
     }
-    let moved: Vec<DVec3> = mesh.vertices().unwrap().iter().map(|&p| p + 1e6).collect();
-    let moved = Shape::mesh(moved, mesh.triangles().unwrap()).unwrap();
-    let parts = decompose(&moved, &Options::default()).unwrap();
-    assert_covers_surface(&moved, &parts, &mut seeded(SEED), "far away");
+    let options = Options { resolution: 16, ..Options::default() };
+    for mesh in [mesh, torus()] {
+        // In the end the mesh is a few steps of its coordinates wide.
+        for far in [0.0, 1e6, -1e11, 1e13, -1e15, 3e15] {
+            let moved: Vec<DVec3> = mesh.vertices().unwrap().iter().map(|&p| p + far).collect();
+            let moved = Shape::mesh(moved, mesh.triangles().unwrap()).unwrap();
+            let parts = decompose(&moved, &options).unwrap();
+            assert_covers_surface(&moved, &parts, &mut seeded(SEED), "far away");
+            // Where distances are not so rounded: coordinates that far away have exact differences.
+            let back = |shape: &Shape| shape.vertices().unwrap().iter().map(|&p| p - far).collect::<Vec<_>>();
+            let mut shape = parts.shape.clone();
+            shape.deform(&back(&parts.shape)).unwrap();
+            for p in back(&moved) {
+                let d = query::closest_point(&shape, &HERE, p).unwrap().distance;
+                assert!(d <= 1e-11 * size(&mesh), "{far:e} away: {p} is {d:e} off all pieces");
+            }
+        }
+    }
 }
 
 #[test]
