@@ -19,16 +19,10 @@ mod voxels;
 use piece::{Corner, Piece};
 use solid3d::convex::unit_scale;
 use solid3d::glam::DVec3;
-use solid3d::{Aabb, ComplexShapeBuilder, Shape, ShapeKind};
+use solid3d::{ComplexShapeBuilder, Shape, ShapeKind};
 
 pub use error::{Error, Result};
 pub use options::{Options, PIECES_MAX, RESOLUTION_MAX, RESOLUTION_MIN, TESTS_MAX};
-
-/// How much of the area of a triangle may be in no region: what rounding makes.
-const UNCOVERED: f64 = 1e-6;
-
-/// A triangle with less area than this, in squares of the longest side of its box, has none that rounding lets be compared.
-const SLIVER: f64 = 1e-9;
 
 /// A mesh as a union of convex pieces.
 #[derive(Clone, Debug)]
@@ -41,8 +35,8 @@ pub struct Decomposition {
 
 /// Decomposes a mesh, which need not be [solid](Shape::into_solid), into convex pieces.
 ///
-/// - The pieces cover the whole surface, within 1e-11 of the size of the mesh; their corners are vertices of it, and points at which it was
-///   cut, which are rounded.
+/// - The pieces cover the whole surface, but for 1e-11 of the size of the mesh. Their corners are vertices of it, and points at which it
+///   was cut, which are rounded as its coordinates are.
 /// - They cover what the mesh encloses, but for gaps of less than two voxels. Cavities count as enclosed, too.
 /// - They cover more: by what [`Options::concavity`] allows, where there are pieces enough.
 /// - A mesh with holes wider than a voxel encloses nothing, and is covered as the surface that it is. A flat mesh has flat
@@ -116,12 +110,10 @@ fn pieces(faces: &[[DVec3; 3]], options: &Options) -> Result<Vec<Piece>> {
     let parts = voxels::parts(faces, options)?;
     let mut clouds: Vec<Vec<Corner>> = parts.iter().map(|part| part.inner_corners.clone()).collect();
     for face in faces {
-        let mut covered = 0.0;
         for (part, cloud) in parts.iter().zip(&mut clouds) {
-            covered += clip::clip(face, &part.region, cloud);
+            clip::clip(face, &part.region, cloud);
         }
-        let (area, side) = (clip::area(face), 2.0 * Aabb::of_points(*face).half_extents().max_element());
-        if area > SLIVER * side * side && covered >= area * (1.0 - UNCOVERED) {
+        if !clip::is_left(face, parts.iter().map(|part| &part.region)) {
             continue;
         }
         for (part, cloud) in parts.iter().zip(&mut clouds) {

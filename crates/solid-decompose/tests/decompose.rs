@@ -226,10 +226,24 @@ fn the_unit_of_length_changes_nothing() {
             assert_eq!(piece.vertices().unwrap(), back, "2^{power}");
         }
     }
-    let moved: Vec<DVec3> = mesh.vertices().unwrap().iter().map(|&p| p + 1e6).collect();
-    let moved = Shape::mesh(moved, mesh.triangles().unwrap()).unwrap();
-    let parts = decompose(&moved, &Options::default()).unwrap();
-    assert_covers_surface(&moved, &parts, &mut seeded(SEED), "far away");
+    let options = Options { resolution: 16, ..Options::default() };
+    for mesh in [mesh, torus()] {
+        // In the end the mesh is a few steps of its coordinates wide.
+        for far in [0.0, 1e6, -1e11, 1e13, -1e15, 3e15] {
+            let moved: Vec<DVec3> = mesh.vertices().unwrap().iter().map(|&p| p + far).collect();
+            let moved = Shape::mesh(moved, mesh.triangles().unwrap()).unwrap();
+            let parts = decompose(&moved, &options).unwrap();
+            assert_covers_surface(&moved, &parts, &mut seeded(SEED), "far away");
+            // Where distances are not so rounded: coordinates that far away have exact differences.
+            let back = |shape: &Shape| shape.vertices().unwrap().iter().map(|&p| p - far).collect::<Vec<_>>();
+            let mut shape = parts.shape.clone();
+            shape.deform(&back(&parts.shape)).unwrap();
+            for p in back(&moved) {
+                let d = query::closest_point(&shape, &HERE, p).unwrap().distance;
+                assert!(d <= 1e-11 * size(&mesh), "{far:e} away: {p} is {d:e} off all pieces");
+            }
+        }
+    }
 }
 
 #[test]
@@ -246,9 +260,34 @@ fn flat_and_tiny_meshes_have_pieces() {
         let parts = decompose(&mesh, &Options::default()).unwrap();
         assert_covers_surface(&mesh, &parts, &mut seeded(SEED), what);
     }
+    // Segments, and triangles hardly wider.
+    let mut rng = seeded(SEED + 3);
+    for width in [0.0, 1e-17, 1e-12, 1e-7] {
+        let point = |rng: &mut StdRng| DVec3::from_array(std::array::from_fn(|_| rng.random_range(0.0..1.0)));
+        let corners: Vec<DVec3> =
+            (0..50).map(|_| point(&mut rng)).flat_map(|p| [p, p + width * DVec3::Z]).collect();
+        let triangles: Vec<[u32; 3]> = (0..49).map(|i| [2 * i, 2 * i + 1, 2 * i + 2]).collect();
+        let mesh = Shape::mesh(corners, triangles).unwrap();
+        let parts = decompose(&mesh, &Options::default()).unwrap();
+        for _ in 0..40 {
+            assert_covers_surface(&mesh, &parts, &mut rng, &format!("segments {width:e} wide"));
+        }
+    }
     let far = Shape::mesh([DVec3::X * 1e100, DVec3::Y * 1e-100, DVec3::splat(-1e100)], [[0, 1, 2]]).unwrap();
     let parts = decompose(&far, &Options::default()).unwrap();
     assert_covers_surface(&far, &parts, &mut seeded(SEED), "huge");
+}
+
+/// A triangle in the plane in which two regions meet is in both, and may be left out elsewhere all the same.
+#[test]
+fn surfaces_in_planes_of_cuts_are_covered() {
+    let lattice = [[2, 2, 0], [1, 2, 0], [0, 1, 0], [2, 2, 2], [0, 0, 0], [2, 2, 0], [0, 2, 2], [1, 0, 0]];
+    let vertices = lattice.map(|p| DVec3::from(p.map(|x| f64::from(x) / 2.0 + 1000.0)));
+    let triangles = [[6, 5, 7], [7, 0, 5], [5, 7, 7], [7, 5, 4], [4, 0, 6], [0, 4, 1]];
+    let mesh = Shape::mesh(vertices, triangles).unwrap();
+    let parts = decompose(&mesh, &Options { concavity: 0.001, resolution: 9, ..Options::default() }).unwrap();
+    let mut rng = seeded(SEED);
+    (0..100).for_each(|_| assert_covers_surface(&mesh, &parts, &mut rng, "a lattice"));
 }
 
 #[test]

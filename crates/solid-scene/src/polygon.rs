@@ -2,6 +2,7 @@
 
 use earcut::Earcut;
 use glam::DVec3;
+use solid3d::convex::unit_scale;
 
 /// The most corners of a polygon that is cut by ears, which takes quadratic time at worst: 20 ms for corners at random.
 pub(crate) const EARCUT_CORNERS_MAX: usize = 2_000;
@@ -23,11 +24,16 @@ pub(crate) enum Cut {
 /// Three corners or more give a fan around the first, unless a triangle of the fan would be folded over, facing against
 /// the polygon: then ears are cut, in the plane of the polygon's area vector. Fewer corners give nothing.
 pub(crate) fn triangulate(corners: &[u32], vertices: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Cut {
-    if corners.len() <= 3 || !is_fan_folded(corners, vertices) {
+    if corners.len() <= 3 {
         triangles.extend(fan(corners));
         return Cut::Faithful;
     }
-    let ears = if corners.len() <= EARCUT_CORNERS_MAX { ears(corners, vertices) } else { Vec::new() };
+    let polygon = Polygon::new(corners, vertices);
+    if !polygon.is_fan_folded() {
+        triangles.extend(fan(corners));
+        return Cut::Faithful;
+    }
+    let ears = if corners.len() <= EARCUT_CORNERS_MAX { polygon.ears() } else { Vec::new() };
     if ears.is_empty() {
         triangles.extend(fan(corners));
         return Cut::Folded;
@@ -59,32 +65,46 @@ fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]])
 }
 
-/// Twice the area of a triangle, along its normal.
-fn area([a, b, c]: [u32; 3], vertices: &[DVec3]) -> DVec3 {
-    let at = |i: u32| vertices[i as usize];
-    (at(b) - at(a)).cross(at(c) - at(a))
+/// Three corners or more, seen from the first.
+struct Polygon<'a> {
+    corners: &'a [u32],
+    vertices: &'a [DVec3],
+    /// A power of two that brings it to a size of about one, where squares of areas neither overflow nor vanish.
+    scale: f64,
 }
 
-fn polygon_area(corners: &[u32], vertices: &[DVec3]) -> DVec3 {
-    fan(corners).map(|triangle| area(triangle, vertices)).sum()
-}
+impl Polygon<'_> {
+    fn new<'a>(corners: &'a [u32], vertices: &'a [DVec3]) -> Polygon<'a> {
+        let unscaled = Polygon { corners, vertices, scale: 1.0 };
+        let size = corners.iter().map(|&i| unscaled.at(i).abs().max_element()).fold(0.0, f64::max);
+        Polygon { scale: unit_scale(size), ..unscaled }
+    }
 
-/// Whether a triangle of the fan faces against the polygon.
-fn is_fan_folded(corners: &[u32], vertices: &[DVec3]) -> bool {
-    let normal = polygon_area(corners, vertices);
-    let limit = -FOLD_TOLERANCE * normal.length_squared();
-    fan(corners).any(|triangle| area(triangle, vertices).dot(normal) < limit)
-}
+    fn at(&self, vertex: u32) -> DVec3 {
+        (self.vertices[vertex as usize] - self.vertices[self.corners[0] as usize]) * self.scale
+    }
 
-/// The ears; none where the polygon has no area to speak of.
-fn ears(corners: &[u32], vertices: &[DVec3]) -> Vec<[u32; 3]> {
-    let Some(normal) = polygon_area(corners, vertices).try_normalize() else { return Vec::new() };
-    let (u, v) = normal.any_orthonormal_pair();
-    let at = |i: u32| vertices[i as usize] - vertices[corners[0] as usize];
-    let plane = corners.iter().map(|&corner| at(corner)).map(|p| [p.dot(u), p.dot(v)]);
-    let mut ears: Vec<u32> = Vec::new();
-    Earcut::new().earcut(plane, &[], &mut ears);
-    ears.chunks_exact(3).map(|ear| [0, 1, 2].map(|i| corners[ear[i] as usize])).collect()
+    /// Twice the areas of the triangles of the fan, along their normals.
+    fn fan_areas(&self) -> impl Iterator<Item = DVec3> {
+        fan(self.corners).map(|[_, b, c]| self.at(b).cross(self.at(c)))
+    }
+
+    /// Whether a triangle of the fan faces against the polygon.
+    fn is_fan_folded(&self) -> bool {
+        let normal: DVec3 = self.fan_areas().sum();
+        let limit = -FOLD_TOLERANCE * normal.length_squared();
+        self.fan_areas().any(|area| area.dot(normal) < limit)
+    }
+
+    /// The ears; none where the polygon has no area to speak of.
+    fn ears(&self) -> Vec<[u32; 3]> {
+        let Some(normal) = self.fan_areas().sum::<DVec3>().try_normalize() else { return Vec::new() };
+        let (u, v) = normal.any_orthonormal_pair();
+        let plane = self.corners.iter().map(|&corner| self.at(corner)).map(|p| [p.dot(u), p.dot(v)]);
+        let mut ears: Vec<u32> = Vec::new();
+        Earcut::new().earcut(plane, &[], &mut ears);
+        ears.chunks_exact(3).map(|ear| [0, 1, 2].map(|i| self.corners[ear[i] as usize])).collect()
+    }
 }
 
 #[cfg(test)]
@@ -99,7 +119,11 @@ mod tests {
     }
 
     fn total_area(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
-        triangles.iter().map(|&triangle| area(triangle, vertices).length() / 2.0).sum()
+        let area = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|i| vertices[i as usize]);
+            (b - a).cross(c - a).length() / 2.0
+        };
+        triangles.iter().map(area).sum()
     }
 
     #[test]
@@ -119,6 +143,10 @@ mod tests {
             let triangles = triangulated(&arrow);
             assert_eq!(triangles.len(), 2);
             assert!((total_area(&arrow, &triangles) - 1.0).abs() < 1e-12, "{turn}: {triangles:?}");
+            for power in [-330, -260, 255, 330] {
+                let scaled = arrow.map(|p| p * 2f64.powi(power));
+                assert_eq!(triangulated(&scaled), triangles, "{turn}, in a unit of 2^{power}");
+            }
         }
     }
 

@@ -1,6 +1,7 @@
 //! What the readers of text formats share: where a text begins, lines with their numbers, and numbers.
 
 use glam::DVec3;
+use solid3d::convex::MAGNITUDE_MAX;
 
 use crate::fault::{Fault, Result};
 
@@ -23,7 +24,7 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// Three finite numbers: a vertex.
+/// Three numbers in range: a vertex.
 pub(crate) fn vertex<'a>(tokens: &mut impl Iterator<Item = &'a str>, line: usize) -> Result<DVec3> {
     let mut next = |name| number(tokens.next(), line, name);
     Ok(DVec3::new(next("x")?, next("y")?, next("z")?))
@@ -35,7 +36,11 @@ fn number(token: Option<&str>, line: usize, name: &str) -> Result<f64> {
         return Err(Fault::at(line, format!("{expected}, but the line ends")));
     };
     match token.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
+        Ok(value) if value.abs() <= MAGNITUDE_MAX => Ok(value),
+        Ok(value) if value.is_finite() => {
+            let message = format!("the vertex's {name} is `{}`; it must be at most", quoted(token));
+            Err(Fault::at(line, format!("{message} {MAGNITUDE_MAX:e} in magnitude")))
+        }
         _ => Err(Fault::at(line, format!("{expected}, but there is `{}`", quoted(token)))),
     }
 }
@@ -69,7 +74,12 @@ mod tests {
     fn a_vertex_is_finite() {
         let read = |text: &str| vertex(&mut text.split_whitespace(), 7);
         assert_eq!(read("1 -2e1 .5 9").unwrap(), DVec3::new(1.0, -20.0, 0.5));
-        for (text, end) in [("1 2", "the line ends"), ("1 nan 2", "`nan`"), ("1e999 0 0", "`1e999`")] {
+        for (text, end) in [
+            ("1 2", "the line ends"),
+            ("1 nan 2", "`nan`"),
+            ("1e999 0 0", "`1e999`"),
+            ("0 0 -1e101", "the vertex's z is `-1e101`; it must be at most 1e100 in magnitude"),
+        ] {
             let fault = read(text).unwrap_err();
             assert_eq!(fault.line(), Some(7));
             assert!(fault.message().ends_with(end), "{fault:?}");

@@ -110,6 +110,7 @@ mod tests {
                 2,
                 "expected a vertex index, but there is `99999999999999999999`",
             ),
+            ("v 0 1e200 0\np 1\n", 1, "the vertex's y is `1e200`; it must be at most 1e100 in magnitude"),
             ("\n\nv 0 0 inf\n", 3, "expected a finite number for the vertex's z, but there is `inf`"),
         ];
         for (text, line, message) in mistakes {

@@ -1,6 +1,7 @@
 //! Vertices, faces and triangle strips out of a PLY file.
 
 use glam::DVec3;
+use solid3d::convex::MAGNITUDE_MAX;
 
 use super::header::{Element, Header, Property};
 use super::payload::Payload;
@@ -64,6 +65,10 @@ fn vertices(element: &Element, payload: &mut Payload) -> Result<Vec<DVec3>> {
         }
         if !vertex.is_finite() {
             return Err(payload.fault(format!("`vertex` {number} is {vertex}; expected finite numbers")));
+        }
+        if let Some(value) = vertex.to_array().into_iter().find(|value| value.abs() > MAGNITUDE_MAX) {
+            let limit = format!("it must be at most {MAGNITUDE_MAX:e} in magnitude");
+            return Err(payload.fault(format!("`vertex` {number} has the coordinate {value:e}; {limit}")));
         }
         vertices.push(vertex);
     }

@@ -170,6 +170,11 @@ mod tests {
                 "`vertex` 0 is [0, inf, 0]; expected finite numbers",
             ),
             (
+                header(&xyz.replace("float", "double"), &format!("{face}0 -1e101 0\n1 0 0\n")),
+                Some(10),
+                "`vertex` 0 has the coordinate -1e101; it must be at most 1e100 in magnitude",
+            ),
+            (
                 header(xyz, &format!("{face}0\n0 one\n3 0 0\n")),
                 Some(11),
                 "expected a number, but there is `one`",
