@@ -161,8 +161,8 @@ void dtResetPairResponse(DtObjectRef object1, DtObjectRef object2);
  * Within a response, every function may be called. Changes hold at once. A pair is examined as things are when its turn
  * comes: what moves, is deformed, deleted or given another response is seen by the pairs that come later, and each pair comes
  * at most once. Objects created during a dtTest take part from the next one on. dtTest in a response is a test of its own, of all
- * objects; more than 64 within one another are an error. A response may leave dtTest by a C++ exception; longjmp is not
- * supported.
+ * objects; more than 64 within one another are an error, and so is then every further one within the first. A response may
+ * leave dtTest by a C++ exception; longjmp is not supported.
  */
 DtCount dtTest(void);
 

@@ -67,6 +67,7 @@ static void nest(void *data, DtObjectRef object1, DtObjectRef object2, const DtC
 /* Without end, but for the limit. */
 static void nest_for_ever(void *data, DtObjectRef object1, DtObjectRef object2, const DtCollData *points) {
     (void)data, (void)object1, (void)object2, (void)points;
+    calls++;
     depth++;
     if (depth > deepest) deepest = depth;
     dtTest();
@@ -144,6 +145,10 @@ int main(void) {
     create(2, ball);
     dtSetDefaultResponse(nest_for_ever, DT_SIMPLE_RESPONSE, NULL);
     CHECK(dtTest() == 1 && depth == 0); /* It works again. */
+    delete_all();
+    create(3, ball);
+    dtSetDefaultResponse(nest_for_ever, DT_SIMPLE_RESPONSE, NULL);
+    CHECK(dtTest() == 3 && calls == 64 * 3); /* Once so deep, no other pair nests again. */
     delete_all();
 
     triangle = dtNewComplexShape();
