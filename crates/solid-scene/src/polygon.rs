@@ -24,15 +24,11 @@ pub(crate) enum Cut {
 /// Three corners or more give a fan around the first, unless a triangle of the fan would be folded over, facing against
 /// the polygon: then ears are cut, in the plane of the polygon's area vector. Fewer corners give nothing.
 pub(crate) fn triangulate(corners: &[u32], vertices: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Cut {
-    if corners.len() <= 3 {
+    let polygon = (corners.len() > 3).then(|| Polygon::new(corners, vertices));
+    let Some(polygon) = polygon.filter(Polygon::is_fan_folded) else {
         triangles.extend(fan(corners));
         return Cut::Faithful;
-    }
-    let polygon = Polygon::new(corners, vertices);
-    if !polygon.is_fan_folded() {
-        triangles.extend(fan(corners));
-        return Cut::Faithful;
-    }
+    };
     let ears = if corners.len() <= EARCUT_CORNERS_MAX { polygon.ears() } else { Vec::new() };
     if ears.is_empty() {
         triangles.extend(fan(corners));

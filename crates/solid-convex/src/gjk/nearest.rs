@@ -18,9 +18,9 @@ pub(super) struct Nearest {
 }
 
 impl Nearest {
-    /// The same, where the older point is the second of two.
+    /// The same, where another point comes before the older ones.
     #[inline(always)]
-    fn of_second(self) -> Nearest {
+    fn after_another(self) -> Nearest {
         Nearest { older: self.older << 1, ..self }
     }
 
@@ -92,7 +92,7 @@ pub(super) fn face(p: DVec3, q: DVec3, newest: DVec3) -> Nearest {
         return Nearest { v: n * n.dot(newest), divisor: square, older: 3 };
     }
     let with_p = || edge(p, newest);
-    let with_q = || edge(q, newest).of_second();
+    let with_q = || edge(q, newest).after_another();
     // Beyond one edge it is on that one; beyond both, where an angle is obtuse, on the one that leads to the origin.
     match (x > 0.0, y > 0.0) {
         (true, false) => with_p(),
@@ -119,8 +119,7 @@ pub(super) fn tetrahedron(p: DVec3, q: DVec3, r: DVec3, newest: DVec3) -> Option
         closest = face(p, q, newest);
     }
     if !qr {
-        let found = face(q, r, newest);
-        closest = closest.or_nearer(Nearest { older: found.older << 1, ..found });
+        closest = closest.or_nearer(face(q, r, newest).after_another());
     }
     if !rp {
         let found = face(p, r, newest);
