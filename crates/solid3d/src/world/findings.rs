@@ -10,6 +10,8 @@ pub(super) type FindingId = u32;
 #[derive(Debug)]
 struct Finding {
     key: PairKey,
+    /// The frame in which it began; of what began again before a frame ended some earlier one.
+    since: u64,
     collision: Collision,
 }
 
@@ -20,8 +22,8 @@ pub(super) struct Findings {
     findings: Vec<Finding>,
     /// Places in `findings` that are free.
     unused: Vec<FindingId>,
-    /// Pairs that collide and did not when the last frame ended.
-    began: Ordered<()>,
+    /// How many frames ended.
+    frame: u64,
     /// Pairs that do not collide and did when the last frame ended.
     ended: Ordered<(ObjectId, ObjectId)>,
 }
@@ -33,10 +35,11 @@ impl Findings {
 
     /// Adds a collision of a pair that had none.
     pub fn add(&mut self, key: PairKey, collision: Collision) -> FindingId {
-        if self.ended.remove(key).is_none() {
-            self.began.insert(key, ());
-        }
-        let finding = Finding { key, collision };
+        let since = match self.ended.remove(key) {
+            None => self.frame,
+            Some(_) => self.frame - 1,
+        };
+        let finding = Finding { key, since, collision };
         let id = match self.unused.pop() {
             Some(id) => {
                 self.findings[id as usize] = finding;
@@ -63,11 +66,11 @@ impl Findings {
 
     /// Takes out a collision that is no more.
     pub fn remove(&mut self, id: FindingId) {
-        let Finding { key, collision } = &mut self.findings[id as usize];
+        let Finding { key, since, collision } = &mut self.findings[id as usize];
         // What a curve or contacts hold is not kept in an unused place.
         collision.contact = Contact::Simple;
         self.order.remove(*key);
-        if self.began.remove(*key).is_none() {
+        if *since < self.frame {
             self.ended.insert(*key, (collision.a, collision.b));
         }
         self.unused.push(id);
@@ -106,19 +109,15 @@ impl Findings {
 
     /// Ends the frame.
     pub fn proceed(&mut self) {
-        self.began.clear();
+        self.frame += 1;
         self.ended.clear();
     }
 
     /// What became of every pair that collides or did when the last frame ended.
     pub fn events(&self) -> impl Iterator<Item = Event> {
-        let mut began = self.began.iter().map(|(key, ())| key).peekable();
-        let colliding = self.order.iter().map(move |(key, id)| {
-            let kind = match began.next_if_eq(&key) {
-                Some(_) => EventKind::Began,
-                None => EventKind::Persists,
-            };
-            let Collision { a, b, .. } = *self.collision(id);
+        let colliding = self.order.iter().map(|(key, id)| {
+            let Finding { since, collision: Collision { a, b, .. }, .. } = self.findings[id as usize];
+            let kind = if since == self.frame { EventKind::Began } else { EventKind::Persists };
             (key, Event { a, b, kind })
         });
         let ended = self.ended.iter().map(|(key, (a, b))| (key, Event { a, b, kind: EventKind::Ended }));
