@@ -252,7 +252,7 @@ impl World {
     /// Deforms an object whose shape is a mesh or a complex shape: gives its vertices new positions, in local space. Other
     /// objects of the same shape stay as they are. Smart response still sees the old positions in the previous frame.
     ///
-    /// Cost: linear in the shape; see [`Shape::deform`].
+    /// Cost: that of [`Shape::deform`].
     pub fn deform(&mut self, id: ObjectId, positions: &[DVec3]) -> Result<()> {
         let object = self.object_mut(id)?;
         let was_displaced = object.displaced;
