@@ -8,6 +8,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use solid_oracle::generate::seeded;
 use solid3d::broad::{BroadPhase, DynamicTree, Proxy};
+use solid3d::query::{self, ContactOptions, Ray, RayOptions};
 use solid3d::{
     Aabb, Boxes, BroadPhaseKind, Collision, Motion, Response, Shape, TestProgress, World, WorldOptions, glam,
 };
@@ -41,6 +42,7 @@ fn place(i: usize, frame: usize) -> DAffine3 {
 #[test]
 fn memory() {
     let laws = || {
+        a_shape_tells_what_it_takes();
         an_object_takes_little_beyond_its_shape();
         a_frame_like_those_before_allocates_nothing();
         nor_does_one_that_threads_share();
@@ -57,6 +59,49 @@ fn memory() {
 fn in_use(region: &Region<System>) -> isize {
     let change = region.change();
     change.bytes_allocated as isize - change.bytes_deallocated as isize
+}
+
+/// Law: the memory that a shape tells is what it takes, new, and when queries have found out about it what they keep.
+fn a_shape_tells_what_it_takes() {
+    /// Of two counts of clones for each of eight things that they share.
+    const COUNTS_MAX: isize = 8 * 16;
+    let mut rng = seeded(831);
+    let mut on_ball = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0))).normalize();
+    let [few, many] = [40, 1000].map(|count| (0..count).map(|_| on_ball()).collect::<Vec<DVec3>>());
+    let (vertices, triangles) = band();
+    let tetrahedron = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let makers: [&dyn Fn() -> Shape; 5] = [
+        &|| Shape::convex_hull(&few).unwrap(),
+        &|| Shape::convex_hull(&many).unwrap(),
+        &|| Shape::mesh(vertices.clone(), triangles.clone()).unwrap(),
+        &|| Shape::mesh(few[..4].to_vec(), tetrahedron).unwrap(),
+        &|| Shape::mesh(few[..4].to_vec(), tetrahedron).unwrap().into_solid().unwrap(),
+    ];
+    let (here, options) = (DAffine3::IDENTITY, ContactOptions::default());
+    let ask = |shape: &Shape| {
+        let beside = DAffine3::from_translation(DVec3::X * 0.1);
+        query::contacts(shape, &here, shape, &beside, &options).unwrap();
+        query::signed_distance(shape, &here, DVec3::Y * 0.1).unwrap();
+        query::distance(shape, &here, shape, &DAffine3::from_translation(DVec3::X * 9.0)).unwrap();
+        query::cast_ray(shape, &here, &Ray::new(DVec3::Y * 9.0, DVec3::NEG_Y), &RayOptions::default())
+            .unwrap();
+    };
+    for (i, make) in makers.iter().enumerate() {
+        // What queries keep for each thread is there then.
+        ask(&make());
+        let region = Region::new(ALLOCATOR);
+        let shape = make();
+        for asked in [false, true] {
+            if asked {
+                ask(&shape);
+            }
+            let (told, taken) = ((shape.memory() - size_of::<Shape>()) as isize, in_use(&region));
+            assert!(
+                (taken - told).abs() <= COUNTS_MAX,
+                "shape {i}, asked: {asked}: {told} told, {taken} taken"
+            );
+        }
+    }
 }
 
 /// Law: what an object takes of a world of 100,000, beyond the shape that all share, with half as many pairs of overlapping boxes as

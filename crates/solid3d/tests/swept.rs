@@ -418,3 +418,28 @@ fn boxes_lose_no_touch_on_the_way() {
     }
     assert_rate("touching on the way", hits, cases);
 }
+
+/// Law: boxes lose nothing of what grows or deforms by much, for which the narrow phase errs by a part of the size that it then has.
+#[test]
+fn boxes_have_room_for_the_error_at_the_larger_end() {
+    let triangle = [DVec3::ZERO, DVec3::new(0.0, 1e-3, 0.0), DVec3::new(0.0, 0.0, 1e-3)];
+    let (dart, pole) = (Shape::mesh(triangle, [[0, 1, 2]]).unwrap(), Shape::cuboid([0.1, 4.0, 0.1]).unwrap());
+    let mut away = dart.clone();
+    away.deform(&triangle.map(|v| v + DVec3::X * 1e15)).unwrap();
+    let grown = DAffine3::from_scale(DVec3::new(1e15, 1e15, -1e15));
+    let triangle = triangle.map(|v| v + DVec3::X);
+    let blade = Shape::mesh(triangle, [[0, 1, 2]]).unwrap();
+    for (shape, after, to) in [(&dart, &away, DAffine3::IDENTITY), (&blade, &blade, grown)] {
+        let met = worlds(Response::Simple).into_iter().map(|mut world| {
+            // The box of a pole that may turn reaches as far as its end, that of one that may not ends just beside the dart.
+            world.add(&pole, DAffine3::from_translation(DVec3::X * -0.06)).unwrap();
+            let id = world.add(shape, DAffine3::IDENTITY).unwrap();
+            assert!(world.test().is_empty());
+            world.set_shape(id, after).unwrap();
+            world.set_placement(id, to).unwrap();
+            world.test().len()
+        });
+        let met: Vec<usize> = met.collect();
+        assert!(met.iter().all(|&count| count == met[0]), "{met:?}");
+    }
+}

@@ -13,7 +13,7 @@ use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::seeded;
 use solid3d::query::{self, Impact, ImpactOptions, Path};
-use solid3d::{Error, Shape, glam};
+use solid3d::{Error, Motion, Shape, World, WorldOptions, glam};
 
 const OPTIONS: ImpactOptions = ImpactOptions { path: Path::Turning, tolerance: 1e-8 };
 
@@ -106,6 +106,55 @@ fn no_contact_comes_before_the_time_of_impact() {
     }
     println!("the widest gap is {worst:e}");
     assert_rate("turning pairs", hits, cases as usize);
+}
+
+/// Whatever the tolerance, the gap at the time of impact is less than it, or than what rounding leaves of directions.
+#[test]
+fn the_gap_is_within_the_tolerance_or_what_rounding_leaves() {
+    let mut rng = seeded(2007);
+    let (mut hits, mut beyond, cases) = (0, 0, 1500);
+    for case in 0..cases {
+        let tolerance = 10f64.powi(-(case as i32 % 8) - 3);
+        let (a, b) = (some_shape(&mut rng, case), some_shape(&mut rng, case / 4));
+        let [way_a, way_b] = passing(&mut rng, 1.0);
+        let Some(found) = impact(&a, &way_a, &b, &way_b, &ImpactOptions { tolerance, ..OPTIONS }) else {
+            continue;
+        };
+        hits += 1;
+        let reach = |shape: &Shape, way: &Rigid| {
+            let local = query::bounds(shape, &DAffine3::IDENTITY).unwrap();
+            // No direction is stretched by more, however it turns.
+            let entries = way.from.matrix3.to_cols_array();
+            let stretch = entries.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+            local.min.abs().max(local.max.abs()).length() * stretch
+        };
+        let reaches = reach(&a, &way_a) + reach(&b, &way_b);
+        let apart = [0.0, 1.0].map(|t| way_a.at(t).translation.distance(way_b.at(t).translation));
+        let gap = query::distance(&a, &way_a.at(found.time), &b, &way_b.at(found.time)).unwrap().distance;
+        let rounding = 1e-7 * (reaches + apart[0].max(apart[1]));
+        assert!(gap <= (1.01 * tolerance * reaches).max(rounding), "case {case}: {gap:e} for {tolerance:e}");
+        beyond += usize::from(gap > tolerance * reaches);
+    }
+    println!("{beyond} of {hits} are beyond their tolerance");
+    assert!(beyond > hits / 50, "the tolerance would do");
+    assert_rate("tolerances", hits, cases as usize);
+}
+
+/// On a straight way only what collides has a time of impact, or comes nearer than the tolerance.
+#[test]
+fn what_passes_within_the_tolerance_has_a_time_but_no_collision() {
+    let block = Shape::cuboid([1.0, 1.0, 1.0]).unwrap();
+    let at = |x: f64, y: f64| DAffine3::from_translation(DVec3::new(x, y, 0.0));
+    for (gap, comes_near) in [(1e-9, true), (1e-6, false)] {
+        let mut world =
+            World::with_options(&WorldOptions { motion: Motion::Swept, ..WorldOptions::default() });
+        let [still, passing] = [at(0.0, 0.0), at(-3.0, 1.0 + gap)].map(|at| world.add(&block, at).unwrap());
+        world.set_placement(passing, at(3.0, 1.0 + gap)).unwrap();
+        assert!(world.test().is_empty());
+        let options = ImpactOptions { path: Path::Straight, ..OPTIONS };
+        let impact = world.time_of_impact(still, passing, &options).unwrap();
+        assert_eq!(impact.is_some(), comes_near, "{gap} {impact:?}");
+    }
 }
 
 /// Law: a unit of length that is a power of two larger changes nothing but lengths.

@@ -49,8 +49,25 @@ impl Trial {
             engine.flush();
             engine.validate();
             assert_eq!(engine.sorted_pairs(), truth, "{kind:?}, {what}");
+            for region in all.iter().map(|(_, region)| **region).step_by(1 + all.len() / 4) {
+                let mut found = visited(engine.as_ref(), &region);
+                found.sort_unstable();
+                let there = all.iter().filter(|(_, b)| region.overlaps(b)).map(|(a, _)| **a);
+                assert_eq!(found, there.collect::<Vec<_>>(), "{kind:?}, {what}, in {region:?}");
+            }
         }
     }
+}
+
+/// The boxes that overlap a region, as they are visited by a bound.
+fn visited(engine: &dyn BroadPhase, region: &Aabb) -> Vec<Proxy> {
+    let bound = |b: &Aabb| if b.overlaps(region) { 0.0 } else { f64::INFINITY };
+    let mut found = Vec::new();
+    engine.for_each_nearest(&bound, 0.0, &mut |proxy| {
+        found.push(proxy);
+        0.0
+    });
+    found
 }
 
 /// What a scene's boxes are like.

@@ -20,7 +20,8 @@ pub struct ImpactOptions {
     /// placed; from 1e-10 to 1. Default: 1e-8.
     ///
     /// Also at least 1e-13 of the distance of the origins at the start and at the end. Shapes that start nearer than this count as
-    /// meeting when half of the gap is left, so that what slides or leaves does not meet at the start.
+    /// meeting when half of the gap is left, so that what slides or leaves does not meet at the start. A gap of less than some 1e-7 of the
+    /// size may pass for one that is within the tolerance: where points are so near, rounding hides in which direction.
     pub tolerance: f64,
 }
 
@@ -37,8 +38,8 @@ impl Default for ImpactOptions {
 /// start meet at time 0, without a normal, also where one is inside of the other, a solid.
 ///
 /// Conservative: the time is never later than the first contact, up to the rounding of positions, and no contact is missed. At
-/// that time the shapes are nearer to each other than the tolerance; shapes that pass each other nearer than that may be
-/// reported, too. When the search gives up, after 4,096 steps of a pair of primitives, it reports a contact where it is, which is
+/// that time the shapes are nearer to each other than the tolerance, or than some 1e-7 of how far they reach and their origins are apart;
+/// shapes that pass each other nearer than that may be reported, too. When the search gives up, after 4,096 steps of a pair of primitives, it reports a contact where it is, which is
 /// earlier: only shapes that turn past each other for long, at a gap of less than some 1e-6 of their size, take so many.
 ///
 /// Cost: for convex shapes that meet head on some five times [`distance`](super::distance()), for those that stay clear of each other

@@ -233,14 +233,20 @@ impl Complex {
 
     /// The memory that it owns, in bytes, with what clones share.
     pub fn memory(&self) -> usize {
-        let parts = self.parts.get().map_or(0, |parts| parts.capacity() * size_of::<u32>());
+        fn shared<T>(it: &Arc<T>, owned: impl Fn(&T) -> usize) -> usize {
+            size_of::<T>() + owned(it)
+        }
+        let primitives = shared(&self.primitives, Primitives::memory);
+        let parts =
+            |parts: &OnceLock<Vec<u32>>| parts.get().map_or(0, |parts| parts.capacity() * size_of::<u32>());
         let solid = self.solid.as_ref().map_or(0, |solid| solid.memory());
-        let slabs = self.slabs.get().map_or(0, |slabs| slabs.bytes());
-        let leaf_points = self.leaf_points.get().map_or(0, |points| points.bytes());
+        let topology = self.topology.get().map_or(0, |it| shared(it, Topology::bytes));
+        let slabs = self.slabs.get().map_or(0, |it| shared(it, Slabs::bytes));
+        let images = self.images.get().and_then(Option::as_ref).map_or(0, |it| shared(it, LeafImages::bytes));
+        let leaf_points = self.leaf_points.get().map_or(0, |it| shared(it, LeafPoints::bytes));
+        let found = shared(&self.parts, parts) + topology + slabs + images + leaf_points;
         let vertices = self.vertices.capacity() * size_of::<DVec3>();
-        let images = self.images.get().and_then(Option::as_ref).map_or(0, |images| images.bytes());
-        let found = parts + slabs + images + leaf_points;
-        size_of::<Complex>() + self.primitives.memory() + vertices + self.tree.bytes() + solid + found
+        size_of::<Complex>() + primitives + vertices + self.tree.bytes() + solid + found
     }
 
     /// The tree over the primitives.

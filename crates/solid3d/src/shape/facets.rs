@@ -35,6 +35,14 @@ pub(crate) struct Facet {
 }
 
 impl Facets {
+    /// The memory that they own, in bytes.
+    pub fn bytes(&self) -> usize {
+        let Facets { faces, starts, at_point, extreme } = self;
+        let corners: usize = faces.iter().map(|face| face.corners.capacity()).sum();
+        let indices = corners + starts.capacity() + at_point.capacity() + extreme.capacity();
+        faces.capacity() * size_of::<Facet>() + indices * size_of::<u32>()
+    }
+
     /// The faces of the hull of points, of which there must be one. A flat hull has two, one for each side. O(n log n).
     pub fn of(points: &[DVec3]) -> Facets {
         let bounds = Aabb::of_points(points.iter().copied());

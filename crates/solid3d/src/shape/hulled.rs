@@ -36,6 +36,11 @@ impl Hulled {
         &self.polytope
     }
 
+    /// The memory that it owns, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.polytope.bytes() + self.facets.get().map_or(0, Facets::bytes)
+    }
+
     pub fn points(&self) -> &[DVec3] {
         self.polytope.points()
     }

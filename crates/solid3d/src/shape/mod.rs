@@ -248,7 +248,8 @@ impl Shape {
         }
     }
 
-    /// The memory that the shape owns, in bytes, everything counted: vertices, indices, tree. Clones share it.
+    /// The memory that the shape owns, in bytes, everything counted: vertices, indices, tree, and what queries found out about it and
+    /// keep. Clones share it.
     ///
     /// ```
     /// use solid3d::{Shape, glam::DVec3};
@@ -264,7 +265,7 @@ impl Shape {
     pub fn memory(&self) -> usize {
         let owned = match &self.geometry {
             Geometry::Complex(complex) => complex.memory(),
-            Geometry::Polytope(polytope) => size_of_val(&**polytope) + size_of_val(polytope.points()),
+            Geometry::Polytope(polytope) => size_of_val(&**polytope) + polytope.bytes(),
             _ => 0,
         };
         size_of::<Shape>() + owned
@@ -290,8 +291,8 @@ impl Shape {
     /// Deforms a mesh or a complex shape: gives its vertices new positions. Its tree is refitted, and rebuilt when
     /// refitting has let its cost (by the surface-area heuristic) grow by more than 30 % since it was built.
     ///
-    /// Clones made before keep the old positions. A solid stays closed; see [`into_solid`](Shape::into_solid). Cost: O(n).
-    /// On an error nothing has changed.
+    /// Clones made before keep the old positions. A solid stays closed; see [`into_solid`](Shape::into_solid). Cost: O(n), and
+    /// O(n log n) when the tree is rebuilt. On an error nothing has changed.
     ///
     /// ```
     /// use solid3d::{Shape, glam::DVec3};

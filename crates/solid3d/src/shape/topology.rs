@@ -28,6 +28,15 @@ pub(crate) struct Topology {
 }
 
 impl Topology {
+    /// The memory that it owns, in bytes.
+    pub fn bytes(&self) -> usize {
+        let Topology { welded, starts, around, flat, orientation: _, convex } = self;
+        let of_convex =
+            |(hull, names): &(Hulled, Vec<u32>)| hull.bytes() + names.capacity() * size_of::<u32>();
+        let indices = welded.capacity() + starts.capacity() + around.capacity();
+        indices * size_of::<u32>() + flat.capacity() + convex.as_ref().map_or(0, of_convex)
+    }
+
     /// Cost: O(n), and O(n log n) for a closed convex mesh.
     pub fn of<'a>(
         vertices: &[DVec3],

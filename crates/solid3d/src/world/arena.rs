@@ -63,8 +63,11 @@ impl Arena {
         let object = self.slot_mut(id)?.object.take()?;
         let slot = &mut self.slots[at as usize];
         slot.version = slot.version.wrapping_add(1);
-        slot.next = std::mem::replace(&mut self.unused, at);
         self.len -= 1;
+        // Where all versions were there, ids would come back: such a slot stays out of use.
+        if slot.version != 0 {
+            slot.next = std::mem::replace(&mut self.unused, at);
+        }
         Some(object)
     }
 
@@ -200,5 +203,24 @@ mod tests {
         for id in gone.into_iter().chain([ObjectId::default()]) {
             assert!(!arena.contains_key(id) && arena.get_mut(id).is_none() && arena.remove(id).is_none());
         }
+    }
+
+    /// A slot of which all ids were given away is not used again.
+    #[test]
+    fn ids_do_not_come_back_when_versions_run_out() {
+        let mut arena = Arena::default();
+        let object = || {
+            let ball = Shape::sphere(1.0).unwrap();
+            Object::new(0, 0, ball, DAffine3::IDENTITY, Motion::Sampled, Boxes::Dynamic)
+        };
+        let first = arena.insert(object());
+        arena.remove(first);
+        arena.slots[slot_of(first) as usize].version = u32::MAX - 1;
+        let last = arena.insert(object());
+        assert_eq!(parts(last), (slot_of(first), u32::MAX));
+        arena.remove(last);
+        let next = [arena.insert(object()), arena.insert(object())];
+        assert!(next.iter().all(|&id| slot_of(id) != slot_of(first)) && next[0] != next[1]);
+        assert_eq!(arena.len(), 2);
     }
 }

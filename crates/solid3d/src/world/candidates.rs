@@ -131,6 +131,15 @@ impl Candidates {
         });
     }
 
+    /// Forgets the queue where it is longer than a look at every candidate, each of which knows whether it waits: pairs come and go,
+    /// and there may be no test for long.
+    fn shorten_queue(&mut self) {
+        if self.queue.len() > self.slots.values().len() {
+            self.queue.clear();
+            self.more_wait = true;
+        }
+    }
+
     /// Has every candidate examined by the next test.
     pub fn enqueue_all(&mut self) {
         self.enqueue_where(|_| true);
@@ -186,6 +195,11 @@ impl Candidates {
         })
     }
 
+    #[cfg(test)]
+    pub fn queued(&self) -> usize {
+        self.queue.len()
+    }
+
     /// All candidates, by place.
     pub fn values_mut(&mut self) -> &mut [Option<Candidate>] {
         self.slots.values_mut()
@@ -226,6 +240,7 @@ impl World {
                 });
             }
         }
+        candidates.shorten_queue();
         stirred.clear();
         if std::mem::take(&mut self.default_changed) {
             candidates.enqueue_all();

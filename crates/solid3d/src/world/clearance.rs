@@ -64,8 +64,9 @@ impl World {
     /// Sets how near two objects may come that have no clearance of their own, in world units; 0 at first. See
     /// [`near`](World::near).
     ///
-    /// The boxes of all objects in the broad phase are grown by half of the greatest clearance that is set; so a clearance costs
-    /// tests of pairs that are apart, and no answer of a test changes. Cost of setting one: as if everything had moved.
+    /// The boxes of all objects in the broad phase are grown by half of the greatest clearance that was set; so a clearance costs
+    /// tests of pairs that are apart, and no answer of a test changes. They shrink again when this clearance is set. Cost of setting one: as
+    /// if everything had moved.
     ///
     /// Errors: a clearance that is not from 0 to [`MAGNITUDE_MAX`].
     ///

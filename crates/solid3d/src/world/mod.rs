@@ -252,7 +252,7 @@ impl World {
     /// Deforms an object whose shape is a mesh or a complex shape: gives its vertices new positions, in local space. Other
     /// objects of the same shape stay as they are. Smart response still sees the old positions in the previous frame.
     ///
-    /// Cost: linear in the shape; see [`Shape::deform`].
+    /// Cost: that of [`Shape::deform`].
     pub fn deform(&mut self, id: ObjectId, positions: &[DVec3]) -> Result<()> {
         let object = self.object_mut(id)?;
         let was_displaced = object.displaced;
@@ -275,7 +275,7 @@ impl World {
     /// Ends the frame for one object alone: it is then as if it had just been added, as it is.
     pub fn proceed_object(&mut self, id: ObjectId) -> Result<()> {
         self.object(id)?;
-        // It stays in `displaced`, where a second entry or none to do is harmless.
+        // It stays in `displaced` for a while, where a second entry or none to do is harmless.
         self.end_frame_of(id);
         Ok(())
     }
@@ -319,18 +319,21 @@ impl World {
     fn touch(&mut self, id: ObjectId, was_displaced: bool) {
         if !was_displaced {
             if self.displaced.len() > 2 * self.objects.len() {
-                self.forget_removed();
+                self.forget_settled();
             }
             push_word(&mut self.displaced, id);
         }
         self.stir(id, Staleness::Bounds);
     }
 
-    /// Forgets which of the displaced were removed, where most were: without `proceed` nothing else would.
+    /// Forgets which of the displaced were removed, or ended their frame alone, where most are: without `proceed` nothing else would.
     #[cold]
     #[inline(never)]
-    fn forget_removed(&mut self) {
-        self.displaced.retain(|&id| self.objects.contains_key(id));
+    fn forget_settled(&mut self) {
+        let Self { displaced, objects, .. } = self;
+        displaced.sort_unstable();
+        displaced.dedup();
+        displaced.retain(|&id| objects.get(id).is_some_and(|object| object.displaced));
     }
 
     /// Notes what of an object in the world is out of date.
@@ -382,6 +385,28 @@ mod tests {
             world.set_placement(hub, DAffine3::IDENTITY)?;
         }
         assert_eq!(world.stirred.slots().len(), 1);
+        Ok(())
+    }
+
+    /// The same of frames that end object by object, and of pairs that come and go while nobody tests.
+    #[test]
+    fn what_frames_leave_that_are_not_tested_as_a_whole_is_bounded() -> Result<()> {
+        let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        let ids = [0.0, 1.0].map(|x| world.add(&ball, DAffine3::from_translation(DVec3::X * x)).unwrap());
+        for step in 0..1000 {
+            for id in ids {
+                let at = DVec3::X * if id == ids[0] { f64::from(step % 2) * 9.0 } else { 1.0 };
+                world
+                    .set_placement(id, DAffine3::from_translation(at + DVec3::Y * 1e-6 * f64::from(step)))?;
+                world.proceed_object(id)?;
+            }
+            assert_eq!(world.near().len(), if step % 2 == 0 { 1 } else { 0 });
+            assert!(world.displaced.len() <= 2 * ids.len() + 1, "{} displaced", world.displaced.len());
+            assert!(world.candidates.queued() <= 1, "{} queued", world.candidates.queued());
+        }
+        // What is not written down any more is examined all the same.
+        world.set_placement(ids[0], DAffine3::IDENTITY)?;
+        assert_eq!((world.test().len(), world.statistics().examined), (1, 501));
         Ok(())
     }
 

@@ -69,8 +69,8 @@ impl World {
     /// now; `None` when they did not. [`query::time_of_impact_deforming`](crate::query::time_of_impact_deforming) says more.
     ///
     /// An object that is [`Sampled`](Motion::Sampled), or was set to another shape, has been where it is. On a
-    /// [straight](crate::query::Path::Straight) path, only pairs that collide, now or [on the way](When::OnTheWay), can have an answer: so
-    /// this tells those that met from those of which but what was tested encloses a contact.
+    /// [straight](crate::query::Path::Straight) path, only pairs that collide, now or [on the way](When::OnTheWay), can have an answer, and
+    /// those that come nearer than the tolerance: so this tells those that met from those of which but what was tested encloses a contact.
     ///
     /// ```
     /// use solid3d::{Motion, Shape, World, glam::{DAffine3, DVec3}, query::ImpactOptions};

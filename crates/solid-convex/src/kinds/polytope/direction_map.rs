@@ -57,6 +57,11 @@ struct Square {
 }
 
 impl DirectionMap {
+    /// The memory that it owns, in bytes.
+    pub fn bytes(&self) -> usize {
+        (self.starts.capacity() + self.candidates.capacity()) * size_of::<u32>()
+    }
+
     /// `None` for points that all are at the origin, or that are too many.
     pub fn new(points: &[DVec3], reach: DVec3) -> Option<DirectionMap> {
         let extent = reach.max_element();

@@ -61,6 +61,19 @@ impl Polytope {
         Some(Polytope { points, rows, map, reach, farthest, balls, sure_radii: balls.sure_radii() })
     }
 
+    /// The memory that it owns, in bytes.
+    ///
+    /// ```
+    /// use solid_convex::Polytope;
+    /// use glam::DVec3;
+    /// let points: Vec<DVec3> = (0..96).map(|i| DVec3::new(1.0, 0.1 * f64::from(i), 0.0)).collect();
+    /// assert_eq!(Polytope::new(points).unwrap().bytes(), 48 * 96);
+    /// ```
+    pub fn bytes(&self) -> usize {
+        let map = self.map.as_ref().map_or(0, DirectionMap::bytes);
+        self.points.capacity() * size_of::<DVec3>() + self.rows.bytes() + map
+    }
+
     /// The same, where the faces of the hull are known: the triangles `faces` of its points, which close it. Many pairs that are deep in
     /// each other are then found without a search. Of faces that leave a hole, the answers may be wrong. Cost: O(n).
     ///

@@ -24,6 +24,11 @@ pub(super) struct Rows {
 }
 
 impl Rows {
+    /// The memory that they own, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.rows.capacity() * size_of::<Row>()
+    }
+
     /// `None` for no points.
     pub fn new(points: &[DVec3]) -> Option<Rows> {
         let last = *points.last()?;

@@ -48,10 +48,9 @@ impl DynamicTree {
     }
 }
 
-/// The box, with sides that were clamped to the range of `f32` put far beyond.
+/// The box, with sides that clamping to the range of `f32` moved inward put far beyond.
 fn unclamped(b: &FatBox) -> Aabb {
-    /// Beyond every coordinate of a box.
-    const BEYOND: f64 = 1e300;
-    let side = |x: f32| if x.abs() == f32::MAX { BEYOND.copysign(x.into()) } else { x.into() };
-    Aabb::new(DVec3::from_array(b.min.map(side)), DVec3::from_array(b.max.map(side)))
+    let min = b.min.map(|x| if x == -f32::MAX { -f64::MAX } else { x.into() });
+    let max = b.max.map(|x| if x == f32::MAX { f64::MAX } else { x.into() });
+    Aabb::new(DVec3::from_array(min), DVec3::from_array(max))
 }

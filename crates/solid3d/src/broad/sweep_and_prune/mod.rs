@@ -80,6 +80,15 @@ impl SweepAndPrune {
         self.states.get(proxy as usize).copied().unwrap_or(State::Absent)
     }
 
+    /// Notes that a proxy was made `New` or `Stale`. Each may be, again and again, until the next flush.
+    fn pend(&mut self, proxy: Proxy) {
+        if self.pending.len() > 2 * self.states.len() {
+            self.pending.sort_unstable();
+            self.pending.dedup();
+        }
+        self.pending.push(proxy);
+    }
+
     /// Swaps the six endpoints of a `Present` box to their places.
     fn move_endpoints(&mut self, proxy: Proxy, bounds: Aabb) {
         let old = std::mem::replace(&mut self.boxes[proxy as usize], bounds);
@@ -222,7 +231,7 @@ impl BroadPhase for SweepAndPrune {
             State::Present | State::New | State::Stale => panic!("proxy {proxy} is already in use"),
         }
         self.boxes[slot] = bounds;
-        self.pending.push(proxy);
+        self.pend(proxy);
         self.alive += 1;
     }
 
@@ -237,7 +246,7 @@ impl BroadPhase for SweepAndPrune {
                     self.boxes[proxy as usize] = bounds;
                     self.states[proxy as usize] = State::Stale;
                     self.pairs.end_all_of(proxy);
-                    self.pending.push(proxy);
+                    self.pend(proxy);
                     self.to_compact = true;
                 }
             }
@@ -353,5 +362,32 @@ impl Endpoint {
     fn precedes(&self, other: &Endpoint) -> bool {
         self.value < other.value
             || self.value == other.value && (self.side() == Side::Lower || other.side() == Side::Upper)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    /// Boxes that come and go without a flush leave no more behind than there are proxies.
+    #[test]
+    fn what_comes_and_goes_without_a_flush_leaves_no_trace() {
+        let unit = Aabb::new(DVec3::ZERO, DVec3::ONE);
+        let mut broad = SweepAndPrune::default();
+        broad.insert(0, unit);
+        broad.flush();
+        for _ in 0..1000 {
+            broad.remove(0);
+            broad.insert(0, unit);
+            broad.insert(1, unit);
+            broad.remove(1);
+            assert!(broad.pending.len() <= 2 * 2 + 1, "{}", broad.pending.len());
+        }
+        broad.flush();
+        assert!(broad.sorted_pairs().is_empty());
+        broad.insert(1, unit);
+        broad.flush();
+        assert_eq!(broad.sorted_pairs(), [(0, 1)]);
     }
 }

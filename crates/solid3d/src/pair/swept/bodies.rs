@@ -91,9 +91,13 @@ pub(crate) fn deformation(from: &Shape, to: &Shape) -> Aabb {
 
 /// A box of the world around a shape on its whole way; `bounds` gives that around each end.
 ///
-/// Grown with the length of the way, as [`world_bounds`](crate::pair::world_bounds) with the extent: the error of the narrow phase does so, too.
+/// Grown with the length of the way and the larger of the two extents, as [`world_bounds`](crate::pair::world_bounds) with the extent: the
+/// error of the narrow phase does so, too, wherever on the way the shapes are.
 pub(crate) fn moving_bounds(moving: &Moving, bounds: impl Fn(Placed) -> Aabb) -> Aabb {
-    let Moving { from, to, .. } = moving;
-    let way = (to.placement.translation - from.placement.translation).abs().max_element();
-    bounds(*from).union(&bounds(*to)).inflated(bounds_margin(way))
+    let ends = [moving.from, moving.to];
+    let [from, to] = ends.map(|end| end.placement.translation);
+    let [was, is] = ends.map(bounds);
+    let extent = |bounds: &Aabb, origin: DVec3| (bounds.max - origin).max(origin - bounds.min).max_element();
+    let size = (to - from).abs().max_element() + extent(&was, from).max(extent(&is, to));
+    was.union(&is).inflated(bounds_margin(size))
 }
