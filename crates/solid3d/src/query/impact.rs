@@ -39,8 +39,9 @@ impl Default for ImpactOptions {
 ///
 /// Conservative: the time is never later than the first contact, up to the rounding of positions, and no contact is missed. At
 /// that time the shapes are nearer to each other than the tolerance, or than some 1e-7 of how far they reach and their origins are apart;
-/// shapes that pass each other nearer than that may be reported, too. When the search gives up, after 4,096 steps of a pair of primitives, it reports a contact where it is, which is
-/// earlier: only shapes that turn past each other for long, at a gap of less than some 1e-6 of their size, take so many.
+/// shapes that pass each other nearer than that may be reported, too. When the search gives up, after 4,096 steps of a pair of
+/// primitives, it reports a contact where it is, which is earlier: only shapes that turn past each other for long, at a gap of less than
+/// some 1e-6 of their size, take so many.
 ///
 /// Cost: for convex shapes that meet head on some five times [`distance`](super::distance()), for those that stay clear of each other
 /// little more than once; for meshes that of each pair of primitives whose boxes meet on the way.
