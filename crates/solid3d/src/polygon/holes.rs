@@ -10,7 +10,8 @@ use super::planar;
 ///
 /// The thesis connects the closest points of the two chains. Those may lie inside edges, where a vertex would have to be added
 /// that rounding puts beside the edge; and between the closest *vertices* an edge may pass. So the closest two vertices are
-/// taken that see each other, which is checked exactly. Cost: O(n^2 log n), at worst O(n^3).
+/// taken that see each other, which is checked exactly. Where there are none, a hole touches the boundary between vertices: there it
+/// gets one. Cost: O(n^2 log n), at worst O(n^3).
 pub(super) fn join(points: &[DVec2], outer: &[usize], holes: &[Vec<usize>]) -> Result<Vec<usize>> {
     let at = |chain: &[usize]| -> Vec<DVec2> { chain.iter().map(|&i| points[i]).collect() };
     let outer_points = at(outer);
@@ -31,6 +32,10 @@ pub(super) fn join(points: &[DVec2], outer: &[usize], holes: &[Vec<usize>]) -> R
     let mut joined = outer.to_vec();
     while !waiting.is_empty() {
         let Some((next, i, j)) = bridge(points, &joined, &waiting, if clockwise { -1.0 } else { 1.0 }) else {
+            let mut holes = waiting.iter_mut().map(|(_, hole)| hole);
+            if holes.any(|hole| split(points, &mut joined, hole) || split(points, hole, &joined)) {
+                continue;
+            }
             return Err(PolygonError::HoleOutside { hole: waiting[0].0 });
         };
         let (_, hole) = waiting.remove(next);
@@ -107,6 +112,7 @@ fn bridge(
         }
     }
     candidates.sort_by(|x, y| x.0.total_cmp(&y.0));
+    let boundary: Vec<DVec2> = joined.iter().map(|&i| points[i]).collect();
     let chains = || std::iter::once(joined).chain(waiting.iter().map(|(_, hole)| &hole[..]));
     let is_clear = |p: DVec2, q: DVec2| {
         chains().all(|chain| {
@@ -129,14 +135,30 @@ fn bridge(
             };
             [other(Box::new((k + 1..k + n).rev())), v, other(Box::new(k + 1..k + n))]
         };
-        let clear = if p == q {
-            // The hole touches the boundary there: it must do so from inside this corner.
-            sees(corner(joined, i), corner(hole, j)[2], sense)
-        } else {
-            sees(corner(joined, i), q, sense) && sees(corner(hole, j), p, sense) && is_clear(p, q)
-        };
+        // Where the hole touches the boundary, it must do so from inside the corner.
+        let onwards = if p == q { corner(hole, j)[2] } else { q };
+        let own = corner(joined, i);
+        let mut others = (0..joined.len()).filter(|&k| boundary[k] == p).map(|k| corner(joined, k));
+        let clear = holds(&boundary, own, onwards, sense)
+            && !others.any(|other| {
+                is_nearer(other, own, onwards, sense) && holds(&boundary, other, onwards, sense)
+            })
+            && (p == q || sees(corner(hole, j), p, sense) && is_clear(p, q));
         clear.then_some((next, i, j))
     })
+}
+
+/// Splits an edge of a chain at a vertex of another that lies within it. Returns whether there is one.
+fn split(points: &[DVec2], chain: &mut Vec<usize>, other: &[usize]) -> bool {
+    let found = (0..chain.len()).find_map(|i| {
+        let (p, q) = (points[chain[i]], points[chain[(i + 1) % chain.len()]]);
+        let within = |&&v: &&usize| points[v] != p && points[v] != q && segment_contains(p, q, points[v]);
+        other.iter().find(within).map(|&v| (i, v))
+    });
+    if let Some((i, v)) = found {
+        chain.insert(i + 1, v);
+    }
+    found.is_some()
 }
 
 /// Whether two segments share more than a point.
@@ -144,6 +166,30 @@ fn overlaps(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {
     let collinear = turn(p, q, r) == 0.0 && turn(p, q, s) == 0.0;
     let (low, high) = (p.min(q).max(r.min(s)), p.max(q).min(r.max(s)));
     collinear && low.cmple(high).all() && low != high
+}
+
+/// Whether what begins at a corner of a chain and goes on to `x` begins in the polygon: within the corner's inner angle, or along the
+/// edge by which the chain comes.
+fn holds(chain: &[DVec2], corner @ [before, v, after]: [DVec2; 3], x: DVec2, sense: f64) -> bool {
+    if is_along(v, before, after) {
+        // All around the tip of a slit is the polygon, and nothing of it around that of an antenna.
+        return planar::contains_beside(chain, v, before, sense);
+    }
+    sees(corner, x, sense) || is_along(v, before, x)
+}
+
+/// Whether, of two corners at one point that both hold `x`, the first is the one in which it begins: the chain comes by an edge that is
+/// nearer to it, or by the same, and goes on by a nearer one.
+fn is_nearer([before, v, after]: [DVec2; 3], than: [DVec2; 3], x: DVec2, sense: f64) -> bool {
+    if is_along(v, before, than[0]) {
+        return sees([x, v, than[2]], after, sense);
+    }
+    !is_along(v, than[0], x) && (is_along(v, before, x) || sees([than[0], v, x], before, sense))
+}
+
+/// Whether two points are in one direction from `v`.
+fn is_along(v: DVec2, a: DVec2, b: DVec2) -> bool {
+    turn(a, v, b) == 0.0 && (a - v).dot(b - v) > 0.0
 }
 
 /// Whether a point lies within the inner angle of a corner: to the left of the chain there, when `sense` is 1.

@@ -350,7 +350,8 @@ impl Polygon {
 
 /// Makes one closed chain of a boundary and the holes in it, by doubled edges; all are indices into `vertices`, and so is the
 /// result, which runs as `outer` does (thesis, section 2.1.1). Each hole is connected by the shortest of the edges between vertices
-/// that touch nothing else, which is decided exactly. Holes may run either way. Cost: O(n^2 log n), at worst O(n^3).
+/// that touch nothing else, which is decided exactly. Holes may run either way, and may touch the boundary and each other, along edges too.
+/// Cost: O(n^2 log n), at worst O(n^3).
 ///
 /// ```
 /// use solid3d::{glam::DVec3, polygon::join_holes};

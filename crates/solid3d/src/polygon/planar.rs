@@ -30,6 +30,21 @@ pub(super) fn contains_strictly(chain: &[DVec2], x: DVec2) -> bool {
     contains(chain, x) && !edges(chain).any(|(p, q)| segment_contains(p, q, x))
 }
 
+/// Whether a polygon contains the points just beside the ray from `x` through another point, near `x`: those to the left of it when
+/// `sense` is 1. `x` may lie on the boundary.
+pub(super) fn contains_beside(chain: &[DVec2], x: DVec2, through: DVec2, sense: f64) -> bool {
+    // The ray is turned infinitesimally to that side, so that no vertex lies on it.
+    let is_beyond = |p: DVec2| {
+        let turned = sense * turn(x, through, p);
+        turned > 0.0 || (turned == 0.0 && (p - x).dot(through - x) < 0.0)
+    };
+    let crosses = |&(p, q): &(DVec2, DVec2)| {
+        let (before, after) = if is_beyond(p) { (q, p) } else { (p, q) };
+        p != x && q != x && is_beyond(p) != is_beyond(q) && sense * turn(before, after, x) > 0.0
+    };
+    edges(chain).filter(crosses).count() % 2 == 1
+}
+
 /// Two edges that cross, by their places.
 pub(super) fn crossing(chain: &[DVec2]) -> Option<[usize; 2]> {
     let edge = |i: usize| (chain[i], chain[(i + 1) % chain.len()]);

@@ -74,12 +74,26 @@ impl Rest<'_> {
         self.sense * turn(self.chain[a], self.chain[b], self.chain[c])
     }
 
-    /// Whether the corner is convex, and nothing of the chain lies in its triangle.
+    /// Whether the corner is convex, and its triangle in the polygon with nothing of the chain in it.
     fn is_ear(&self, i: usize) -> bool {
-        let ear @ [a, v, b] = self.corner(i);
-        if self.turn(ear) <= 0.0 {
-            return false;
+        let ear = self.corner(i);
+        self.turn(ear) > 0.0 && self.is_empty(ear) && !self.is_outside(ear)
+    }
+
+    /// Whether a convex corner is one of two doubled edges with the outside all around: an antenna that bends.
+    fn is_outside(&self, [_, v, b]: [usize; 3]) -> bool {
+        let (at_v, at_b) = (self.chain[v], self.chain[b]);
+        // A doubled corner comes by twice.
+        let doubled = self.places.iter().any(|&place| place != v && self.chain[place] == at_v);
+        doubled && {
+            let rest: Vec<DVec2> = self.places.iter().map(|&place| self.chain[place]).collect();
+            !planar::contains_beside(&rest, at_v, at_b, self.sense)
         }
+    }
+
+    /// Whether nothing of the chain lies in the triangle of a convex corner.
+    fn is_empty(&self, ear: [usize; 3]) -> bool {
+        let [a, v, b] = ear;
         let [at_a, at_v, at_b] = ear.map(|place| self.chain[place]);
         let (low, high) = (at_a.min(at_v).min(at_b), at_a.max(at_v).max(at_b));
         (0..self.places.len()).all(|j| {

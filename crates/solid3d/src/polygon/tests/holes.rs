@@ -98,3 +98,95 @@ fn bridges_go_around_what_lies_between() {
         Polygon::with_holes(ring(&[(0.0, 0.0), (9.0, 0.0), (0.0, 9.0)]), [ring(&[(1.0, 1.0), (2.0, 1.0)])]);
     assert_eq!(apart.unwrap_err().to_string(), "hole 0 has 2 vertices; a closed chain needs at least 3");
 }
+
+/// Law: holes may touch the boundary and each other at vertices, between them, and along edges. A square is cut into pieces of lattice
+/// cells, of which all but one are holes in it.
+#[test]
+fn holes_may_fill_the_polygon() {
+    let seed = 71;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut polygons, mut hits, mut cells) = (0, 0, 0);
+    while polygons < 2_000 {
+        let side = rng.random_range(2..=4);
+        let mut piece_of = vec![0; (side * side) as usize];
+        let cell =
+            |x: i32, y: i32| ((0..side).contains(&x) && (0..side).contains(&y)).then_some(x + side * y);
+        let pieces = rng.random_range(1..=4);
+        for piece in 1..=pieces {
+            let (mut x, mut y) = (rng.random_range(0..side), rng.random_range(0..side));
+            for _ in 0..rng.random_range(1..=6) {
+                match cell(x, y) {
+                    Some(i) if piece_of[i as usize] % piece == 0 => piece_of[i as usize] = piece,
+                    _ => break,
+                }
+                let step = rng.random_range(0..4);
+                (x, y) = (x + [1, 0, -1, 0][step], y + [0, 1, 0, -1][step]);
+            }
+        }
+        let is_in = |piece: i32, x: i32, y: i32| cell(x, y).is_some_and(|i| piece_of[i as usize] == piece);
+        // The edges around a piece, which lies to their left; none where they are not one chain.
+        let ring = |piece: i32, keep: bool| -> Option<Vec<DVec2>> {
+            let mut next = std::collections::BTreeMap::new();
+            for (x, y) in (0..side).flat_map(|x| (0..side).map(move |y| (x, y))) {
+                let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
+                for (k, (dx, dy)) in [(0, -1), (1, 0), (0, 1), (-1, 0)].into_iter().enumerate() {
+                    if is_in(piece, x, y)
+                        && !is_in(piece, x + dx, y + dy)
+                        && next.insert(corners[k], corners[(k + 1) % 4]).is_some()
+                    {
+                        return None;
+                    }
+                }
+            }
+            let start = *next.keys().next()?;
+            let around = std::iter::successors(Some(start), |at| Some(next[at]).filter(|&to| to != start));
+            let ring: Vec<(i32, i32)> = around.collect();
+            let turns = |i: usize| {
+                let [a, b, c] = [ring.len() - 1, 0, 1].map(|k| ring[(i + k) % ring.len()]);
+                (b.0 - a.0) * (c.1 - b.1) != (b.1 - a.1) * (c.0 - b.0)
+            };
+            let kept = (0..ring.len()).filter(|&i| keep || turns(i)).map(|i| ring[i]);
+            let points = kept.map(|(x, y)| DVec2::new(x.into(), y.into())).collect();
+            (ring.len() == next.len()).then_some(points)
+        };
+        let numbers: Vec<i32> = (1..=pieces).filter(|piece| piece_of.contains(piece)).collect();
+        let holes: Option<Vec<_>> = numbers.iter().map(|&piece| ring(piece, rng.random())).collect();
+        let left = piece_of.iter().filter(|&&piece| piece == 0).count();
+        let Some(holes) = holes.filter(|_| left > 0) else { continue };
+        polygons += 1;
+        let far = f64::from(side);
+        let outer = [(0.0, 0.0), (far, 0.0), (far, far), (0.0, far)].map(|(x, y)| DVec2::new(x, y));
+        let polygon = Polygon::with_holes(raise(&outer), holes.iter().map(|hole| raise(hole)));
+        let polygon = polygon.unwrap_or_else(|error| panic!("{error}: {holes:?}"));
+        for turned in 0..4 {
+            let mut chain = polygon.vertices().to_vec();
+            let shift = turned * chain.len() / 4;
+            chain.rotate_left(shift);
+            let flat: Vec<DVec2> = chain.iter().map(|p| p.truncate()).collect();
+            let triangles = Polygon::new(chain).unwrap().triangles();
+            let areas = triangles.iter().map(|t| planar::doubled_area(&t.map(|i| flat[i as usize])));
+            assert!(areas.clone().all(|area| area >= 0.0), "{turned} {holes:?}");
+            assert_eq!(areas.sum::<f64>(), 2.0 * left as f64, "{turned} {holes:?}");
+            for (x, y) in (0..side).flat_map(|x| (0..side).map(move |y| (x, y))) {
+                let center = DVec2::new(x.into(), y.into()) + 0.5;
+                assert_eq!(planar::contains(&flat, center), is_in(0, x, y), "{center} {holes:?}");
+            }
+        }
+        hits += left;
+        cells += piece_of.len();
+    }
+    assert_rate("cells that are left", hits, cells);
+}
+
+/// No vertex of such a hole sees one of the boundary.
+#[test]
+fn holes_may_touch_between_vertices() {
+    let ring = |points: [(f64, f64); 4]| raise(&points.map(|(x, y)| DVec2::new(x, y)));
+    let square = ring([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]);
+    let diamond = ring([(2.0, 0.0), (4.0, 2.0), (2.0, 4.0), (0.0, 2.0)]);
+    let corners = Polygon::with_holes(square, [diamond]).unwrap();
+    assert_eq!(corners.area(), 8.0);
+    let needle = |x: f64| Polygon::new([-1.0, 1.0, 1.0].map(|z| DVec3::new(x, 0.5, 3.0 + z))).unwrap();
+    assert_eq!([0.5, 2.0, 3.5].map(|x| corners.intersects(&needle(x))), [true, false, true]);
+}
