@@ -13,9 +13,8 @@ use super::planar;
 /// taken that see each other, which is checked exactly. Where there are none, a hole touches the boundary between vertices: there it
 /// gets one. Cost: O(n^2 log n), at worst O(n^3).
 pub(super) fn join(points: &[DVec2], outer: &[usize], holes: &[Vec<usize>]) -> Result<Vec<usize>> {
-    let at = |chain: &[usize]| -> Vec<DVec2> { chain.iter().map(|&i| points[i]).collect() };
-    let outer_points = at(outer);
-    let hole_points: Vec<Vec<DVec2>> = holes.iter().map(|hole| at(hole)).collect();
+    let outer_points = at(points, outer);
+    let hole_points: Vec<Vec<DVec2>> = holes.iter().map(|hole| at(points, hole)).collect();
     for (hole, chain) in hole_points.iter().enumerate() {
         if !is_inside(chain, &outer_points) || hole_points[..hole].iter().any(|other| overlap(chain, other)) {
             return Err(PolygonError::HoleOutside { hole });
@@ -25,7 +24,7 @@ pub(super) fn join(points: &[DVec2], outer: &[usize], holes: &[Vec<usize>]) -> R
     // Holes run the other way round.
     let mut waiting: Vec<(usize, Vec<usize>)> = holes.iter().cloned().enumerate().collect();
     for (_, chain) in &mut waiting {
-        if (planar::doubled_area(&at(chain)) < 0.0) == clockwise {
+        if (planar::doubled_area(&at(points, chain)) < 0.0) == clockwise {
             chain.reverse();
         }
     }
@@ -95,6 +94,11 @@ fn run_along(a: &[DVec2], b: &[DVec2], same: f64) -> bool {
         .any(|(p, q)| planar::edges(b).any(|(r, s)| overlaps(p, q, r, s) && same * (q - p).dot(s - r) > 0.0))
 }
 
+/// Where the vertices of a chain are.
+fn at(points: &[DVec2], chain: &[usize]) -> Vec<DVec2> {
+    chain.iter().map(|&i| points[i]).collect()
+}
+
 /// The shortest bridge from the chain to a waiting hole: the hole's place among those waiting, and the places of the ends in
 /// the two chains.
 fn bridge(
@@ -112,7 +116,7 @@ fn bridge(
         }
     }
     candidates.sort_by(|x, y| x.0.total_cmp(&y.0));
-    let boundary: Vec<DVec2> = joined.iter().map(|&i| points[i]).collect();
+    let boundary = at(points, joined);
     let chains = || std::iter::once(joined).chain(waiting.iter().map(|(_, hole)| &hole[..]));
     let is_clear = |p: DVec2, q: DVec2| {
         chains().all(|chain| {
