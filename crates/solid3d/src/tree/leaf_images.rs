@@ -206,7 +206,7 @@ mod tests {
     use crate::Aabb;
     use crate::tree::tests::scenes::{point, rng};
     use rand::Rng;
-    use solid_convex::simd::{dispatch, levels};
+    use solid_convex::simd::{alike, dispatch};
 
     /// A primitive, the images of its corners in whole steps, and the grid of its leaf.
     type Found = (u32, [[f32; 3]; 3], [(f64, f64); 3]);
@@ -219,27 +219,22 @@ mod tests {
             for (lane, &i) in leaf.primitives.iter().enumerate() {
                 assert_eq!(image.indices(lane), [3 * i, 3 * i + 1, 3 * i + 2]);
             }
-            let mut all = levels().map(|level| {
+            let steps = alike(|level| {
                 let mut steps = [[[0.0f32; 8]; 3]; 3];
-                dispatch!(level, simd => {
+                dispatch!(widest level, simd => {
                     for (corner, axes) in steps.iter_mut().enumerate() {
                         for (axis, lanes) in axes.iter_mut().enumerate() {
                             *lanes = image.corner(simd, corner).along(simd, axis).to_array();
                         }
                     }
                 });
+                let lanes = steps.as_flattened_mut().iter_mut();
+                lanes.for_each(|lanes| lanes[leaf.primitives.len()..].fill(0.0));
                 steps
             });
-            for steps in &mut all {
-                steps
-                    .as_flattened_mut()
-                    .iter_mut()
-                    .for_each(|lanes| lanes[leaf.primitives.len()..].fill(0.0));
-            }
-            assert_eq!(all[0], all[1]);
             let grid = [image.axis(0), image.axis(1), image.axis(2)];
             for (lane, &primitive) in leaf.primitives.iter().enumerate() {
-                let at = |corner: usize| [0, 1, 2].map(|axis| all[0][corner][axis][lane]);
+                let at = |corner: usize| [0, 1, 2].map(|axis| steps[corner][axis][lane]);
                 found.push((primitive, [at(0), at(1), at(2)], grid));
             }
         }

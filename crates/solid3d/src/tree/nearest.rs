@@ -103,7 +103,7 @@ impl Tree {
             *packed = (self.normal.pack_any(&around.bounds), around.radius);
         }
         let around = &packed[..around.len()];
-        dispatch!(level, simd => {
+        dispatch!(widest level, simd => {
             self.walk_near(
                 simd,
                 visitor,

@@ -91,7 +91,7 @@ pub(crate) fn nearest_pairs_on(
     let duel = Duel::one_by_one(a, b, relative);
     let metric = Folded::new(metric, &a.normal, &b.normal);
     let faces = facing.and_then(|facing| Faces::new(facing, a, b));
-    dispatch!(level, simd => walk(simd, &duel, &metric, faces.as_ref(), best, traversal, visitor));
+    dispatch!(widest level, simd => walk(simd, &duel, &metric, faces.as_ref(), best, traversal, visitor));
 }
 
 #[inline(always)] // into the function that is compiled for a level of instructions

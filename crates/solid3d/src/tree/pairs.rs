@@ -78,7 +78,7 @@ pub(crate) fn pairs_on<B>(
     traversal: &mut Traversal,
     visitor: &mut impl LeafPairs<B>,
 ) -> ControlFlow<B> {
-    dispatch!(level, simd => walk(simd, &Duel::new(a, b, relative), traversal, visitor))
+    dispatch!(widest level, simd => walk(simd, &Duel::new(a, b, relative), traversal, visitor))
 }
 
 #[inline(always)] // into the function that is compiled for a level of instructions

@@ -217,10 +217,18 @@ mod tests {
     use super::*;
     use crate::pair::row::tests::row_of;
     use rand::Rng;
-    use solid_convex::simd::dispatch;
-    use solid_convex::simd::levels;
+    use solid_convex::simd::{Level, alike, dispatch};
     use solid_oracle::generate::seeded;
     use solid_oracle::triangle_distance;
+
+    /// The distances and their lower bounds, the same bits on every level of instructions.
+    fn on_all(near: impl Fn(Level) -> Near) -> [Lanes; 2] {
+        let bits = alike(|level| {
+            let Near { distance, least, .. } = near(level);
+            [distance, least].map(|lanes| lanes.map(f64::to_bits))
+        });
+        bits.map(|lanes| lanes.map(f64::from_bits))
+    }
 
     /// Of a point and of a segment: as of a triangle that is but that, and the levels of instructions agree.
     #[test]
@@ -237,16 +245,15 @@ mod tests {
                 if lane == 7 && round % 2 == 0 { [q, r, q.lerp(r, 0.3)] } else { [q, r, point()] }
             });
             let row = row_of(&ys);
-            let point = levels()
-                .map(|level| dispatch!(level, simd => distances_of_core(simd, &[core[0]], &row, 0xff)));
+            let point = on_all(
+                |level| dispatch!(widest level, simd => distances_of_core(simd, &[core[0]], &row, 0xff)),
+            );
             let segment =
-                levels().map(|level| dispatch!(level, simd => distances_of_core(simd, &core, &row, 0xff)));
-            let bits = |near: &Near| [near.distance, near.least].map(|lanes| lanes.map(f64::to_bits));
-            assert!(bits(&point[1]) == bits(&point[0]) && bits(&segment[1]) == bits(&segment[0]));
+                on_all(|level| dispatch!(widest level, simd => distances_of_core(simd, &core, &row, 0xff)));
             for (lane, y) in ys.iter().enumerate() {
-                for (near, x) in [(&point[0], [core[0]; 3]), (&segment[0], [core[0], core[1], core[1]])] {
+                for (near, x) in [(&point, [core[0]; 3]), (&segment, [core[0], core[1], core[1]])] {
                     let exact = triangle_distance(&x, y);
-                    let (distance, least) = (near.distance[lane], near.least[lane]);
+                    let (distance, least) = (near[0][lane], near[1][lane]);
                     assert!(distance >= exact - 1e-15, "{distance} for {exact}: {x:?} {y:?}");
                     assert!(least <= exact + 4e-15, "at least {least} for {exact}: {x:?} {y:?}");
                     if exact > 0.0 {
@@ -286,12 +293,10 @@ mod tests {
             let x = triangle(DVec3::ZERO);
             let ys = std::array::from_fn(|lane| triangle(DVec3::Z * 0.25 * lane as f64));
             let row = row_of(&ys);
-            let all = levels().map(|level| dispatch!(level, simd => distances(simd, &x, &row, 0xff)));
-            let bits = |near: &Near| [near.distance, near.least].map(|lanes| lanes.map(f64::to_bits));
-            assert!(bits(&all[1]) == bits(&all[0]));
+            let near = on_all(|level| dispatch!(widest level, simd => distances(simd, &x, &row, 0xff)));
             for (lane, y) in ys.iter().enumerate() {
                 let exact = triangle_distance(&x, y);
-                let (distance, least) = (all[0].distance[lane], all[0].least[lane]);
+                let (distance, least) = (near[0][lane], near[1][lane]);
                 assert!(distance >= exact - 1e-15, "{distance} for {exact}: {x:?} {y:?}");
                 assert!(least <= exact + 4e-15, "at least {least} for {exact}: {x:?} {y:?}");
                 if exact > 0.0 {

@@ -377,8 +377,7 @@ mod tests {
     use crate::shape::Class;
     use rand::Rng;
     use rand::rngs::StdRng;
-    use solid_convex::simd::dispatch;
-    use solid_convex::simd::levels;
+    use solid_convex::simd::{alike, dispatch};
     use solid_oracle::generate::seeded;
 
     fn point(rng: &mut StdRng) -> DVec3 {
@@ -392,7 +391,7 @@ mod tests {
         let complex = Complex::mesh(vertices, indices).unwrap();
         let mut row = Row::default();
         let leaf = [0, 1, 2, 3, 4, 5, 6, 7];
-        dispatch!(levels()[0], simd => row.place(simd, &complex, &leaf, &DAffine3::IDENTITY));
+        dispatch!(simd => row.place(simd, &complex, &leaf, &DAffine3::IDENTITY));
         row
     }
 
@@ -416,16 +415,14 @@ mod tests {
             let of_a = patch(DVec3::Z, DVec3::ZERO);
             let mut of_b = patch(DVec3::X, DVec3::new(0.2, 0.0, 0.8));
             of_b[0] = [DVec3::ZERO, DVec3::new(0.1, 0.3, 0.5), DVec3::Z]; // stands on the layer
-            let all = levels().map(|level| {
+            let [level_a, level_b] = alike(|level| {
                 let (mut a, mut b) = (row_of(&of_a), row_of(&of_b));
-                dispatch!(level, simd => {
+                dispatch!(widest level, simd => {
                     a.measure(simd);
                     b.measure(simd);
                     [a.level_with(simd, &b), b.level_with(simd, &a)]
                 })
             });
-            assert_eq!(all[0], all[1]);
-            let [level_a, level_b] = all[0];
             assert!(thickness > 0.0 || level_b & 1 == 1);
             for (i, x) in of_a.iter().enumerate() {
                 for (j, y) in of_b.iter().enumerate() {
@@ -467,33 +464,35 @@ mod tests {
             let center = 0.5 * point(&mut rng);
             let query = Aabb::new(center - 0.6, center + 0.6);
             let axis = point(&mut rng);
-            for level in levels() {
-                let mut row = Row::default();
-                dispatch!(level, simd => row.place(simd, complex, &leaf, &map));
-                let (overlapping, nearer, least) = dispatch!(level, simd => {
-                    (row.overlapping(simd, &query), row.nearer(simd, &query, 0.01), row.least_along(simd, axis))
-                });
-                for i in 0..count {
-                    let bounds = Aabb::of_points(placed(i));
-                    assert_eq!(row.bounds(i), bounds, "round {round}");
-                    assert_eq!(row.primitive(i), i as u32);
-                    assert_eq!(overlapping >> i & 1 == 1, bounds.overlaps(&query));
-                    assert_eq!(nearer >> i & 1 == 1, bounds.gap(&query).length_squared() < 0.01);
-                    let exact = placed(i).map(|p| p.dot(axis)).fold(f64::INFINITY, f64::min);
-                    let is_triangle = primitives[i].len() <= 3;
-                    assert_eq!(row.triangles() >> i & 1 == 1, is_triangle);
-                    if is_triangle {
-                        assert_eq!(least[i], exact);
-                        let corners: Vec<DVec3> = placed(i).collect();
-                        assert!(row.triangle(i).iter().all(|corner| corners.contains(corner)));
-                    } else {
-                        assert!(least[i] <= exact + 1e-15);
-                    }
-                    overlaps += u32::from(bounds.overlaps(&query));
-                    lanes += 1;
+            let mut row = Row::default();
+            let (overlapping, nearer, least, _) = alike(|level| {
+                row.clear();
+                dispatch!(widest level, simd => {
+                    row.place(simd, complex, &leaf, &map);
+                    let least = row.least_along(simd, axis);
+                    (row.overlapping(simd, &query), row.nearer(simd, &query, 0.01), least, [row.min, row.max])
+                })
+            });
+            for i in 0..count {
+                let bounds = Aabb::of_points(placed(i));
+                assert_eq!(row.bounds(i), bounds, "round {round}");
+                assert_eq!(row.primitive(i), i as u32);
+                assert_eq!(overlapping >> i & 1 == 1, bounds.overlaps(&query));
+                assert_eq!(nearer >> i & 1 == 1, bounds.gap(&query).length_squared() < 0.01);
+                let exact = placed(i).map(|p| p.dot(axis)).fold(f64::INFINITY, f64::min);
+                let is_triangle = primitives[i].len() <= 3;
+                assert_eq!(row.triangles() >> i & 1 == 1, is_triangle);
+                if is_triangle {
+                    assert_eq!(least[i], exact);
+                    let corners: Vec<DVec3> = placed(i).collect();
+                    assert!(row.triangle(i).iter().all(|corner| corners.contains(corner)));
+                } else {
+                    assert!(least[i] <= exact + 1e-15);
                 }
-                assert_eq!((overlapping | nearer) >> count, 0, "unused lanes");
+                overlaps += u32::from(bounds.overlaps(&query));
+                lanes += 1;
             }
+            assert_eq!((overlapping | nearer) >> count, 0, "unused lanes");
         }
         println!("{overlaps} of {lanes} overlap");
         assert!(10 * overlaps > 3 * lanes && 10 * overlaps < 7 * lanes);

@@ -154,7 +154,7 @@ mod tests {
     use crate::pair::row::tests::row_of;
     use crate::pair::triangle_triangle::Triangle;
     use rand::Rng;
-    use solid_convex::simd::{dispatch, levels};
+    use solid_convex::simd::{alike, dispatch};
     use solid_convex::{Cuboid, IndexedPoints, gjk};
     use solid_oracle::generate::seeded;
 
@@ -197,9 +197,8 @@ mod tests {
             let row = row_of(&ys);
             let cube = Cube { map: DAffine3::IDENTITY, margin };
             let asked = 0b0111_1111;
-            let all = levels().map(|level| dispatch!(level, simd => cube.verdict(simd, &row, asked)));
-            assert_eq!(all[0], all[1]);
-            let Verdict { meet, apart } = all[0];
+            let Verdict { meet, apart } =
+                alike(|level| dispatch!(widest level, simd => cube.verdict(simd, &row, asked)));
             assert_eq!((meet | apart) & !asked | meet & apart, 0);
             for (lane, y) in ys.iter().enumerate().filter(|(lane, _)| asked >> lane & 1 == 1) {
                 let hull = IndexedPoints::new(y, &[0, 1, 2]).unwrap();

@@ -3,7 +3,7 @@
 use fearless_simd::Simd;
 use glam::DVec3;
 use rand::Rng;
-use solid_convex::simd::levels;
+use solid_convex::simd::alike;
 
 use super::scenes::{affine, point, relative, rng, torus};
 use crate::Aabb;
@@ -94,28 +94,27 @@ fn slabs_lose_nothing() {
         let nothing =
             PairMetric { facet_a: DVec3::ZERO, facet_b: DVec3::ZERO, sigma_min_a: 0.0, sigma_min_b: 0.0 };
         let mut answers = Vec::new();
-        for (level, facing) in
-            [(levels()[0], Some(&facing)), (levels()[1], Some(&facing)), (levels()[0], None)]
-        {
-            let (mut best, mut traversal) = (f64::INFINITY, Traversal::default());
-            let mut visitor = Vertices { soups: soups.each_ref(), placed: &placed };
-            let [a, b] = &soups;
-            nearest_pairs_on(
-                level,
-                &a.tree,
-                &b.tree,
-                &relative,
-                &nothing,
-                facing,
-                &mut best,
-                &mut traversal,
-                &mut visitor,
-            );
-            answers.push((best, traversal.counters));
+        for facing in [Some(&facing), None] {
+            answers.push(alike(|level| {
+                let (mut best, mut traversal) = (f64::INFINITY, Traversal::default());
+                let mut visitor = Vertices { soups: soups.each_ref(), placed: &placed };
+                let [a, b] = &soups;
+                nearest_pairs_on(
+                    level,
+                    &a.tree,
+                    &b.tree,
+                    &relative,
+                    &nothing,
+                    facing,
+                    &mut best,
+                    &mut traversal,
+                    &mut visitor,
+                );
+                (best, traversal.counters)
+            }));
         }
-        assert_eq!(answers[0], answers[1], "round {round}");
-        assert_eq!(answers[0].0, answers[2].0, "round {round}");
-        for (sum, (_, Counters { leaf_visits, .. })) in visits.iter_mut().zip(&answers[1..]) {
+        assert_eq!(answers[0].0, answers[1].0, "round {round}");
+        for (sum, (_, Counters { leaf_visits, .. })) in visits.iter_mut().zip(&answers) {
             *sum += leaf_visits;
         }
     }
