@@ -449,7 +449,7 @@ impl Task for Renew<'_> {
                 self.memory.keep(closest.distance > 0.0, v, lean.points());
                 Some(closest)
             }
-            Answer::Beyond | Answer::Unknown => None,
+            Answer::Beyond(_) | Answer::Unknown => None,
         }
     }
 }

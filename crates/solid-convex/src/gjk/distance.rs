@@ -76,13 +76,39 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let closest = if a.core_radius() + b.core_radius() == 0.0 {
-        nearest(a, placement_a, b, placement_b, bound)?.0
+    closest_points_or_axis(a, placement_a, b, placement_b, bound).ok()
+}
+
+/// The same; of objects that are further apart than `bound`, an axis along which they are, up to the rounding error. It points from `b` to `a` in
+/// the world, and is of any length.
+///
+/// ```
+/// use solid_convex::{Cuboid, gjk};
+/// use glam::{DAffine3, DVec3};
+/// let block = Cuboid::new(DVec3::ONE)?;
+/// let right = DAffine3::from_translation(DVec3::new(3.0, 0.0, 0.0));
+/// let found = gjk::closest_points_or_axis(&block, &DAffine3::IDENTITY, &block, &right, 1.5);
+/// assert_eq!(found.map_err(DVec3::normalize), Err(-DVec3::X));
+/// # Ok::<(), solid_convex::SizeError>(())
+/// ```
+pub fn closest_points_or_axis<A, B>(
+    a: &A,
+    placement_a: &DAffine3,
+    b: &B,
+    placement_b: &DAffine3,
+    bound: f64,
+) -> Result<Closest, DVec3>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let (closest, v) = if a.core_radius() + b.core_radius() == 0.0 {
+        nearest(a, placement_a, b, placement_b, bound)?
     } else {
         let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
         of_rounded((&core_a, placement_a), (&core_b, placement_b), bound)?
     };
-    (closest.distance <= bound).then_some(closest)
+    if closest.distance <= bound { Ok(closest) } else { Err(v) }
 }
 
 /// The closest points are sought, up to a bound in world units; from what is known of them.
@@ -109,8 +135,8 @@ impl Measure<'_> {
 
 /// What a lean search for the closest points is sure of.
 pub(super) enum Answer {
-    /// They are further apart than the bound.
-    Beyond,
+    /// They are further apart than the bound, along an axis.
+    Beyond(DVec3),
     /// The closest points, with the vector from that of `B` to that of `A`, in the difference's unit; zero when they meet.
     Closest(Closest, DVec3),
     /// Nothing.
@@ -121,7 +147,7 @@ impl Answer {
     #[inline(always)]
     fn of(lean: &Lean, goal: Goal, scale: f64) -> Answer {
         match lean.sure {
-            Sure::Beyond => Answer::Beyond,
+            Sure::Beyond => Answer::Beyond(lean.v),
             Sure::Inside => {
                 Answer::Closest(Closest { distance: 0.0, points: lean.common_point() }, DVec3::ZERO)
             }
@@ -205,31 +231,31 @@ impl Task for MeasureSurely {
     fn run(self, difference: &impl MinkowskiDifference) -> Option<Closest> {
         match (MeasureAnew { bound: f64::INFINITY }).run(difference) {
             Answer::Closest(closest, _) => Some(closest),
-            Answer::Beyond | Answer::Unknown => None,
+            Answer::Beyond(_) | Answer::Unknown => None,
         }
     }
 }
 
-/// The closest points of two placed objects, and the vector from that of `B` to that of `A`, in the difference's unit; `None` when they are
-/// further apart than the bound.
+/// The closest points of two placed objects, and the vector from that of `B` to that of `A`, in the difference's unit; when they are further
+/// apart than the bound, an axis along which they are.
 fn nearest<A, B>(
     a: &A,
     placement_a: &DAffine3,
     b: &B,
     placement_b: &DAffine3,
     bound: f64,
-) -> Option<(Closest, DVec3)>
+) -> Result<(Closest, DVec3), DVec3>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
     match task::run(a, placement_a, b, placement_b, MeasureAnew { bound }) {
-        Answer::Beyond => None,
-        Answer::Closest(closest, v) => Some((closest, v)),
+        Answer::Beyond(axis) => Err(axis),
+        Answer::Closest(closest, v) => Ok((closest, v)),
         Answer::Unknown => {
             let task = Measure { bound, warm: &[] };
             let found = measure_robustly(&Difference::new(a, placement_a, b, placement_b), task)?;
-            Some((found.closest, found.v))
+            Ok((found.closest, found.v))
         }
     }
 }
@@ -244,7 +270,7 @@ pub(super) struct Measured {
     pub len: usize,
 }
 
-/// The closest points of two placed objects; `None` when they are further apart than the bound.
+/// The closest points of two placed objects; when they are further apart than the bound, an axis along which they are.
 #[inline]
 pub(super) fn measure<A, B>(
     a: &A,
@@ -252,36 +278,36 @@ pub(super) fn measure<A, B>(
     b: &B,
     placement_b: &DAffine3,
     task: Measure,
-) -> Option<Measured>
+) -> Result<Measured, DVec3>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
     match task::run(a, placement_a, b, placement_b, task) {
-        (Answer::Beyond, _) => None,
+        (Answer::Beyond(axis), _) => Err(axis),
         (Answer::Closest(closest, v), lean) => {
-            Some(Measured { closest, v, points: lean.points, len: lean.points().len() })
+            Ok(Measured { closest, v, points: lean.points, len: lean.points().len() })
         }
         (Answer::Unknown, _) => measure_robustly(&Difference::new(a, placement_a, b, placement_b), task),
     }
 }
 
 #[cold]
-fn measure_robustly<A, B>(difference: &Difference<A, B>, task: Measure) -> Option<Measured>
+fn measure_robustly<A, B>(difference: &Difference<A, B>, task: Measure) -> Result<Measured, DVec3>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
     let descent = descend_robustly(difference, task.goal(difference.scale()));
     if descent.beyond {
-        return None;
+        return Err(descent.axis);
     }
     let (mut points, mut len) = ([SupportPoint::ZERO; 4], 0);
     for (place, p) in points.iter_mut().zip(descent.simplex.points()) {
         *place = *p;
         len += 1;
     }
-    Some(Measured { closest: Closest::of(&descent, difference), v: descent.v, points, len })
+    Ok(Measured { closest: Closest::of(&descent, difference), v: descent.v, points, len })
 }
 
 impl Closest {
@@ -317,13 +343,13 @@ where
     if off(&common) < off(&of_simplex) { common } else { of_simplex }
 }
 
-/// The closest points of objects of which at least one is rounded: by those of their cores, which a few steps find exactly, where a
-/// curved surface takes four for each digit.
+/// The closest points of objects of which at least one is rounded, with the vector between those of their cores, by which they are found: it takes a
+/// few steps, where a curved surface takes four for each digit. Of objects that are further apart than the bound, an axis along which they are.
 fn of_rounded<A, B>(
     (core_a, placement_a): (&Core<A>, &DAffine3),
     (core_b, placement_b): (&Core<B>, &DAffine3),
     bound: f64,
-) -> Option<Closest>
+) -> Result<(Closest, DVec3), DVec3>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
@@ -348,5 +374,5 @@ where
     };
     let gap = between - radii;
     let distance = if gap <= 0.0 || touch(gap) { 0.0 } else { gap };
-    Some(Closest { distance, points })
+    Ok((Closest { distance, points }, v))
 }

@@ -33,7 +33,9 @@ pub use cast::{CAST_ERROR, Impact, cast};
 pub use coherent::{Coherent, Memory};
 pub(crate) use descent::{End, Goal, descend};
 pub(crate) use distance::DISTANCE_TOLERANCE;
-pub use distance::{Closest, ClosestInWorld, closest_points, closest_points_within, quickly_closest};
+pub use distance::{
+    Closest, ClosestInWorld, closest_points, closest_points_or_axis, closest_points_within, quickly_closest,
+};
 pub use intersection::{
     Outcome, Witness, intersection, intersects, intersects_closely, separates, separating_axis,
 };

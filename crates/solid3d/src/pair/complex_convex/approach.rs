@@ -138,7 +138,8 @@ impl Approach<'_> {
                         *best = gap;
                         self.answer = Some((self.row.primitive(lane), None));
                         if let Some(gaps) = &mut self.gaps {
-                            gaps.turn(simd, self.from[0], -known.axis(lane));
+                            gaps.look_from(self.from[0]);
+                            gaps.look_along(simd, -known.axis(lane));
                         }
                     }
                     continue;
@@ -187,33 +188,48 @@ impl Approach<'_> {
     /// Asks GJK of a lane; the lanes that are then known not to be nearer, as bits.
     #[inline(always)]
     fn improve<S: Simd>(&mut self, simd: S, lane: usize, best: &mut f64) -> u32 {
-        let Some(points) = self.ask(lane, best) else { return 0 };
-        if *best == 0.0 {
-            return u32::MAX;
-        }
-        let [from_complex, from_convex] = &self.frame.common;
-        let way = from_complex.transform_point3(points.on_a) - from_convex.transform_point3(points.on_b);
-        self.shadow.turn(way.normalize_or_zero());
-        self.from[1] = points.on_b;
+        let axis = match self.ask(lane, best) {
+            Asked::Nearer(_) if *best == 0.0 => return u32::MAX,
+            Asked::Nearer(Witness { on_a, on_b }) => {
+                let [from_complex, from_convex] = &self.frame.common;
+                self.from[1] = on_b;
+                if let Some(gaps) = &mut self.gaps {
+                    gaps.look_from(on_b);
+                }
+                from_complex.transform_point3(on_a) - from_convex.transform_point3(on_b)
+            }
+            Asked::Beyond(axis) => axis,
+        };
+        // What tells one primitive from the shape mostly tells its neighbours too.
+        self.shadow.turn(axis.normalize_or_zero());
         if let Some(gaps) = &mut self.gaps {
-            gaps.turn(simd, points.on_b, way);
+            gaps.look_along(simd, axis);
         }
         self.shadow.beyond(simd, self.row, sought(*best))
     }
 
-    /// Asks GJK of a lane: the closest points, if they are nearer than all before.
+    /// Asks GJK of a lane, and takes it if it is nearer than all before.
     #[inline(always)]
-    fn ask(&mut self, lane: usize, best: &mut f64) -> Option<Witness> {
+    fn ask(&mut self, lane: usize, best: &mut f64) -> Asked {
         let primitive = self.row.primitive(lane);
         let points = self.complex.0.primitive_hull(primitive);
         let bound = sought(*best) / self.frame.scale;
-        let closest =
-            gjk::closest_points_within(&points, self.complex.1, self.convex.0, self.convex.1, bound)?;
-        let distance = closest.distance * self.frame.scale;
-        (distance < *best).then(|| {
-            *best = distance;
-            self.answer = Some((primitive, Some(closest)));
-            closest.points
-        })
+        match gjk::closest_points_or_axis(&points, self.complex.1, self.convex.0, self.convex.1, bound) {
+            Ok(closest) if closest.distance * self.frame.scale < *best => {
+                *best = closest.distance * self.frame.scale;
+                self.answer = Some((primitive, Some(closest)));
+                Asked::Nearer(closest.points)
+            }
+            Ok(_) => Asked::Beyond(DVec3::ZERO),
+            Err(axis) => Asked::Beyond(axis),
+        }
     }
+}
+
+/// What GJK said of a primitive.
+enum Asked {
+    /// The closest points: it is nearer than all before.
+    Nearer(Witness),
+    /// It is not: along an axis from the shape to it, of any length, or zero where none is known.
+    Beyond(DVec3),
 }

@@ -9,6 +9,9 @@ use crate::pair::glance::{Points, dot};
 /// Of the hull of more points, a box around them is looked at: to multiply them all would take longer than what it spares.
 pub const POINTS_MAX: usize = 64;
 
+/// How often a point of what has edges is moved towards another body. A hull's is moved once less, as each support point takes many products.
+pub const ROUNDS: usize = 2;
+
 /// A convex body around its middle, in tree coordinates.
 #[expect(clippy::large_enum_variant, reason = "there is one on the stack while a distance is sought")]
 pub enum Body {
@@ -52,9 +55,13 @@ impl Body {
         }
     }
 
-    /// Whether it is only its middle, from where all that is nearest is found at once.
-    pub fn is_point(&self) -> bool {
-        matches!(self, Body::Edges(Edges { count: 0, .. }))
+    /// How often a point of it is moved towards triangles: of what is only its middle, never.
+    pub fn rounds(&self) -> usize {
+        match self {
+            Body::Edges(Edges { count: 0, .. }) => 0,
+            Body::Edges(_) => ROUNDS,
+            Body::Points { .. } => ROUNDS - 1,
+        }
     }
 
     /// How far it reaches along directions.
@@ -105,26 +112,34 @@ impl Body {
         way: &Points<S>,
         support: &Points<S>,
     ) -> Points<S> {
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         match self {
-            Body::Edges(Edges { halves, duals, count }) => {
-                let there = [from[0] + way[0], from[1] + way[1], from[2] + way[2]];
-                let mut nearest = [zero; 3];
-                for (half, dual) in halves.iter().zip(duals).take(*count) {
-                    let part = dot(&there, &splat(simd, dual)).min(one).max(-one);
-                    for axis in 0..3 {
-                        nearest[axis] += part * f32x8::splat(simd, half[axis]);
-                    }
-                }
-                nearest
+            Body::Edges(edges) => {
+                edges.nearest(simd, &[from[0] + way[0], from[1] + way[1], from[2] + way[2]])
             }
             Body::Points { .. } => {
+                let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
                 let chord = [support[0] - from[0], support[1] - from[1], support[2] - from[2]];
                 let part = dot(&chord, way) / dot(&chord, &chord).max(f32x8::splat(simd, f32::MIN_POSITIVE));
                 let part = part.min(one).max(zero);
                 [from[0] + chord[0] * part, from[1] + chord[1] * part, from[2] + chord[2] * part]
             }
         }
+    }
+}
+
+impl Edges {
+    /// The points nearest to others, if the edges are perpendicular; if not, points near to them.
+    #[inline(always)]
+    pub fn nearest<S: Simd>(&self, simd: S, there: &Points<S>) -> Points<S> {
+        let one = f32x8::splat(simd, 1.0);
+        let mut nearest = [f32x8::splat(simd, 0.0); 3];
+        for (half, dual) in self.halves.iter().zip(&self.duals).take(self.count) {
+            let part = dot(there, &splat(simd, dual)).min(one).max(-one);
+            for axis in 0..3 {
+                nearest[axis] += part * f32x8::splat(simd, half[axis]);
+            }
+        }
+        nearest
     }
 }
 

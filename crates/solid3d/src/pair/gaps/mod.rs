@@ -1,10 +1,11 @@
 //! How far a convex shape is at least from eight things: the boxes of a node, and the triangles of a leaf, by their images.
 //!
 //! All is in tree coordinates, from the middle of the shape on. Along any direction n a thing begins at some height, and the shape ends at
-//! another: the gap over |n| is no more than their distance. Looked along are what parted the shape from the nearest triangle so far, and ways
-//! from points of the shape to the nearest point of each thing. For triangles the points are then moved towards these, once for each of
-//! [`ROUNDS`]: of a box or a segment to where it is nearest to them, of a hull along the way to its support point (Frank and Wolfe, *An algorithm
-//! for quadratic programming*, 1956). The last two points are also no nearer than the distance is.
+//! another: the gap over |n| is no more than their distance. Looked along are [`axes`] that told the shape from triangles before, and ways
+//! from points of the shape to the nearest point of each thing, beginning with its middle for boxes, and for triangles with a point near to the
+//! nearest so far. The points are then moved towards these for some [`rounds`](Body::rounds), but for a hull and boxes: of a box or a segment to where it is nearest to
+//! them, of a hull along the way to its support point (Frank and Wolfe, *An algorithm for quadratic programming*, 1956). The last two points are
+//! also no nearer than the distance is.
 //!
 //! # The error
 //!
@@ -20,6 +21,7 @@
 //! [`ROUNDING`] is 16u, and stands for what is relative to R + S: once for gaps, and once more for the distance of two points, of which each is
 //! off by less. What underflows in |n|, less than 2^-73, is below [`TINY`].
 
+mod axes;
 mod body;
 mod triangles;
 
@@ -28,7 +30,8 @@ use fearless_simd::{Simd, f32x8, f64x4};
 use glam::{DMat3, DVec3};
 use solid_convex::Support;
 
-use self::body::{Body, POINTS_MAX, rounded, splat};
+use self::axes::{Axes, lowest_of_boxes, lowest_of_triangles};
+use self::body::{Body, POINTS_MAX, ROUNDS, rounded, splat};
 use self::triangles::Triangles;
 use super::direct::Direct;
 use super::frame::Frame;
@@ -49,9 +52,6 @@ const TINY: f32 = f32::from_bits((127 - 63) << 23);
 
 /// Sizes up to here neither overflow nor turn into what is no number; of what is farther nothing is said.
 const SIZE_MAX: f64 = (1u64 << 30) as f64;
-
-/// How often the points of a shape are moved.
-const ROUNDS: usize = 2;
 
 /// A convex shape, apart from which things are.
 pub(super) struct Gaps {
@@ -76,8 +76,7 @@ pub(super) struct Gaps {
     stretch: f64,
     /// A point of the shape that is near to the nearest triangle so far.
     from: [f32; 3],
-    /// The way from there, of length one, and how far the shape reaches along it.
-    kept: Option<([f32; 3], f32)>,
+    axes: Axes,
 }
 
 impl Gaps {
@@ -122,23 +121,22 @@ impl Gaps {
             unit,
             stretch,
             from: [0.0; 3],
-            kept: None,
+            axes: Axes::default(),
         })
     }
 
-    /// From now on looks from a point of the shape, given in its space, and along the way from there, in the common frame, to the nearest
-    /// triangle.
-    #[inline(always)]
-    pub fn turn<S: Simd>(&mut self, simd: S, from: DVec3, way: DVec3) {
+    /// From now on looks from a point of the shape, given in its space, too, which is near to the nearest triangle.
+    pub fn look_from(&mut self, from: DVec3) {
         // Of what is round, the body is the core.
         self.from = if self.radius > 0.0 { [0.0; 3] } else { rounded(self.to_tree * (from - self.middle)) };
-        self.kept = (self.normal_to_tree * way).try_normalize().map(
-            #[inline(always)]
-            |way| {
-                let way = rounded(way);
-                (way, self.body.reach(simd, &splat(simd, &way)).to_array()[0])
-            },
-        );
+    }
+
+    /// From now on looks along an axis of the common frame too: one that tells the shape from a triangle, to which it points.
+    #[inline(always)]
+    pub fn look_along<S: Simd>(&mut self, simd: S, axis: DVec3) {
+        if let Some(axis) = (self.normal_to_tree * axis).try_normalize() {
+            self.axes.keep(simd, rounded(axis), &self.body);
+        }
     }
 
     /// Raises lower bounds of the distances of boxes, in the common frame.
@@ -159,29 +157,25 @@ impl Gaps {
             let (min, max) = boxes.axis(simd, axis);
             (least[axis], greatest[axis]) = (min - middle, max - middle);
         }
-        let mut gap = f32x8::splat(simd, f32::NEG_INFINITY);
-        for from in [[0.0; 3], self.from] {
+        let mut gap = self.axes.gap(
+            simd,
+            #[inline(always)]
+            |axis| lowest_of_boxes(&least, &greatest, axis),
+        );
+        let mut from = [zero; 3];
+        for _ in 0..=ROUNDS {
             let [mut way, mut nearest] = [[zero; 3]; 2];
             for axis in 0..3 {
-                let from = f32x8::splat(simd, from[axis]);
-                nearest[axis] = from.max(least[axis]).min(greatest[axis]);
-                way[axis] = nearest[axis] - from;
+                nearest[axis] = from[axis].max(least[axis]).min(greatest[axis]);
+                way[axis] = nearest[axis] - from[axis];
             }
             let length = dot(&way, &way).sqrt() + tiny;
             let some = (dot(&nearest, &way) - self.body.reach(simd, &way)) / length;
             // Of a box that the point is in, nothing is known.
             gap = (some.simd_gt(gap) & length.simd_gt(tiny)).select(some, gap);
-            if self.kept.is_none() {
-                break; // the second point is the first
-            }
-        }
-        if let Some((way, reach)) = &self.kept {
-            let mut height = zero;
-            for axis in 0..3 {
-                let way = f32x8::splat(simd, way[axis]);
-                height += (way * least[axis]).min(way * greatest[axis]);
-            }
-            gap = gap.max(height - f32x8::splat(simd, *reach));
+            // Support points of a hull for each box take longer than what they spare.
+            let Body::Edges(edges) = &self.body else { break };
+            from = edges.nearest(simd, &nearest);
         }
         // Boxes lie within 1 on each axis, and their ends and the middle are rounded.
         let furthest = 2.0 * self.middle_in_tree.abs().element_sum() + 3.0;
@@ -215,28 +209,31 @@ impl Gaps {
             return lanes;
         }
         let limit = ((distance + self.radius) / self.unit + error) * (1.0 + ROUNDING);
-        let mut gap = f32x8::splat(simd, f32::NEG_INFINITY);
-        if let Some((way, reach)) = &self.kept {
-            gap = lowest(&corners, &splat(simd, way)) - f32x8::splat(simd, *reach);
-            let near = lanes & !at_least(simd, gap, limit);
-            if near == 0 {
-                return 0;
-            }
+        let mut gap = self.axes.gap(
+            simd,
+            #[inline(always)]
+            |axis| lowest_of_triangles(&corners, axis),
+        );
+        if lanes & !at_least(simd, gap, limit) == 0 {
+            return 0;
         }
         let triangles = Triangles::new(simd, corners);
         let tiny = f32x8::splat(simd, TINY);
         let mut from = splat(simd, &self.from);
         let mut nearest = f32x8::splat(simd, f32::INFINITY);
-        for round in 0..=ROUNDS {
+        for round in 0..=self.body.rounds() {
             let way = triangles.toward(simd, &from);
             let length = dot(&way, &way).sqrt() + tiny;
             nearest = nearest.min(length);
-            if round == ROUNDS || self.body.is_point() {
-                gap = greater(gap, (lowest(&triangles.corners, &way) - self.body.reach(simd, &way)) / length);
+            if round == self.body.rounds() {
+                gap = greater(
+                    gap,
+                    (lowest_of_triangles(&triangles.corners, &way) - self.body.reach(simd, &way)) / length,
+                );
                 break;
             }
             let (support, reach) = self.body.furthest(simd, &way);
-            gap = greater(gap, (lowest(&triangles.corners, &way) - reach) / length);
+            gap = greater(gap, (lowest_of_triangles(&triangles.corners, &way) - reach) / length);
             if lanes & !at_least(simd, gap, limit) == 0 {
                 return 0;
             }
@@ -280,12 +277,6 @@ struct Placed<S: Simd> {
     error: f64,
     /// The sum of the magnitudes that their coordinates are made of.
     furthest: f64,
-}
-
-/// How high three points are along a direction, the lowest of them.
-#[inline(always)]
-fn lowest<S: Simd>([p, q, r]: &[Points<S>; 3], way: &Points<S>) -> f32x8<S> {
-    dot(p, way).min(dot(q, way)).min(dot(r, way))
 }
 
 /// The greater ones; the first where the second is no number.
@@ -365,7 +356,8 @@ mod tests {
                 let [from_complex, from_convex] = &frame.common;
                 let way =
                     from_complex.transform_point3(points.on_a) - from_convex.transform_point3(points.on_b);
-                dispatch!(simd => gaps.turn(simd, points.on_b, way));
+                gaps.look_from(points.on_b);
+                dispatch!(simd => gaps.look_along(simd, way));
             }
             let images = complex.images().expect("it is a mesh");
             for leaf in complex.tree().leaves() {

@@ -1,0 +1,54 @@
+//! Axes that told the shape from triangles: mostly they tell it from others too.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
+
+use super::body::{Body, splat};
+use crate::pair::glance::{Points, dot};
+
+/// How many are kept. Of a hull beside a terrain that is as wide, one more than the first halves the time of a distance, four save another
+/// tenth, and eight no more.
+const KEPT: usize = 4;
+
+/// The axes kept last, which take turns: each of length one in tree coordinates, with how far the shape reaches along it.
+#[derive(Clone, Copy, Default)]
+pub struct Axes {
+    kept: [([f32; 3], f32); KEPT],
+    len: usize,
+    next: usize,
+}
+
+impl Axes {
+    #[inline(always)]
+    pub fn keep<S: Simd>(&mut self, simd: S, axis: [f32; 3], body: &Body) {
+        self.kept[self.next] = (axis, body.reach(simd, &splat(simd, &axis)).to_array()[0]);
+        self.len = self.len.max(self.next + 1);
+        self.next = (self.next + 1) % KEPT;
+    }
+
+    /// How far eight things are beyond the shape, along the axis along which that is furthest; `lowest` gives how high they begin along a direction.
+    #[inline(always)]
+    pub fn gap<S: Simd>(&self, simd: S, lowest: impl Fn(&Points<S>) -> f32x8<S>) -> f32x8<S> {
+        let mut gap = f32x8::splat(simd, f32::NEG_INFINITY);
+        for (axis, reach) in &self.kept[..self.len] {
+            gap = gap.max(lowest(&splat(simd, axis)) - f32x8::splat(simd, *reach));
+        }
+        gap
+    }
+}
+
+/// How high eight boxes begin along a direction.
+#[inline(always)]
+pub fn lowest_of_boxes<S: Simd>(least: &Points<S>, greatest: &Points<S>, way: &Points<S>) -> f32x8<S> {
+    let [x, y, z] = [0, 1, 2].map(
+        #[inline(always)]
+        |axis| (way[axis] * least[axis]).min(way[axis] * greatest[axis]),
+    );
+    x + y + z
+}
+
+/// How high eight triangles begin along a direction.
+#[inline(always)]
+pub fn lowest_of_triangles<S: Simd>([p, q, r]: &[Points<S>; 3], way: &Points<S>) -> f32x8<S> {
+    dot(p, way).min(dot(q, way)).min(dot(r, way))
+}
