@@ -7,16 +7,16 @@ use std::ops::ControlFlow;
 
 use common::{
     Case, Soup, assert_rate, direction, in_cube, log_uniform, placement, random_complex, random_mesh,
-    rescaled, shape_of, stretch, torus,
+    rescaled, shape_of, sheet, stretch, torus,
 };
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid_oracle::{
     Convex, Verdict, distance_bounds, hulls_intersect_exact, mesh_distance, mesh_pairs, verdict,
 };
-use solid3d::{Aabb, Error, Shape, glam, query};
+use solid3d::{Aabb, Error, Shape, World, glam, query};
 
 impl Case {
     fn pair_of_meshes(rng: &mut StdRng) -> Case {
@@ -616,4 +616,42 @@ fn either_order_says_the_same() {
         hits += usize::from(!found.is_empty());
     }
     assert_rate("pairs that nearly touch", hits, cases);
+}
+
+/// Law: what is as wide as a terrain, tilted beside it, is told apart from it, or how far it is, by few boxes: of boxes along the axes of the
+/// terrain many overlap that around it.
+#[test]
+fn what_is_as_wide_as_a_terrain_opens_few_nodes() {
+    const FRAMES: u32 = 50;
+    const SLOPE: f64 = 1.2;
+    let terrain = sheet(129, 129, [false, false], |u, v| {
+        let bumps = (31.0 * u).sin() * (23.0 * v).cos() + 0.5 * (67.0 * u + 41.0 * v).sin();
+        DVec3::new(2.0 * u - 1.0, 0.03 * bumps + SLOPE * u, 2.0 * v - 1.0)
+    });
+    let normal = DVec3::new(-SLOPE, 2.0, 0.0).normalize();
+    let corners = [0u32, 1, 2, 3, 4, 5, 6, 7]
+        .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5);
+    let hull = Shape::convex_hull(&corners);
+    for (shape, most) in [(Shape::cuboid([1.0; 3]), [60, 50]), (hull, [60, 100])] {
+        let mut world = World::new();
+        let below = world.add(&terrain.shape(), DAffine3::IDENTITY).unwrap();
+        let above = world.add(&shape.unwrap(), DAffine3::IDENTITY).unwrap();
+        world.set_clearance(0.5).unwrap();
+        let mut opened = [0; 2];
+        for frame in 0..FRAMES {
+            let turn = DQuat::from_euler(EulerRot::YZX, 0.12 * f64::from(frame), 0.9, 0.4);
+            let lowest = corners.map(|corner| normal.dot(turn * corner)).into_iter().fold(0.0, f64::min);
+            let up = DVec3::Y * 0.5 * SLOPE + normal * (0.05 - lowest);
+            world.set_placement(above, DAffine3::from_rotation_translation(turn, up)).unwrap();
+            let before = world.statistics().box_tests;
+            assert_eq!(world.test_pair(below, above).unwrap(), None);
+            let between = world.statistics().box_tests;
+            assert_eq!(world.near().len(), 1);
+            opened[0] += between - before;
+            opened[1] += world.statistics().box_tests - between;
+        }
+        let mean = opened.map(|opened| opened / u64::from(FRAMES));
+        println!("{mean:?} nodes, at most {most:?}");
+        assert!(mean[0] < most[0] && mean[1] < most[1], "{mean:?}");
+    }
 }

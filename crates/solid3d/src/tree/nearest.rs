@@ -34,7 +34,7 @@ impl Boxes<'_> {
 pub(crate) trait NearLeaves {
     /// Raises lower bounds of the distances to anything in the boxes of a node, where it knows better; of lanes that are not in use they mean nothing.
     #[inline(always)]
-    fn raise<S: Simd>(&self, _simd: S, _boxes: &Boxes, _bounds: &mut [f64; WIDTH]) {}
+    fn raise<S: Simd>(&mut self, _simd: S, _boxes: &Boxes, _bounds: &mut [f64; WIDTH]) {}
 
     /// Asks for the memory of a leaf that the walk may come to.
     #[inline(always)]

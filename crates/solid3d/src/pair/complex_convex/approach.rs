@@ -83,7 +83,7 @@ impl NearLeaves for Approach<'_> {
     }
 
     #[inline(always)]
-    fn raise<S: Simd>(&self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
+    fn raise<S: Simd>(&mut self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
         if let Some(gaps) = self.gaps.as_ref().filter(|_| !matches!(self.direct, Direct::Round(_))) {
             gaps.raise(simd, boxes, bounds);
         }

@@ -9,13 +9,17 @@ use solid_convex::{Outcome, Witness, gjk};
 
 use super::super::Scratch;
 use super::super::direct::Direct;
-use super::super::frame::Stretch;
+use super::super::frame::{Frame, Stretch};
+use super::super::gaps::Gaps;
 use super::super::glance::Glance;
 use super::super::row::{Row, Verdict};
 use super::super::table::{PlacedComplex, PlacedConvex};
 use super::shadow::Shadow;
 use super::{CLEARLY_APART, frame};
-use crate::tree::{Leaf, LeafImages, NearLeaves, bits};
+use crate::tree::{Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves, bits};
+
+/// A walk that opens so many nodes is long: better bounds are then worth preparing.
+const LONG: usize = 8;
 
 /// Calls `found` with the primitives that meet the convex shape; `wants_any`: with whichever of them is found first, and without a point.
 pub(super) fn primitives(
@@ -44,8 +48,21 @@ pub(super) fn primitives(
     } else {
         None
     };
-    let mut meeting =
-        Meeting { complex, convex, direct, map, shadow, glance, row, primitive_tests, found, end };
+    let mut meeting = Meeting {
+        complex,
+        convex,
+        frame: &frame,
+        direct,
+        map,
+        shadow,
+        glance,
+        opened: 0,
+        gaps: None,
+        row,
+        primitive_tests,
+        found,
+        end,
+    };
     // What is clearly apart does not meet; nothing else is sought.
     let mut limit = CLEARLY_APART;
     complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut limit, traversal, &mut meeting);
@@ -56,12 +73,16 @@ pub(super) fn primitives(
 struct Meeting<'s> {
     complex: PlacedComplex<'s>,
     convex: PlacedConvex<'s>,
+    frame: &'s Frame,
     direct: Direct,
     /// Where primitives are placed: in the common frame, or the space of a box.
     map: DAffine3,
     shadow: Shadow<'s>,
     /// What looks at images of triangles, where any that meets will do.
     glance: Option<(Glance, &'s LeafImages)>,
+    /// How many nodes were opened, and what bounds the distances of their boxes once they are many.
+    opened: usize,
+    gaps: Option<Gaps>,
     row: &'s mut Option<Row>,
     primitive_tests: &'s mut u64,
     found: &'s mut dyn FnMut(u32, Option<Witness>) -> ControlFlow<()>,
@@ -70,6 +91,21 @@ struct Meeting<'s> {
 }
 
 impl NearLeaves for Meeting<'_> {
+    #[inline(always)]
+    fn raise<S: Simd>(&mut self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
+        self.opened += 1;
+        // Of what is round, the bounds are as good as they get.
+        if self.opened == LONG && !matches!(self.direct, Direct::Round(_)) {
+            self.gaps = Gaps::new(self.convex.0, &self.direct, self.frame, self.complex.0.tree().normal());
+            if let Some(gaps) = &mut self.gaps {
+                gaps.look_along(simd, self.shadow.axis());
+            }
+        }
+        if let Some(gaps) = &self.gaps {
+            gaps.raise(simd, boxes, bounds);
+        }
+    }
+
     #[inline(always)]
     fn prefetch(&self, leaf: &Leaf) {
         if let Some((_, images)) = &self.glance {
@@ -140,6 +176,9 @@ impl Meeting<'_> {
                 Outcome::Separated { axis } => {
                     if matches!(self.direct, Direct::None) {
                         self.shadow.turn(axis);
+                        if let Some(gaps) = &mut self.gaps {
+                            gaps.look_along(simd, axis);
+                        }
                         near &= !self.shadow.beyond(simd, row, CLEARLY_APART);
                     }
                 }

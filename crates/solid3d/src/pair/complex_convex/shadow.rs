@@ -74,6 +74,11 @@ impl<'s> Shadow<'s> {
         ])
     }
 
+    /// What told the primitives looked at last from the shape.
+    pub fn axis(&self) -> DVec3 {
+        self.axis
+    }
+
     /// Takes another axis.
     pub fn turn(&mut self, axis: DVec3) {
         (self.axis, self.greatest) = (axis, self.reach(axis));
