@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::nearest::push_unless_far;
+use super::insertion::push_unless_far;
 use super::node::Child;
 use super::pairs::{Duel, Pair, Step, extent};
 use super::ray::TreeRay;

@@ -39,6 +39,7 @@
 //! 5. Every order is a function of the input alone, not of the number of threads.
 
 mod beam;
+mod broods;
 mod build;
 mod cast_pairs;
 mod clusters;
@@ -46,6 +47,7 @@ mod cost;
 mod crossing;
 mod eights;
 mod facing;
+mod insertion;
 mod lanes;
 mod leaf_images;
 mod leaf_points;

@@ -8,7 +8,6 @@ use super::lanes::{LANES, bits, distances_squared_to_box, lanes};
 use super::metric::{Folded, PairMetric};
 use super::node::{Child, Kind, Node, WIDTH};
 use super::packed::PackedBox;
-use super::traversal::STACK_USUAL;
 use super::{Leaf, Place, Traversal, Tree};
 use crate::Aabb;
 
@@ -32,6 +31,10 @@ impl Boxes<'_> {
 
 /// What is done with leaves, in vectors of the level of instructions that the walk runs on.
 pub(crate) trait NearLeaves {
+    /// Of how many nodes, the last opened, the nearest child comes next: nodes that were opened since may hold what is farther. Where the first
+    /// that is found will do, one is enough.
+    const NODES_LOOKED_AT: usize = 3;
+
     /// Raises lower bounds of the distances to anything in the boxes of a node, where it knows better; of lanes that are not in use they mean nothing.
     #[inline(always)]
     fn raise<S: Simd>(&mut self, _simd: S, _boxes: &Boxes, _bounds: &mut [f64; WIDTH]) {}
@@ -117,30 +120,28 @@ impl Tree {
 
     /// `bounds` fills in lower bounds of the lanes in use.
     #[inline(always)] // into the function that is compiled for a level of instructions
-    fn walk_near<S: Simd>(
+    fn walk_near<S: Simd, V: NearLeaves>(
         &self,
         simd: S,
-        visitor: &mut impl NearLeaves,
+        visitor: &mut V,
         bounds: impl Fn(&Node, &mut [f64; WIDTH]),
         best: &mut f64,
         traversal: &mut Traversal,
     ) {
-        let Traversal { counters, near: stack, .. } = traversal;
-        stack.clear();
-        stack.reserve(STACK_USUAL);
-        // Of a node with one near child that is next: what is pushed would be popped at once.
+        let Traversal { counters, near: broods, .. } = traversal;
+        broods.clear();
+        // Of a node with one near child that is next: what is added would be taken at once.
         let mut only = Some((f64::NEG_INFINITY, Place::ROOT));
-        while let Some((least, place)) = only.take().or_else(|| stack.pop()) {
+        while let Some((least, place)) = only.take().or_else(
+            #[inline(always)]
+            || broods.take(simd, V::NODES_LOOKED_AT, *best),
+        ) {
             // Bounds below zero are as good as zero.
             if *best == 0.0 {
                 return;
             }
             let child = self.child_at(place);
             if least >= *best || child == Child::EMPTY {
-                continue;
-            }
-            if stack.last().is_some_and(|next| next.0 < least) {
-                defer((least, place), stack);
                 continue;
             }
             match child.kind() {
@@ -157,20 +158,22 @@ impl Tree {
                     bounds(node, &mut of_lanes);
                     visitor.raise(simd, &Boxes(node), &mut of_lanes);
                     let near = !reaching(simd, &of_lanes, *best);
-                    let entry = |lane: usize| (of_lanes[lane], Place::lane(index, lane));
-                    if near.is_power_of_two() {
-                        only = Some(entry(near.trailing_zeros() as usize));
+                    if near == 0 {
                         continue;
                     }
-                    let from = stack.len();
+                    if near.is_power_of_two() {
+                        let lane = near.trailing_zeros() as usize;
+                        only = Some((of_lanes[lane], Place::lane(index, lane)));
+                        continue;
+                    }
                     for lane in bits(near) {
                         self.prefetch(
                             (node.child[lane], Place::lane(index, lane)),
                             #[inline(always)]
                             |leaf| visitor.prefetch(leaf),
                         );
-                        push_unless_far(entry(lane), *best, stack, from);
                     }
+                    broods.add(simd, index, &of_lanes, *best);
                 }
             }
         }
@@ -234,65 +237,4 @@ fn bound_lanes_on<S: Simd>(
     }
     all[0].store_slice(&mut bounds[..4]);
     all[1].store_slice(&mut bounds[4..]);
-}
-
-/// Puts an entry back below those that are nearer, at most as many as a node has: nodes that were opened since may hold what is farther.
-#[inline(always)]
-fn defer<T: Copy>(entry: (f64, T), stack: &mut Vec<(f64, T)>) {
-    let end = stack.len().saturating_sub(WIDTH - 1);
-    insert(entry, stack, end, |bound| bound < entry.0);
-}
-
-/// Adds an entry nearer than `best` to those from `from` on, of which the nearest comes last.
-///
-/// An insertion, for at most eight. Of equal bounds, what was added first comes last. (Telling each its place by how many of eight
-/// are farther, without a branch, took a fifth longer for a ray: most nodes give it one or two.)
-#[inline]
-pub(super) fn push_unless_far<K: Copy + PartialOrd, T: Copy>(
-    entry: (K, T),
-    best: K,
-    stack: &mut Vec<(K, T)>,
-    from: usize,
-) {
-    // A bound that is no number is below everything.
-    if entry.0 >= best {
-        return;
-    }
-    insert(entry, stack, from, |bound| bound <= entry.0);
-}
-
-/// Puts an entry below those at the top that are `nearer`, but for what is below `end`.
-#[inline(always)]
-fn insert<K: Copy, T: Copy>(entry: (K, T), stack: &mut Vec<(K, T)>, end: usize, nearer: impl Fn(K) -> bool) {
-    stack.push(entry);
-    let mut at = stack.len() - 1;
-    while at > end && nearer(stack[at - 1].0) {
-        // Number by number: those just written apart, and then read as one, as a swap does, are waited for.
-        let (bound, what) = stack[at - 1];
-        stack[at] = (bound, what);
-        at -= 1;
-    }
-    stack[at] = entry;
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn entries_are_kept_nearest_last() {
-        let mut stack = vec![(0.5, 'z')];
-        for entry in [(3.0, 'a'), (1.0, 'b'), (9.0, 'c'), (1.0, 'd'), (2.0, 'e')] {
-            push_unless_far(entry, 9.0, &mut stack, 1);
-        }
-        assert_eq!(stack, [(0.5, 'z'), (3.0, 'a'), (2.0, 'e'), (1.0, 'd'), (1.0, 'b')]);
-    }
-
-    /// What is not known to be far may be near.
-    #[test]
-    fn an_entry_without_a_bound_is_kept() {
-        let mut stack = vec![(0.5, 'z')];
-        push_unless_far((f64::NAN, 'a'), 9.0, &mut stack, 1);
-        assert_eq!(stack.last().map(|entry| entry.1), Some('a'));
-    }
 }

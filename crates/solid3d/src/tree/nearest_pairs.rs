@@ -7,9 +7,9 @@ use solid_convex::simd::{Level, dispatch, level};
 
 use super::beam::seek;
 use super::facing::{Faces, Facing};
+use super::insertion::push_unless_far;
 use super::lanes::{distances_squared, extents};
 use super::metric::{Folded, PairMetric};
-use super::nearest::push_unless_far;
 use super::node::WIDTH;
 use super::pairs::{Duel, Pair, Step, Tested};
 use super::relative::Relative;

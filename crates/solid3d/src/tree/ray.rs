@@ -18,8 +18,8 @@ use glam::DVec3;
 use solid_convex::simd::{self, Level, dispatch};
 use solid_convex::unit_scale;
 
+use super::insertion::push_unless_far;
 use super::lanes::bits;
-use super::nearest::push_unless_far;
 use super::node::{Kind, Node, WIDTH};
 use super::normal::round_down;
 use super::{Leaf, Place, Traversal, Tree};

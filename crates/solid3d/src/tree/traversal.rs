@@ -1,6 +1,7 @@
 //! What every query needs from its caller: a stack to work on, and counters to add to.
 
 use super::Place;
+use super::broods::Broods;
 use super::node::Child;
 use super::pairs::Pair;
 use super::siblings::Stack;
@@ -46,11 +47,11 @@ pub struct Traversal {
     pub(super) nodes: Vec<u32>,
     /// Pairs of subtrees to visit.
     pub(super) pairs: Stack,
-    /// Subtrees to visit, with the lower bound of their distance; of each node, the nearest last.
-    pub(super) near: Vec<(f64, Place)>,
-    /// Subtrees to visit along a ray, with the parameter at which it enters them, likewise.
+    /// Subtrees to visit, the nearest first.
+    pub(super) near: Broods,
+    /// Subtrees to visit along a ray, with the parameter at which it enters them; of each node, the nearest last.
     pub(super) ahead: Vec<(f32, (Child, Place))>,
-    /// The same for pairs of subtrees.
+    /// The same for pairs of subtrees, by lower bounds of their distances.
     pub(super) near_pairs: Vec<(f64, Pair)>,
 }
 
@@ -60,7 +61,7 @@ impl Traversal {
         let Traversal { counters: _, nodes, pairs, near, ahead, near_pairs } = self;
         nodes.capacity() * size_of::<u32>()
             + pairs.bytes()
-            + near.capacity() * size_of::<(f64, Place)>()
+            + near.bytes()
             + ahead.capacity() * size_of::<(f32, (Child, Place))>()
             + near_pairs.capacity() * size_of::<(f64, Pair)>()
     }

@@ -91,6 +91,8 @@ struct Meeting<'s> {
 }
 
 impl NearLeaves for Meeting<'_> {
+    const NODES_LOOKED_AT: usize = 1;
+
     #[inline(always)]
     fn raise<S: Simd>(&mut self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
         self.opened += 1;
