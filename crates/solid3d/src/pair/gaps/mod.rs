@@ -2,10 +2,10 @@
 //!
 //! All is in tree coordinates, from the middle of the shape on. Along any direction n a thing begins at some height, and the shape ends at
 //! another: the gap over |n| is no more than their distance. Looked along are [`axes`] that told the shape from triangles before, and ways
-//! from points of the shape to the nearest point of each thing, beginning with its middle for boxes, and for triangles with a point near to the
-//! nearest so far. The points are then moved towards these for some [`rounds`](Body::rounds), but for a hull and boxes: of a box or a segment to where it is nearest to
-//! them, of a hull along the way to its support point (Frank and Wolfe, *An algorithm for quadratic programming*, 1956). The last two points are
-//! also no nearer than the distance is.
+//! from points of the shape to the nearest point of each thing: at first from its middle to boxes, and to triangles from a point near to the
+//! nearest so far. The points are then moved towards these for some [`rounds`](Body::rounds): of a box or a segment to where it is nearest to
+//! them, of a hull, towards triangles alone, along the way to its support point (Frank and Wolfe, *An algorithm for quadratic programming*,
+//! 1956). The last two points are also no nearer than the distance is.
 //!
 //! # The error
 //!
@@ -30,9 +30,9 @@ use fearless_simd::{Simd, f32x8, f64x4};
 use glam::{DMat3, DVec3};
 use solid_convex::Support;
 
-use self::axes::{Axes, lowest_of_boxes, lowest_of_triangles};
+use self::axes::Axes;
 use self::body::{Body, POINTS_MAX, ROUNDS, rounded, splat};
-use self::triangles::Triangles;
+use self::triangles::{Triangles, lowest_of_triangles};
 use super::direct::Direct;
 use super::frame::Frame;
 use super::glance::{Points, dot};
@@ -277,6 +277,16 @@ struct Placed<S: Simd> {
     error: f64,
     /// The sum of the magnitudes that their coordinates are made of.
     furthest: f64,
+}
+
+/// How high eight boxes begin along a direction.
+#[inline(always)]
+fn lowest_of_boxes<S: Simd>(least: &Points<S>, greatest: &Points<S>, way: &Points<S>) -> f32x8<S> {
+    let [x, y, z] = [0, 1, 2].map(
+        #[inline(always)]
+        |axis| (way[axis] * least[axis]).min(way[axis] * greatest[axis]),
+    );
+    x + y + z
 }
 
 /// The greater ones; the first where the second is no number.

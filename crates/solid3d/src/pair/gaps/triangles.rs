@@ -65,3 +65,9 @@ impl<S: Simd> Triangles<S> {
         best
     }
 }
+
+/// How high eight triangles begin along a direction.
+#[inline(always)]
+pub fn lowest_of_triangles<S: Simd>([p, q, r]: &[Points<S>; 3], way: &Points<S>) -> f32x8<S> {
+    dot(p, way).min(dot(q, way)).min(dot(r, way))
+}
