@@ -1,6 +1,6 @@
 //! A bit for each of many things.
 
-use super::room::resize;
+use super::room::{give_back, resize};
 use crate::tree::bits;
 
 /// Bits of a word.
@@ -16,6 +16,25 @@ impl Bits {
         if len > self.0.len() * WORD {
             resize(&mut self.0, len.div_ceil(WORD), 0);
         }
+    }
+
+    /// Forgets the bits from `len` on.
+    pub fn cut(&mut self, len: usize) {
+        self.0.truncate(len.div_ceil(WORD));
+        if let Some(last) = self.0.get_mut(len / WORD) {
+            *last &= !(u64::MAX << (len % WORD));
+        }
+    }
+
+    /// Gives back the memory of many that there no longer are.
+    pub fn give_back(&mut self) {
+        give_back(&mut self.0);
+    }
+
+    /// One more than the last that is set.
+    pub fn end(&self) -> usize {
+        let last = self.0.iter().rposition(|&word| word != 0);
+        last.map_or(0, |at| (at + 1) * WORD - self.0[at].leading_zeros() as usize)
     }
 
     #[inline]
@@ -72,7 +91,14 @@ mod tests {
                 truth.remove(&bit);
                 those.set(bit, false);
             }
+            if len % 50 == 0 {
+                let end = rng.random_range(len - 10..=len);
+                those.cut(end);
+                those.grow(len);
+                truth.retain(|&bit| (bit as usize) < end);
+            }
             assert!(those.iter().eq(truth.iter().copied()), "{len}");
+            assert_eq!(those.end(), truth.last().map_or(0, |&last| last as usize + 1));
         }
         assert!((300..700).contains(&hits), "{hits} bits were set");
     }

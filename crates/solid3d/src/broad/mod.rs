@@ -18,6 +18,7 @@
 mod bits;
 mod boxes;
 mod dynamic_tree;
+mod pair_ids;
 mod pair_lists;
 pub(crate) mod room;
 mod sweep_and_prune;

@@ -5,11 +5,18 @@ use solid_convex::simd::{dispatch, level};
 
 use super::bits::{Bits, WORD};
 use super::boxes::{AXES, Boxes};
-use super::room::{push, resize, resize_on_threads};
+use super::pair_ids::{PairIds, Proxies, key};
+use super::room::{extend, give_back, push, resize_on_threads};
 use super::{PairChange, PairId, Proxy};
 use crate::tree::bits;
 
 const END: u32 = u32::MAX;
+
+/// A list of more pairs than this is not walked along to find one.
+const LONG: usize = 64;
+
+/// A word of which so many pairs or fewer are in use is looked at pair by pair.
+const SPARSE: u32 = 8;
 
 /// The ends of a slot that is not in use: the next such slot stands in its links.
 const UNUSED: [Proxy; 2] = [0; 2];
@@ -43,6 +50,9 @@ pub(super) struct PairLists {
     unused: u32,
     /// By proxy: the first link of its list.
     heads: Vec<u32>,
+    /// Proxies all of whose pairs are in `ids`: those whose lists were found to be long, as in a crowd they are.
+    listed: Proxies,
+    ids: PairIds,
     /// Pairs whose `overlaps` was changed since changes were last settled; some may have been taken out since.
     touched: Vec<PairId>,
     /// What was settled since the last [`begin`](Self::begin).
@@ -61,6 +71,8 @@ impl Default for PairLists {
             links: vec![],
             unused: END,
             heads: vec![],
+            listed: Proxies::default(),
+            ids: PairIds::default(),
             touched: vec![],
             changes: vec![],
             found: vec![],
@@ -101,6 +113,15 @@ impl PairLists {
             }
         }
         self.links[id as usize] = links;
+        let [a, b] = self.ends[id as usize];
+        if self.is_listed(a, b) {
+            self.ids.insert(key(a, b), id);
+        }
+    }
+
+    /// Whether the pair of two proxies is in `ids`, if there is one.
+    fn is_listed(&self, a: Proxy, b: Proxy) -> bool {
+        self.listed.contains(&a) || self.listed.contains(&b)
     }
 
     fn take_slot(&mut self) -> PairId {
@@ -135,6 +156,10 @@ impl PairLists {
                 *self.previous_mut(next[side]) = previous[side];
             }
         }
+        let [a, b] = proxies;
+        if self.is_listed(a, b) {
+            self.ids.remove(&key(a, b));
+        }
         self.drop_slot(id);
     }
 
@@ -153,6 +178,7 @@ impl PairLists {
             taken(self.partner(link));
             self.remove(link / 2);
         }
+        self.listed.remove(&proxy);
     }
 
     /// Takes out the pairs of a proxy for which `stays` is false of the partner. They must not overlap, nor be shown to.
@@ -174,7 +200,10 @@ impl PairLists {
     pub fn forget_apart(&mut self) {
         assert!(self.touched.is_empty());
         self.heads.fill(END);
+        self.listed.clear();
+        self.ids.clear();
         self.unused = END;
+        self.cut(self.overlaps.end());
         for id in (0..self.ends.len() as PairId).rev() {
             if self.overlaps.is(id) {
                 self.hang(id);
@@ -182,6 +211,32 @@ impl PairLists {
                 self.drop_slot(id);
             }
         }
+    }
+
+    /// Forgets the slots from `len` on.
+    fn cut(&mut self, len: usize) {
+        self.ends.truncate(len);
+        self.links.truncate(len);
+        for bits in [&mut self.in_use, &mut self.overlaps, &mut self.shown] {
+            bits.cut(len);
+        }
+    }
+
+    /// Gives back the memory of many pairs that there no longer are.
+    pub fn give_back(&mut self) {
+        give_back(&mut self.ends);
+        give_back(&mut self.links);
+        for bits in [&mut self.in_use, &mut self.overlaps, &mut self.shown] {
+            bits.give_back();
+        }
+        if self.ids.is_empty() {
+            (self.ids, self.listed) = Default::default();
+        }
+    }
+
+    /// Whether there is no pair.
+    pub fn is_empty(&self) -> bool {
+        self.in_use.end() == 0
     }
 
     /// Says whether the boxes of a pair overlap.
@@ -203,18 +258,18 @@ impl PairLists {
         const NEAR_MAX: usize = 1 << 19;
         let (level, near) = (level(), boxes.len() <= NEAR_MAX);
         found.clear();
-        resize(found, ends.len().div_ceil(WORD), 0);
+        extend(found, in_use.words());
         for_each_word(ends, found, |(pairs, found): (&[[Proxy; 2]], &mut u64)| {
-            *found = if near {
+            *found &= if found.count_ones() <= SPARSE {
+                let overlap = |&at: &usize| boxes.overlap(pairs[at][0], pairs[at][1]);
+                bits(*found).filter(overlap).fold(0, |all, at| all | 1 << at)
+            } else if near {
                 dispatch!(level, simd => overlapping::<_, false>(simd, pairs, boxes))
             } else {
                 dispatch!(level, simd => overlapping::<_, true>(simd, pairs, boxes))
             };
         });
-        for (at, (was, (is, in_use))) in
-            (0..).zip(overlaps.words_mut().iter_mut().zip(found.iter().zip(in_use.words())))
-        {
-            let is = is & in_use;
+        for (at, (was, &is)) in (0..).zip(overlaps.words_mut().iter_mut().zip(&*found)) {
             for bit in bits(std::mem::replace(was, is) ^ is) {
                 push(touched, (at * WORD + bit) as PairId);
             }
@@ -298,16 +353,58 @@ impl PairLists {
 
     /// The pair of two proxies. Cost: follows the shorter of their two lists.
     pub fn find(&self, a: Proxy, b: Proxy) -> Option<PairId> {
+        self.find_within(a, b, usize::MAX).0
+    }
+
+    /// Whether two proxies may have no pair yet: a look that ends where both lists are long.
+    pub fn may_be_new(&self, a: Proxy, b: Proxy) -> bool {
+        self.find_within(a, b, LONG).0.is_none()
+    }
+
+    /// Adds a pair if it is not there. Of a crowd, in which each list is long, each is gone through once for all of its pairs.
+    pub fn insert_new(&mut self, a: Proxy, b: Proxy, overlaps: bool) {
+        let (mut id, steps) = self.find_within(a, b, LONG);
+        if id.is_none() && steps == LONG {
+            self.list_shorter(a, b);
+            id = self.ids.get(&key(a, b)).copied();
+        }
+        if id.is_none() {
+            self.insert(a, b, overlaps);
+        }
+    }
+
+    /// The pair of two proxies, if it is among the first so many of either list; and how far the lists were gone through.
+    fn find_within(&self, a: Proxy, b: Proxy, steps_max: usize) -> (Option<PairId>, usize) {
+        if self.is_listed(a, b) {
+            return (self.ids.get(&key(a, b)).copied(), 0);
+        }
         let (mut of_a, mut of_b) = (self.head(a), self.head(b));
-        while of_a != END && of_b != END {
+        let mut steps = 0;
+        while of_a != END && of_b != END && steps < steps_max {
             for (link, partner) in [(&mut of_a, b), (&mut of_b, a)] {
                 if self.partner(*link) == partner {
-                    return Some(*link / 2);
+                    return (Some(*link / 2), steps);
                 }
                 *link = self.next(*link);
             }
+            steps += 1;
         }
-        None
+        (None, steps)
+    }
+
+    /// Lists the one of two proxies whose list is shorter.
+    fn list_shorter(&mut self, a: Proxy, b: Proxy) {
+        let (mut of_a, mut of_b) = (self.head(a), self.head(b));
+        while of_a != END && of_b != END {
+            (of_a, of_b) = (self.next(of_a), self.next(of_b));
+        }
+        let shorter = if of_a == END { a } else { b };
+        self.listed.insert(shorter);
+        let mut link = self.head(shorter);
+        while link != END {
+            self.ids.insert(key(shorter, self.partner(link)), link / 2);
+            link = self.next(link);
+        }
     }
 
     /// The same, where it was shown to overlap.
@@ -334,6 +431,13 @@ impl PairLists {
 
     pub fn validate(&self) {
         let mut hanging = 0;
+        let listed = (0..).zip(&self.ends).filter(|&(id, &[a, b])| self.in_use.is(id) && self.is_listed(a, b));
+        let mut known = 0;
+        for (id, &[a, b]) in listed {
+            assert_eq!(self.ids.get(&key(a, b)), Some(&id));
+            known += 1;
+        }
+        assert_eq!(known, self.ids.len());
         for (proxy, &head) in self.heads.iter().enumerate() {
             let (mut previous, mut link) = (END, head);
             while link != END {
@@ -403,4 +507,92 @@ fn for_each_word(
         }
     }
     pairs.chunks(WORD).zip(words).for_each(find);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
+    use super::*;
+
+    /// Law: they are a map from pairs of which each is there once, also where all lists are long.
+    #[test]
+    fn they_say_what_a_tree_map_says_of_a_crowd() {
+        const PROXIES: Proxy = 3 * LONG as Proxy;
+        let mut rng = seeded(817);
+        let (mut lists, mut truth) = (PairLists::default(), BTreeMap::new());
+        lists.grow(PROXIES as usize);
+        for round in 0..4 {
+            for step in 0..20_000 {
+                let [a, b] = [0, 0].map(|_| rng.random_range(0..PROXIES));
+                if a == b {
+                    continue;
+                }
+                let pair = [a.min(b), a.max(b)];
+                assert_eq!(lists.find(a, b), truth.get(&pair).copied());
+                assert!(lists.may_be_new(a, b) || truth.contains_key(&pair));
+                if rng.random_bool(0.8) {
+                    lists.insert_new(a, b, rng.random_bool(0.7));
+                    truth.insert(pair, lists.find(a, b).unwrap());
+                } else if let Some(id) = truth.remove(&pair) {
+                    lists.remove(id);
+                }
+                if step % 1000 == 0 {
+                    lists.remove_all_of(a, |_| {});
+                    truth.retain(|pair, _| !pair.contains(&a));
+                }
+            }
+            lists.validate();
+            assert!(lists.listed.len() > PROXIES as usize / 2 && lists.listed.len() < PROXIES as usize);
+            lists.settle(|_| true);
+            lists.forget_apart();
+            truth.retain(|_, &mut id| (id as usize) < lists.ends.len() && lists.overlaps.is(id));
+            lists.validate();
+            assert!(lists.ids.is_empty() && truth.len() > 5_000, "{round}: {}", truth.len());
+        }
+    }
+
+    /// Law: to find whether a pair is there takes few steps; each list that is long is gone through once.
+    #[test]
+    fn a_crowd_is_found_in_few_steps() {
+        const PROXIES: Proxy = 10 * LONG as Proxy;
+        let mut lists = PairLists::default();
+        lists.grow(PROXIES as usize);
+        for b in 0..PROXIES {
+            for a in 0..b {
+                lists.insert_new(a, b, true);
+                let (found, steps) = lists.find_within(a, b, usize::MAX);
+                assert!(found.is_some() && steps <= LONG, "{a}, {b}: {steps} steps");
+            }
+        }
+        lists.validate();
+        // One whose list is as long as all others', but whose partners have short ones, as the ground has, is never gone through.
+        let mut lists = PairLists::default();
+        lists.grow(PROXIES as usize);
+        (1..PROXIES).for_each(|ball| lists.insert_new(0, ball, true));
+        assert!(lists.listed.is_empty());
+    }
+
+    /// Law: what a crowd took is given back when it is gone, and what there is then stands side by side.
+    #[test]
+    fn what_a_crowd_leaves_is_little() {
+        const PROXIES: Proxy = 300;
+        let mut lists = PairLists::default();
+        lists.grow(PROXIES as usize);
+        (0..PROXIES).for_each(|b| (0..b).for_each(|a| lists.insert_new(a, b, true)));
+        lists.settle(|_| true);
+        let neighbours: Vec<_> = (1..PROXIES).filter_map(|b| lists.find(b - 1, b)).collect();
+        for id in 0..lists.ends.len() as PairId {
+            lists.set_overlaps(id, id < 2000 && neighbours.contains(&id));
+        }
+        lists.settle(|_| true);
+        lists.forget_apart();
+        lists.give_back();
+        lists.validate();
+        assert!(lists.ends.len() <= 2000 && lists.ends.capacity() <= 4000 && lists.links.capacity() <= 4000);
+        assert!(lists.ids.capacity() == 0);
+    }
 }

@@ -51,10 +51,20 @@ fn push_word_to_full<T>(vector: &mut Vec<T>, element: T) {
 }
 
 /// Adds elements.
-#[cfg(feature = "rayon")]
 pub(crate) fn extend<T: Copy>(vector: &mut Vec<T>, elements: &[T]) {
     room(vector, vector.len() + elements.len());
     vector.extend_from_slice(elements);
+}
+
+/// Gives back most of what is unused where that is most of a vector, and much.
+pub(crate) fn give_back<T>(vector: &mut Vec<T>) {
+    /// What is unused of fewer elements is kept.
+    const MANY: usize = 1 << 12;
+    /// And what is less than so many times what is used.
+    const TIMES: usize = 8;
+    if vector.capacity() > MANY.max(TIMES * vector.len()) {
+        vector.shrink_to(2 * vector.len());
+    }
 }
 
 /// Makes a vector longer.

@@ -226,13 +226,11 @@ impl DynamicTree {
     /// Finds the pairs of the queued boxes that are not there yet, box by box.
     fn pair_queued(&mut self) {
         let Self { tight, fat, tree, pairs, notes, search, .. } = self;
-        let is_new = |a, b| pairs.find(a, b).is_none();
+        let is_new = |a, b| pairs.may_be_new(a, b);
         self.counters.node_visits += search.seek_of(tree, tight, fat, &notes.queue, is_new);
         for &Found { proxies: [a, b], overlaps } in search.found() {
             // Of two queued boxes the one that comes first finds the pair.
-            if pairs.find(a, b).is_none() {
-                pairs.insert(a, b, overlaps);
-            }
+            pairs.insert_new(a, b, overlaps);
         }
         pairs.settle(|_| true);
     }
@@ -241,13 +239,17 @@ impl DynamicTree {
     /// that are found in them.
     fn pair_all(&mut self) {
         let Self { tight, tree, pairs, search, .. } = self;
+        let none_known = pairs.is_empty();
         self.counters.node_visits += search.run(tree, tight, |&Found { proxies: [a, b], overlaps }| {
             // Those that do not overlap are not known any more.
-            if !overlaps || pairs.find(a, b).is_none() {
+            if none_known || !overlaps {
                 pairs.insert(a, b, overlaps);
+            } else {
+                pairs.insert_new(a, b, overlaps);
             }
         });
         pairs.settle(|_| true);
+        pairs.give_back();
     }
 
     /// Takes those that were removed out of the queue.

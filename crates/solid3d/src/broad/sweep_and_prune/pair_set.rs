@@ -1,14 +1,13 @@
 //! The set of overlapping pairs of the sweep and prune.
 
-use super::super::pair_lists::PairLists;
-use super::{PairId, Proxy};
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
+use super::Proxy;
+use crate::broad::pair_ids::{PairIds, key};
+use crate::broad::pair_lists::PairLists;
 
 /// A set of unordered pairs of proxies. One that ceased to overlap stays until that was told.
 #[derive(Debug, Default)]
 pub(super) struct PairSet {
-    ids: HashMap<u64, PairId, BuildHasherDefault<PairHasher>>,
+    ids: PairIds,
     pub lists: PairLists,
 }
 
@@ -67,31 +66,5 @@ impl PairSet {
         let mut known = 0;
         self.lists.for_each_known(|[a, b], _| known += usize::from(self.ids.contains_key(&key(a, b))));
         assert_eq!(known, self.ids.len());
-    }
-}
-
-fn key(a: Proxy, b: Proxy) -> u64 {
-    u64::from(a.min(b)) << 32 | u64::from(a.max(b))
-}
-
-/// Multiplicative hashing without a random seed: runs must repeat. The keys are the caller's own dense integers.
-#[derive(Debug, Default)]
-struct PairHasher(u64);
-
-impl Hasher for PairHasher {
-    fn write_u64(&mut self, key: u64) {
-        // 2^64 / golden ratio, odd. The table takes its index from the low bits and its tag from the high ones.
-        let product = (key ^ key >> 29).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        self.0 = product ^ product >> 32;
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.write_u64(self.0.rotate_left(8) ^ u64::from(byte));
-        }
-    }
-
-    fn finish(&self) -> u64 {
-        self.0
     }
 }
