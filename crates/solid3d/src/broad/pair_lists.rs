@@ -431,7 +431,8 @@ impl PairLists {
 
     pub fn validate(&self) {
         let mut hanging = 0;
-        let listed = (0..).zip(&self.ends).filter(|&(id, &[a, b])| self.in_use.is(id) && self.is_listed(a, b));
+        let listed =
+            (0..).zip(&self.ends).filter(|&(id, &[a, b])| self.in_use.is(id) && self.is_listed(a, b));
         let mut known = 0;
         for (id, &[a, b]) in listed {
             assert_eq!(self.ids.get(&key(a, b)), Some(&id));

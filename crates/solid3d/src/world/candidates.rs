@@ -14,7 +14,7 @@ use super::near::{Near, Nearness};
 use super::pair_map::{PairMap, Place};
 use super::stirred::Staleness;
 use super::{Contact, ObjectId, World};
-use crate::broad::room::push;
+use crate::broad::room::{give_back, push};
 use crate::broad::{PairChange, PairId};
 use crate::threads::for_each_part;
 
@@ -131,6 +131,18 @@ impl Candidates {
         });
     }
 
+    /// Puts the candidates side by side where most are gone that once were: so passes over all follow how many there are.
+    fn compact(&mut self) {
+        if self.slots.is_sparse() {
+            let mut values = self.slots.values().iter();
+            self.nearness.retain(|_| values.next().is_some_and(Option::is_some));
+            give_back(&mut self.nearness);
+            self.slots.compact();
+            self.queue.clear();
+            self.more_wait = true;
+        }
+    }
+
     /// Forgets the queue where it is longer than a look at every candidate, each of which knows whether it waits: pairs come and go,
     /// and there may be no test for long.
     fn shorten_queue(&mut self) {
@@ -240,6 +252,7 @@ impl World {
                 });
             }
         }
+        candidates.compact();
         candidates.shorten_queue();
         stirred.clear();
         if std::mem::take(&mut self.default_changed) {

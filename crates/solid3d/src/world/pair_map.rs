@@ -1,12 +1,15 @@
 //! What is known of some of the broad phase's pairs.
 
 use crate::broad::PairId;
-use crate::broad::room::{push, resize};
+use crate::broad::room::{give_back, push, resize};
 
 /// No place.
 const NONE: u32 = u32::MAX;
 
-/// The place of a value: it keeps it while it is there.
+/// So many places without a value are no matter.
+const UNUSED_FEW: usize = 1 << 10;
+
+/// The place of a value: it keeps it while it is there, until [`PairMap::compact`].
 pub(super) type Place = u32;
 
 /// A map from pairs. The ids of pairs are dense, but more than half of them may be of boxes that do not overlap, of which
@@ -57,6 +60,33 @@ impl<T> PairMap<T> {
         self.places.get(pair as usize).copied().filter(|&place| place != NONE)
     }
 
+    /// Whether most places have no value, and they are many.
+    pub fn is_sparse(&self) -> bool {
+        self.unused.len() > UNUSED_FEW.max(self.values.len() / 2)
+    }
+
+    /// Gives the values the first places, in the order of those that they had.
+    pub fn compact(&mut self) {
+        let Self { places, values, unused: compacted, .. } = self;
+        compacted.clear();
+        let mut count = 0;
+        compacted.extend(values.iter().map(|value| {
+            let place = count;
+            count += Place::from(value.is_some());
+            place
+        }));
+        places.truncate(places.iter().rposition(|&place| place != NONE).map_or(0, |last| last + 1));
+        places
+            .iter_mut()
+            .filter(|place| **place != NONE)
+            .for_each(|place| *place = compacted[*place as usize]);
+        values.retain(Option::is_some);
+        compacted.clear();
+        give_back(places);
+        give_back(values);
+        give_back(compacted);
+    }
+
     pub fn get_mut(&mut self, place: Place) -> Option<&mut T> {
         self.values.get_mut(place as usize)?.as_mut()
     }
@@ -79,6 +109,26 @@ mod tests {
     use solid_oracle::generate::seeded;
 
     use super::*;
+
+    /// Law: to compact it changes nothing but places, and leaves none without a value.
+    #[test]
+    fn compact_it_is_the_same_map() {
+        const PAIRS: PairId = 5_000;
+        let mut map = PairMap::default();
+        (0..PAIRS).for_each(|pair| _ = map.insert(pair, pair));
+        assert!(!map.is_sparse());
+        let stays = |pair: PairId| pair % 5 == 2 && pair < 4_000;
+        (0..PAIRS).filter(|&pair| !stays(pair)).for_each(|pair| _ = map.remove(pair));
+        assert!(map.is_sparse());
+        let before: Vec<_> = map.values().iter().flatten().copied().collect();
+        map.compact();
+        assert!(!map.is_sparse() && map.values().iter().copied().eq(before.into_iter().map(Some)));
+        for pair in 0..PAIRS {
+            let value = map.place(pair).and_then(|place| map.get_mut(place).copied());
+            assert_eq!(value, stays(pair).then_some(pair));
+        }
+        assert_eq!((map.insert(1, 1), map.places.len()), (800, 3_998));
+    }
 
     /// Law: it is a map; what it holds takes no more places than there ever were values at once.
     #[test]

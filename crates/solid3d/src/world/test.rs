@@ -279,6 +279,43 @@ mod tests {
         );
     }
 
+    /// Law: as a crowd disperses, it is as if it had never been: in what is found, and in how many candidates a pass goes over.
+    #[test]
+    fn a_crowd_that_disperses_leaves_nothing_behind() {
+        const COUNT: usize = 120;
+        let ball = Shape::sphere(0.5).unwrap();
+        let at = |i: usize| DAffine3::from_translation(DVec3::X * 0.9 * i as f64);
+        for kind in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+            let options = WorldOptions { broad_phase: kind, ..WorldOptions::default() };
+            // The first so many in a row, the others in one place.
+            let in_row = |gone: usize| {
+                let mut world = World::with_options(&options);
+                let place = |i| if i < gone { at(i) } else { DAffine3::IDENTITY };
+                let ids: Vec<_> = (0..COUNT).map(|i| world.add(&ball, place(i)).unwrap()).collect();
+                (world, ids)
+            };
+            let found = |world: &mut World, ids: &[ObjectId]| {
+                let name = |id| ids.iter().position(|&other| other == id).unwrap();
+                let collisions: Vec<_> = world.test().iter().map(|it| (name(it.a), name(it.b))).collect();
+                let near: Vec<_> =
+                    world.near().iter().map(|it| (name(it.a), name(it.b), it.distance)).collect();
+                (collisions, near)
+            };
+            let (mut world, ids) = in_row(0);
+            assert_eq!(world.test().len(), COUNT * (COUNT - 1) / 2);
+            for (i, &id) in ids.iter().enumerate() {
+                world.set_placement(id, at(i)).unwrap();
+                world.test();
+                if i % 10 == 9 {
+                    let (mut fresh, fresh_ids) = in_row(i + 1);
+                    assert_eq!(found(&mut world, &ids), found(&mut fresh, &fresh_ids), "{kind:?}, {i}");
+                }
+            }
+            let places = world.candidates.values_mut().len();
+            assert!(places < 2000, "{kind:?}: {places} places");
+        }
+    }
+
     /// A frame of movers, each next to one ball at rest, in a world of others at rest that collide in twos: what it cost.
     fn frame_of_movers(movers: usize, resting: usize) -> (Statistics, u64) {
         let mut world = World::new();
