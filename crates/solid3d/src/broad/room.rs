@@ -56,15 +56,18 @@ pub(crate) fn extend<T: Copy>(vector: &mut Vec<T>, elements: &[T]) {
     vector.extend_from_slice(elements);
 }
 
-/// Gives back most of what is unused where that is most of a vector, and much.
+/// Gives back most of what is unused of a vector, where it is [much](is_much).
 pub(crate) fn give_back<T>(vector: &mut Vec<T>) {
-    /// What is unused of fewer elements is kept.
-    const MANY: usize = 1 << 12;
-    /// And what is less than so many times what is used.
-    const TIMES: usize = 8;
-    if vector.capacity() > MANY.max(TIMES * vector.len()) {
+    if is_much(vector.capacity(), vector.len()) {
         vector.shrink_to(2 * vector.len());
     }
+}
+
+/// Whether there is room for many elements, and for many times as many as there are.
+pub(crate) fn is_much(capacity: usize, len: usize) -> bool {
+    const MANY: usize = 1 << 12;
+    const TIMES: usize = 8;
+    capacity > MANY.max(TIMES * len)
 }
 
 /// Makes a vector longer.
