@@ -29,26 +29,35 @@ impl LeafTest<'_> {
         primitive_tests: &mut u64,
     ) -> u64 {
         let mut meeting = 0;
-        for i in bits(of_ones) {
-            let near = others.overlapping(simd, &ones.bounds(i)) & of_others;
-            if near == 0 {
-                continue;
-            }
-            *primitive_tests += u64::from(near.count_ones());
-            let triangles = if ones.triangles() >> i & 1 == 1 { near & others.triangles() } else { 0 };
-            let sure = verdict(simd, (ones, i), others, triangles);
-            let mut meet = sure.meet;
-            for j in bits(near & !(sure.apart | sure.meet)) {
-                let is_met = if triangles >> j & 1 == 1 {
-                    triangle_triangle::intersect(&ones.triangle(i), &others.triangle(j))
-                } else {
-                    self.hulls_meet(ones.primitive(i), others.primitive(j))
-                };
-                meet |= u32::from(is_met) << j;
-            }
-            meeting |= u64::from(meet) << (LEAF_SIZE * i);
-            if self.wants_first && meet != 0 {
-                break;
+        let mut left = bits(of_ones);
+        // Two of the ones at a time, of both of which it is first found out what is certain: each branch on that waits for it.
+        while let Some(first) = next_near(simd, (ones, &mut left), (others, of_others)) {
+            let second = next_near(simd, (ones, &mut left), (others, of_others));
+            let two = [first, second.unwrap_or((first.0, 0))];
+            let triangles = two.map(|(i, near)| match ones.triangles() >> i & 1 {
+                0 => 0,
+                _ => near & others.triangles(),
+            });
+            let of_first = verdict(simd, (ones, first.0), others, triangles[0]);
+            let of_second = match second {
+                Some((i, _)) => verdict(simd, (ones, i), others, triangles[1]),
+                None => of_first,
+            };
+            for (((i, near), triangles), sure) in two.into_iter().zip(triangles).zip([of_first, of_second]) {
+                *primitive_tests += u64::from(near.count_ones());
+                let mut meet = sure.meet & near;
+                for j in bits(near & !(sure.apart | sure.meet)) {
+                    let is_met = if triangles >> j & 1 == 1 {
+                        triangle_triangle::intersect(&ones.triangle(i), &others.triangle(j))
+                    } else {
+                        self.hulls_meet(ones.primitive(i), others.primitive(j))
+                    };
+                    meet |= u32::from(is_met) << j;
+                }
+                meeting |= u64::from(meet) << (LEAF_SIZE * i);
+                if self.wants_first && meet != 0 {
+                    return meeting;
+                }
             }
         }
         meeting
@@ -59,6 +68,23 @@ impl LeafTest<'_> {
         let (i, j) = if self.swapped { (other, one) } else { (one, other) };
         gjk::intersection(&a.0.primitive_hull(i), a.1, &b.0.primitive_hull(j), b.1).witness().is_some()
     }
+}
+
+/// The next of the ones whose box overlaps those of some of the others, and of which.
+#[inline(always)]
+fn next_near<S: Simd>(
+    simd: S,
+    (ones, left): (&Row, &mut impl Iterator<Item = usize>),
+    (others, of_others): (&Row, u32),
+) -> Option<(usize, u32)> {
+    // A loop: what an adapter is given is not always inlined.
+    for i in left {
+        let near = others.overlapping(simd, &ones.bounds(i)) & of_others;
+        if near != 0 {
+            return Some((i, near));
+        }
+    }
+    None
 }
 
 /// The same by columns that was by rows, or the reverse: blocks of bits beside the diagonal change places, in three steps (Warren, *Hacker's
