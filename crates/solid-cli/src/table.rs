@@ -1,10 +1,14 @@
 //! Tables: with rules for a person at a terminal, plain for `grep`, `awk` and `diff`.
 
 use comfy_table::presets::NOTHING;
-use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ColumnConstraint, LineStyle, Table, TableStyle, Width};
 
-/// Rules around the table and under its headings.
-const RULED: TableStyle = TableStyle::new().top_border(RULE).header_separator(RULE).bottom_border(RULE);
+/// Rows that are laid out at a time: each takes more than a kilobyte meanwhile, and there may be millions.
+const BATCH: usize = 1 << 12;
+
+/// Between columns without rules.
+const GAP: u16 = 2;
+
 const RULE: LineStyle = LineStyle::new('─', '─', '─', '─');
 
 /// How a table is drawn.
@@ -32,28 +36,92 @@ pub enum Column {
     Right(&'static str),
 }
 
-/// Draws a table, with a line break at the end.
-pub fn draw(style: Style, columns: &[Column], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let mut table = Table::new();
-    table.load_style(match style {
-        Style::Ruled => RULED,
-        Style::Plain => NOTHING,
+/// Some of the rows of a table.
+#[derive(Clone, Copy)]
+struct Batch {
+    is_first: bool,
+    is_last: bool,
+}
+
+/// Draws a table, with a line break at the end. The rows are gone through twice.
+pub fn draw(
+    style: Style,
+    columns: &[Column],
+    rows: impl IntoIterator<Item = Vec<String>, IntoIter: Clone>,
+) -> String {
+    draw_by(BATCH, style, columns, rows.into_iter())
+}
+
+fn draw_by(
+    count: usize,
+    style: Style,
+    columns: &[Column],
+    rows: impl Iterator<Item = Vec<String>> + Clone,
+) -> String {
+    let mut widths = vec![0; columns.len()];
+    for_each_batch(count, rows.clone(), |batch, rows| {
+        let of_batch = filled(columns, batch, rows).column_max_content_widths();
+        widths.iter_mut().zip(of_batch).for_each(|(width, of_batch)| *width = of_batch.max(*width));
     });
-    table.set_header(columns.iter().map(|column| match *column {
-        Column::Left(heading) | Column::Right(heading) => heading,
-    }));
-    for row in rows {
-        table.add_row(row);
-    }
-    for (cells, column) in table.column_iter_mut().zip(columns) {
-        if style == Style::Plain {
-            cells.set_padding((0, 2));
+    let mut text = String::new();
+    for_each_batch(count, rows, |batch, rows| {
+        let mut table = filled(columns, batch, rows);
+        table.load_style(match style {
+            Style::Ruled => batch.ruled(),
+            Style::Plain => NOTHING,
+        });
+        for ((cells, column), &width) in table.column_iter_mut().zip(columns).zip(&widths) {
+            if style == Style::Plain {
+                cells.set_padding((0, GAP));
+            }
+            if let Column::Right(_) = column {
+                cells.set_cell_alignment(CellAlignment::Right);
+            }
+            let padded = width.saturating_add(cells.padding_width());
+            cells.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(padded)));
         }
-        if let Column::Right(_) = column {
-            cells.set_cell_alignment(CellAlignment::Right);
+        for line in table.lines() {
+            text += line.trim_end();
+            text.push('\n');
         }
+    });
+    text
+}
+
+/// Calls `draw` with so many rows at a time, once without any if there are none.
+fn for_each_batch(
+    count: usize,
+    rows: impl Iterator<Item = Vec<String>>,
+    mut draw: impl FnMut(Batch, &mut dyn Iterator<Item = Vec<String>>),
+) {
+    let (mut rows, mut is_first) = (rows.peekable(), true);
+    // Ends, because each batch takes rows.
+    while is_first || rows.peek().is_some() {
+        let batch: Vec<_> = rows.by_ref().take(count).collect();
+        draw(Batch { is_first, is_last: rows.peek().is_none() }, &mut batch.into_iter());
+        is_first = false;
     }
-    table.lines().map(|line| format!("{}\n", line.trim_end())).collect()
+}
+
+/// A table of a batch; the first has the headings.
+fn filled(columns: &[Column], batch: Batch, rows: &mut dyn Iterator<Item = Vec<String>>) -> Table {
+    let mut table = Table::new();
+    if batch.is_first {
+        table.set_header(columns.iter().map(|column| match *column {
+            Column::Left(heading) | Column::Right(heading) => heading,
+        }));
+    }
+    table.add_rows(rows);
+    table
+}
+
+impl Batch {
+    /// Rules around the whole and under its headings.
+    fn ruled(self) -> TableStyle {
+        let style = TableStyle::new().header_separator(RULE);
+        let style = if self.is_first { style.top_border(RULE) } else { style };
+        if self.is_last { style.bottom_border(RULE) } else { style }
+    }
 }
 
 #[cfg(test)]
@@ -70,6 +138,21 @@ mod tests {
     fn plain_tables_are_rows_and_nothing_else() {
         let expected = "name     frames\nship          7\nsweeper      12\n";
         assert_eq!(draw(Style::Plain, &COLUMNS, rows()), expected);
+    }
+
+    /// Law: a table is the same however many of its rows are laid out at a time.
+    #[test]
+    fn batches_make_the_same_table() {
+        let name = |i: usize| "x".repeat(1 + 7 * i % 23);
+        for count in [0, 1, 2, 9, 10] {
+            let rows = (0..count).map(|i| vec![name(i), (i * i).to_string()]);
+            for style in [Style::Plain, Style::Ruled] {
+                let whole = draw_by(100, style, &COLUMNS, rows.clone());
+                for batch in [1, 2, 3, 9, 10] {
+                    assert_eq!(draw_by(batch, style, &COLUMNS, rows.clone()), whole, "{count} by {batch}");
+                }
+            }
+        }
     }
 
     #[test]
