@@ -1,6 +1,6 @@
 //! The laws of the broad phase, held by both engines against brute force.
 
-use super::{BroadPhase, BroadPhaseKind, Proxy};
+use super::{BroadPhase, BroadPhaseKind, DynamicTree, Proxy};
 use crate::bounds::Aabb;
 use glam::DVec3;
 use proptest::prelude::*;
@@ -83,10 +83,19 @@ enum Scene {
     Clusters,
     /// One huge box over all.
     Ground,
+    /// So far from the origin that `f32` tells none from another there, but for a few.
+    Far,
 }
 
-const SCENES: [Scene; 6] =
-    [Scene::Uniform, Scene::Lattice, Scene::Identical, Scene::AllScales, Scene::Clusters, Scene::Ground];
+const SCENES: [Scene; 7] = [
+    Scene::Uniform,
+    Scene::Lattice,
+    Scene::Identical,
+    Scene::AllScales,
+    Scene::Clusters,
+    Scene::Ground,
+    Scene::Far,
+];
 
 fn any_box(scene: Scene, proxy: Proxy, rng: &mut StdRng) -> Aabb {
     let mut vector = |lo: f64, hi: f64| DVec3::from_array(std::array::from_fn(|_| rng.random_range(lo..hi)));
@@ -120,6 +129,11 @@ fn any_box(scene: Scene, proxy: Proxy, rng: &mut StdRng) -> Aabb {
         Scene::Ground => {
             let min = vector(0.0, 6.0);
             Aabb::new(min, min + 0.8)
+        }
+        Scene::Far => {
+            let offset = if proxy % 10 == 0 { DVec3::ZERO } else { DVec3::new(3e9, -2e10, 1e12) };
+            let min = offset + vector(0.0, 5.0);
+            Aabb::new(min, min + vector(0.2, 1.5))
         }
     }
 }
@@ -220,6 +234,38 @@ fn a_chain_of_insertions_cannot_make_the_tree_deep() {
         }
     }
     trial.check("chain");
+}
+
+/// Law: it costs no more to be far from the origin, nor to come from there.
+#[test]
+fn far_boxes_cost_what_near_ones_cost() {
+    let visits = |offset: f64| {
+        let mut broad = DynamicTree::default();
+        let bounds = |proxy: Proxy, offset: f64| {
+            let at = [proxy % 10, proxy / 10 % 10, proxy / 100].map(|k| 2.0 * f64::from(k));
+            let min = DVec3::from_array(at) + offset;
+            Aabb::new(min, min + 1.0)
+        };
+        for from in [0.0, offset] {
+            for proxy in 0..1000 {
+                if from == 0.0 {
+                    broad.insert(proxy, bounds(proxy, 0.0));
+                } else {
+                    broad.update(proxy, bounds(proxy, from));
+                }
+            }
+            broad.flush();
+            broad.validate();
+        }
+        assert!(broad.sorted_pairs().is_empty());
+        assert_eq!(visited(&broad, &bounds(555, offset)), [555]);
+        broad.counters().node_visits
+    };
+    let near = visits(4.0);
+    for offset in [1e7, 1e9, -1e13] {
+        let far = visits(offset);
+        assert!(far <= 2 * near, "{far} nodes visited at {offset}, {near} near the origin");
+    }
 }
 
 #[test]

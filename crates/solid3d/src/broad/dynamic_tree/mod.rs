@@ -26,6 +26,7 @@ mod fat_box;
 mod nearest;
 mod node;
 mod notes;
+mod origin;
 mod search;
 mod self_pairs;
 mod slots;
@@ -44,6 +45,7 @@ use crate::threads::both;
 use build::Builder;
 use fat_box::FatBox;
 use notes::Notes;
+use origin::{Origin, SAMPLE};
 use search::{Found, Search};
 use slots::Slots;
 use status::Status;
@@ -83,8 +85,9 @@ const REFRESH_ALL_AT_ONE_IN: usize = 4;
 pub struct DynamicTree {
     /// By proxy: the current box where the proxy is in use.
     tight: Boxes,
-    /// By proxy: contains `FatBox::around(tight)`. The box in the tree, unless queued.
+    /// By proxy: contains `FatBox::around(tight)`, from the origin. The box in the tree, unless queued.
     fat: Vec<FatBox>,
+    origin: Origin,
     status: Vec<Status>,
     tree: Tree,
     /// The pairs of fat boxes in the tree that overlap, exactly, except of queued proxies until the next flush.
@@ -111,8 +114,8 @@ impl DynamicTree {
 
     /// All boxes, and what is noted of them.
     fn slots(&mut self) -> (Slots<'_>, &mut Notes) {
-        let Self { tight, fat, status, notes, .. } = self;
-        (Slots { first: 0, tight: tight.rows_mut(), fat, status }, notes)
+        let Self { tight, fat, origin, status, notes, .. } = self;
+        (Slots { first: 0, origin, tight: tight.rows_mut(), fat, status }, notes)
     }
 
     /// Where more boxes than this moved, one pass over all pairs is cheaper than a walk along their lists.
@@ -166,8 +169,27 @@ impl DynamicTree {
         self.search = Search::default();
     }
 
+    /// Moves the origin to where the boxes are, if they are far from it, and gives all of them fat boxes from there.
+    fn settle_origin(&mut self) {
+        let Self { tight, fat, origin, status, .. } = self;
+        let is_alive = |proxy: usize| status[proxy].is(Status::ALIVE);
+        let (mut sample, mut count) = ([Aabb::EMPTY; SAMPLE], 0);
+        for proxy in (0..status.len()).step_by(status.len().div_ceil(SAMPLE).max(1)).filter(|&p| is_alive(p))
+        {
+            sample[count] = tight.get(proxy as Proxy);
+            count += 1;
+        }
+        if origin.approach(&sample[..count]) {
+            for proxy in (0..status.len()).filter(|&proxy| is_alive(proxy)) {
+                let local = origin.local(&tight.get(proxy as Proxy));
+                fat[proxy] = FatBox::with_room(proxy as Proxy, &local, &local);
+            }
+        }
+    }
+
     /// Builds the tree anew from all living boxes, and meanwhile forgets the pairs that do not overlap.
     fn rebuild(&mut self) {
+        self.settle_origin();
         let Self { status, fat, tree, pairs, builder, .. } = self;
         for s in status.iter_mut() {
             s.set(Status::IN_TREE, s.is(Status::ALIVE));
@@ -432,7 +454,7 @@ impl BroadPhase for DynamicTree {
             assert!(status.is(Status::ALIVE) || !status.is(Status::IN_TREE));
             if status.is(Status::ALIVE) {
                 let fat = self.fat[proxy as usize];
-                let around = FatBox::around(&self.tight.get(proxy));
+                let around = FatBox::around(&self.origin.local(&self.tight.get(proxy)));
                 assert_eq!(fat.union(&around), fat);
                 let in_place = || status.is(Status::IN_TREE) && self.tree.leaf_box(proxy) == fat;
                 assert!(status.is(Status::QUEUED) || in_place());

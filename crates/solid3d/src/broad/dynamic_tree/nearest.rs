@@ -38,8 +38,9 @@ impl DynamicTree {
                 Kind::Node(index) => {
                     let node = &self.tree.nodes[index as usize];
                     let from = stack.len();
-                    let lanes = (0..node.count())
-                        .map(|lane| (bound(&unclamped(&node.lane_box(lane))), node.child(lane)));
+                    let lanes = (0..node.count()).map(|lane| {
+                        (bound(&self.origin.world(&unclamped(&node.lane_box(lane)))), node.child(lane))
+                    });
                     stack.extend(lanes.filter(|(least, _)| *least <= until));
                     stack[from..].sort_by(|(x, _), (y, _)| y.total_cmp(x));
                 }

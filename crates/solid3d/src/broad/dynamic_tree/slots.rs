@@ -8,6 +8,7 @@ use fearless_simd::Simd;
 
 use super::fat_box::FatBox;
 use super::notes::Notes;
+use super::origin::Origin;
 use super::status::Status;
 use crate::bounds::Aabb;
 use crate::broad::boxes::{Row, of_row, row};
@@ -18,6 +19,7 @@ use crate::broad::{Proxy, is_valid};
 pub(super) struct Slots<'a> {
     /// The first proxy.
     pub first: usize,
+    pub origin: &'a Origin,
     pub tight: &'a mut [Row],
     pub fat: &'a mut [FatBox],
     pub status: &'a mut [Status],
@@ -34,9 +36,10 @@ impl Slots<'_> {
     /// Moves a box. False if the proxy is not in use, or the box not valid.
     #[inline(always)]
     pub fn update(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes, moved_max: usize) -> bool {
+        let origin = self.origin;
         if let Some((tight, fat, status)) = self.slot(proxy)
             // Nearly all stay inside. What is not in use has an empty fat box.
-            && fat.holds(bounds)
+            && (if origin.is_of_world() { fat.holds(bounds) } else { origin.is_held(fat, bounds) })
         {
             settle(tight, bounds, || notes.note_moved(proxy, status, moved_max));
             return true;
@@ -87,13 +90,22 @@ impl Slots<'_> {
         notes: &mut Notes,
         moved_max: usize,
     ) -> usize {
-        let Slots { first, tight, fat, status } = self;
+        let Slots { first, origin, tight, fat, status } = self;
         let count = tight.len().min(fat.len()).min(status.len());
         let (tight, fat, status) = (&mut tight[..count], &fat[..count], &mut status[..count]);
         let mut rest = boxes.iter();
+        let is_of_world = origin.is_of_world();
         while let Some((proxy, bounds)) = rest.as_slice().first() {
             let slot = (*proxy as usize).wrapping_sub(*first);
-            if slot >= count || !fat[slot].holds_with(simd, bounds) || notes.all_moved != ALL {
+            if slot >= count {
+                break;
+            }
+            let stays = if is_of_world {
+                fat[slot].holds_with(simd, bounds)
+            } else {
+                origin.is_held(&fat[slot], bounds)
+            };
+            if !stays || notes.all_moved != ALL {
                 break;
             }
             if ALL {
@@ -109,12 +121,13 @@ impl Slots<'_> {
     /// Gives a box another fat box, since it left the one that it had.
     #[inline(never)]
     fn leave(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes, moved_max: usize) -> bool {
+        let origin = self.origin;
         let Some((tight, fat, status)) = self.slot(proxy) else { return false };
         if !status.is(Status::ALIVE) || !is_valid(bounds) {
             return false;
         }
         let was = of_row(std::mem::replace(tight, row(bounds)));
-        *fat = FatBox::with_room(proxy, &was, bounds);
+        *fat = FatBox::with_room(proxy, &origin.local(&was), &origin.local(bounds));
         notes.note_moved(proxy, status, moved_max);
         if status.put(Status::QUEUED) {
             push(&mut notes.queue, proxy);
@@ -124,12 +137,13 @@ impl Slots<'_> {
 
     /// Adds a box. False if the proxy is in use, or the box not valid.
     pub fn insert(&mut self, proxy: Proxy, bounds: &Aabb, notes: &mut Notes) -> bool {
+        let local = self.origin.local(bounds);
         let Some((tight, fat, status)) = self.slot(proxy) else { return false };
         if !is_valid(bounds) || !status.put(Status::ALIVE) {
             return false;
         }
         *tight = row(bounds);
-        *fat = FatBox::with_room(proxy, bounds, bounds);
+        *fat = FatBox::with_room(proxy, &local, &local);
         notes.changed = true;
         if status.put(Status::QUEUED) {
             push(&mut notes.queue, proxy);

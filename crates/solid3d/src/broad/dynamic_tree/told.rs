@@ -176,6 +176,7 @@ impl<'a> Slots<'a> {
         let first = std::mem::replace(&mut self.first, end);
         Slots {
             first,
+            origin: self.origin,
             tight: front(&mut self.tight, count),
             fat: front(&mut self.fat, count),
             status: front(&mut self.status, count),
