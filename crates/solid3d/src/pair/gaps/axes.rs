@@ -6,8 +6,8 @@ use fearless_simd::{Simd, f32x8};
 use super::body::{Body, splat};
 use crate::pair::glance::Points;
 
-/// How many are kept. With two in place of one, the distance of a hull from a terrain that is as wide took half of the time; four save up to 4 %
-/// of what is left, and eight no more.
+/// How many are kept. With two in place of one, the distance of a hull from a terrain that is as wide took half of the time; with four in place
+/// of two distances take 0.96 to 1.06, with eight 0.99 to 1.07 of that.
 const KEPT: usize = 4;
 
 /// The axes kept last, which take turns: each of length one in tree coordinates, with how far the shape reaches along it.
