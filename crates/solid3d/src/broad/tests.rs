@@ -131,7 +131,7 @@ fn any_box(scene: Scene, proxy: Proxy, rng: &mut StdRng) -> Aabb {
             Aabb::new(min, min + 0.8)
         }
         Scene::Far => {
-            let offset = if proxy % 10 == 0 { DVec3::ZERO } else { DVec3::new(3e9, -2e10, 1e12) };
+            let offset = if proxy.is_multiple_of(10) { DVec3::ZERO } else { DVec3::new(3e9, -2e10, 1e12) };
             let min = offset + vector(0.0, 5.0);
             Aabb::new(min, min + vector(0.2, 1.5))
         }
