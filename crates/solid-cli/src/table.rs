@@ -92,19 +92,19 @@ fn draw_by(
 fn for_each_batch(
     count: usize,
     rows: impl Iterator<Item = Vec<String>>,
-    mut draw: impl FnMut(Batch, &mut dyn Iterator<Item = Vec<String>>),
+    mut draw: impl FnMut(Batch, Vec<Vec<String>>),
 ) {
     let (mut rows, mut is_first) = (rows.peekable(), true);
     // Ends, because each batch takes rows.
     while is_first || rows.peek().is_some() {
-        let batch: Vec<_> = rows.by_ref().take(count).collect();
-        draw(Batch { is_first, is_last: rows.peek().is_none() }, &mut batch.into_iter());
+        let batch = rows.by_ref().take(count).collect();
+        draw(Batch { is_first, is_last: rows.peek().is_none() }, batch);
         is_first = false;
     }
 }
 
 /// A table of a batch; the first has the headings.
-fn filled(columns: &[Column], batch: Batch, rows: &mut dyn Iterator<Item = Vec<String>>) -> Table {
+fn filled(columns: &[Column], batch: Batch, rows: Vec<Vec<String>>) -> Table {
     let mut table = Table::new();
     if batch.is_first {
         table.set_header(columns.iter().map(|column| match *column {

@@ -33,6 +33,7 @@ impl LeafTest<'_> {
         // Two of the ones at a time, of both of which it is first found out what is certain: each branch on that waits for it.
         while let Some(first) = next_near(simd, (ones, &mut left), (others, of_others)) {
             let second = next_near(simd, (ones, &mut left), (others, of_others));
+            // What is not there is near none, whatever is said of it.
             let two = [first, second.unwrap_or((first.0, 0))];
             let triangles = two.map(|(i, near)| match ones.triangles() >> i & 1 {
                 0 => 0,

@@ -138,17 +138,20 @@ impl Candidates {
             self.nearness.retain(|_| values.next().is_some_and(Option::is_some));
             give_back(&mut self.nearness);
             self.slots.compact();
-            self.queue.clear();
-            self.more_wait = true;
+            self.forget_queue();
         }
     }
 
-    /// Forgets the queue where it is longer than a look at every candidate, each of which knows whether it waits: pairs come and go,
-    /// and there may be no test for long.
+    /// Leaves it to a look at every candidate to find those that wait: each knows whether it does.
+    fn forget_queue(&mut self) {
+        self.queue.clear();
+        self.more_wait = true;
+    }
+
+    /// Forgets the queue where it is longer than a look at every candidate: pairs come and go, and there may be no test for long.
     fn shorten_queue(&mut self) {
         if self.queue.len() > self.slots.values().len() {
-            self.queue.clear();
-            self.more_wait = true;
+            self.forget_queue();
         }
     }
 

@@ -67,7 +67,7 @@ impl<T> PairMap<T> {
 
     /// Gives the values the first places, in the order of those that they had.
     pub fn compact(&mut self) {
-        let Self { places, values, unused: compacted, .. } = self;
+        let Self { places, values, unused: compacted } = self;
         compacted.clear();
         let mut count = 0;
         compacted.extend(values.iter().map(|value| {

@@ -45,7 +45,7 @@ use crate::threads::both;
 use build::Builder;
 use fat_box::FatBox;
 use notes::Notes;
-use origin::{Origin, SAMPLE};
+use origin::Origin;
 use search::{Found, Search};
 use slots::Slots;
 use status::Status;
@@ -172,17 +172,10 @@ impl DynamicTree {
     /// Moves the origin to where the boxes are, if they are far from it, and gives all of them fat boxes from there.
     fn settle_origin(&mut self) {
         let Self { tight, fat, origin, status, .. } = self;
-        let is_alive = |proxy: usize| status[proxy].is(Status::ALIVE);
-        let (mut sample, mut count) = ([Aabb::EMPTY; SAMPLE], 0);
-        for proxy in (0..status.len()).step_by(status.len().div_ceil(SAMPLE).max(1)).filter(|&p| is_alive(p))
-        {
-            sample[count] = tight.get(proxy as Proxy);
-            count += 1;
-        }
-        if origin.approach(&sample[..count]) {
-            for proxy in (0..status.len()).filter(|&proxy| is_alive(proxy)) {
-                let local = origin.local(&tight.get(proxy as Proxy));
-                fat[proxy] = FatBox::with_room(proxy as Proxy, &local, &local);
+        if origin.approach(self.alive, living(status), |proxy| tight.get(proxy)) {
+            for proxy in living(status) {
+                let local = origin.local(&tight.get(proxy));
+                fat[proxy as usize] = FatBox::with_room(proxy, &local, &local);
             }
         }
     }
@@ -194,8 +187,8 @@ impl DynamicTree {
         for s in status.iter_mut() {
             s.set(Status::IN_TREE, s.is(Status::ALIVE));
         }
-        let living = (0..).zip(status.iter()).filter_map(|(proxy, s)| s.is(Status::ALIVE).then_some(proxy));
-        both(fat.len() >= REBUILD_MANY, || builder.build(tree, living, fat), || pairs.forget_apart());
+        let build = || builder.build(tree, living(status), fat);
+        both(fat.len() >= REBUILD_MANY, build, || pairs.forget_apart());
         self.changes = 0;
         self.counters.rebuilds += 1;
     }
@@ -304,6 +297,11 @@ impl DynamicTree {
             self.pair_all();
         }
     }
+}
+
+/// The proxies in use.
+fn living(status: &[Status]) -> impl Iterator<Item = Proxy> {
+    (0..).zip(status).filter_map(|(proxy, status)| status.is(Status::ALIVE).then_some(proxy))
 }
 
 impl BroadPhase for DynamicTree {

@@ -7,10 +7,10 @@ use glam::DVec3;
 
 use super::fat_box::FatBox;
 use crate::bounds::Aabb;
-use crate::broad::is_ordered;
+use crate::broad::{Proxy, is_ordered};
 
 /// Boxes that are looked at, at most.
-pub(super) const SAMPLE: usize = 64;
+const SAMPLE: usize = 64;
 
 /// A box is coarse when it is further from the origin than this many times its longest side: rounding then adds up to a sixteenth of that to
 /// its fat box, as much as its margin.
@@ -52,9 +52,19 @@ impl Origin {
         Aabb::new(outward(bounds.min, f64::next_down), outward(bounds.max, f64::next_up))
     }
 
-    /// Moves to where most of some boxes are, if they are far; whether it did.
-    pub fn approach(&mut self, boxes: &[Aabb]) -> bool {
-        let better = better_origin(self.0.unwrap_or_default(), boxes);
+    /// Moves to where most of the boxes of so many proxies are, judged by some of them, if they are far; whether it did.
+    pub fn approach(
+        &mut self,
+        count: usize,
+        proxies: impl Iterator<Item = Proxy>,
+        bounds: impl Fn(Proxy) -> Aabb,
+    ) -> bool {
+        let (mut sample, mut len) = ([Aabb::EMPTY; SAMPLE], 0);
+        for (to, proxy) in sample.iter_mut().zip(proxies.step_by(count.div_ceil(SAMPLE).max(1))) {
+            *to = bounds(proxy);
+            len += 1;
+        }
+        let better = better_origin(self.0.unwrap_or_default(), &sample[..len]);
         self.0 = better.or(self.0);
         better.is_some()
     }
