@@ -11,12 +11,12 @@ use super::super::frame::{Frame, ROUNDINGS, Stretch};
 use super::super::gaps::Gaps;
 use super::super::row::{CONFIRMED, Row, distances_of_core};
 use super::super::table::{PlacedComplex, PlacedConvex};
-use super::CLEARLY_APART;
 use super::shadow::Shadow;
+use super::{CLEARLY_APART, ball};
 use crate::tree::{Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves};
 
-/// The closest primitive, without points where the distance has a closed form; of shapes that are farther apart than a bound, `None` or
-/// some primitive.
+/// The closest primitive, without points where these are for GJK to find; of shapes that are farther apart than a bound, `None` or some
+/// primitive.
 pub(super) fn closest_primitive(
     complex: PlacedComplex,
     convex: PlacedConvex,
@@ -51,7 +51,8 @@ pub(super) fn closest_primitive(
         answer: None,
     };
     complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut best, traversal, &mut approach);
-    approach.answer
+    let (primitive, closest) = approach.answer?;
+    Some((primitive, closest.or_else(|| approach.in_closed_form(primitive))))
 }
 
 /// Looks for the primitive closest to the convex shape.
@@ -133,6 +134,11 @@ impl Approach<'_> {
                     continue;
                 }
                 let gap = known.distance[lane] - round.radius;
+                if gap < -CLEARLY_APART {
+                    *best = 0.0;
+                    self.answer = Some((self.row.primitive(lane), None));
+                    return;
+                }
                 if gap > CLEARLY_APART && known.distance[lane] - known.least[lane] <= CONFIRMED {
                     if gap < *best {
                         *best = gap;
@@ -150,6 +156,14 @@ impl Approach<'_> {
                 return;
             }
         }
+    }
+
+    /// The closest points of a triangle and a ball, where they are clear.
+    fn in_closed_form(&self, primitive: u32) -> Option<Closest> {
+        let Direct::Round(round) = &self.direct else { return None };
+        let &[p, q, r] = self.complex.0.primitive(primitive) else { return None };
+        let triangle = [p, q, r].map(|vertex| self.complex.0.vertices()[vertex as usize]);
+        ball::closest_points(&triangle, round, self.frame)
     }
 
     /// Looks at some lanes of the row from points of the shape; `is_known`: it is known already that all of them may be nearest.

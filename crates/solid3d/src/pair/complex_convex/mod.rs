@@ -7,6 +7,7 @@
 //! eight at a time, and only what may be nearest is placed and measured.
 
 mod approach;
+mod ball;
 mod meeting;
 mod shadow;
 
