@@ -215,13 +215,9 @@ impl Candidates {
         self.queue.len()
     }
 
-    /// All candidates, by place.
-    pub fn values_mut(&mut self) -> &mut [Option<Candidate>] {
-        self.slots.values_mut()
-    }
-
-    pub fn get_mut(&mut self, place: Place) -> &mut Candidate {
-        self.slots.get_mut(place).expect("what waits to be examined is a candidate")
+    /// All candidates, by place, and how many matter.
+    pub fn values_and_count_mut(&mut self) -> (&mut [Option<Candidate>], &mut u64) {
+        (self.slots.values_mut(), &mut self.count)
     }
 }
 

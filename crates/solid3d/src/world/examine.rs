@@ -6,11 +6,11 @@ use glam::DVec3;
 use solid_convex::gjk::{Decision, Proof};
 
 use super::arena::Arena;
-use super::candidates::{Candidate, PairKey};
+use super::candidates::Candidate;
+use super::news::{News, push_of_part};
 use super::object::Object;
 use super::pair_map::Place;
 use super::response::ResponseTable;
-use super::threads::PART;
 use super::{Contact, ObjectId, Response, Statistics, When};
 use crate::pair::swept::{self, Encounter};
 use crate::pair::{self, Relation, Scratch};
@@ -42,19 +42,6 @@ impl Outcome {
             Outcome::Described => next_described(),
         }
     }
-}
-
-/// What examining some candidates gave that is not of one of them alone.
-#[derive(Debug, Default)]
-pub(super) struct News {
-    /// Those whose collision is not what it was, or may not be, with their place in the order of pairs.
-    pub changed: Vec<(Place, PairKey, Outcome)>,
-    /// Of collisions that are so, in the order of the candidates.
-    pub described: Vec<(When, Contact)>,
-    /// How many matter, and how many did.
-    pub matter: u64,
-    pub mattered: u64,
-    pub work: Statistics,
 }
 
 /// What examining a pair depends on, beside the pair.
@@ -174,13 +161,6 @@ fn now(
 fn describe(when: When, contact: Contact, described: &mut Vec<(When, Contact)>) -> Outcome {
     push_of_part(described, (when, contact));
     Outcome::Described
-}
-
-/// Adds something of one of the candidates of a part.
-fn push_of_part<T>(list: &mut Vec<T>, element: T) {
-    // No part ever has more: so a world in which as much happens as before takes no memory.
-    list.reserve_exact(PART.saturating_sub(list.len()));
-    list.push(element);
 }
 
 /// What two objects do as they are; of those that are apart, what they did on the way. The proof is one for all the way.

@@ -13,6 +13,7 @@ mod findings;
 mod lapsed;
 mod motion;
 mod near;
+mod news;
 mod object;
 mod options;
 mod ordered;
@@ -102,7 +103,7 @@ pub struct World {
     /// Working memory: the candidates that a test examines.
     to_examine: Vec<pair_map::Place>,
     /// Working memory: what examining them gave, part by part.
-    news: Vec<examine::News>,
+    news: [Vec<news::News>; 2],
     workers: Workers,
     statistics: Statistics,
 }
@@ -137,7 +138,7 @@ impl World {
             stale: false,
             default_changed: false,
             to_examine: Vec::new(),
-            news: Vec::new(),
+            news: Default::default(),
             workers: Workers::default(),
             statistics: Statistics::default(),
         }

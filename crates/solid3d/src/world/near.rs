@@ -7,7 +7,7 @@ use super::candidates::Candidate;
 use super::clearance::Clearances;
 use super::pair_map::Place;
 use super::response::ResponseTable;
-use super::threads::{PART, Workers};
+use super::threads::{Items, PART, Workers};
 use super::{ObjectId, Response, Statistics, World};
 use crate::pair::{self, Approach, Scratch};
 
@@ -93,7 +93,8 @@ impl World {
             let candidate =
                 |place| candidates[place as usize].as_ref().expect("what is looked at is a candidate");
             let fetch = |place: Place, _: &Nearness| objects.fetch([candidate(place).a, candidate(place).b]);
-            workers.each(share, nearness, batch, &mut works, fetch, |place, nearness, work, scratch| {
+            let items = Items { first: 0, values: &mut *nearness, places: batch };
+            workers.each(share, items, &mut works, fetch, |place, nearness, work, scratch| {
                 *nearness = looker.look_at(candidate(place), work, scratch);
             });
             for work in works.iter_mut().take(batch.len().div_ceil(PART)) {

@@ -4,10 +4,12 @@ use solid_convex::gjk::Proof;
 
 use super::candidates::{Candidate, PairKey};
 use super::examine::Examiner;
+use super::news::{News, Notes};
 use super::pair_map::Place;
-use super::threads::{PART, Workers};
+use super::threads::{BATCH, Items, PART, Workers};
 use super::{Collision, ObjectId, Response, World};
 use crate::error::Result;
+use crate::threads::both;
 
 /// How far a test has come that is made collision by collision: see [`World::test_next`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -167,49 +169,46 @@ impl World {
     /// Examines candidates, and keeps what that gave.
     fn examine_all(&mut self, places: &mut [Place]) {
         let share = Workers::share(self.statistics.units_for(places.len()));
-        if share {
-            places.sort_unstable();
-        }
         // Taken out, so that a panic leaves nothing in it.
-        let mut news = std::mem::take(&mut self.news);
-        let Self { objects, responses, caching, candidates, findings, workers, .. } = self;
+        let [mut news, mut earlier_news] = std::mem::take(&mut self.news);
+        let Self { objects, responses, caching, candidates, findings, workers, statistics, .. } = self;
         let examiner = Examiner { objects, responses, caching: *caching };
-        for batch in places.chunks(Workers::batch(share)) {
+        let (values, count) = candidates.values_and_count_mut();
+        let mut notes = Notes { findings, count, statistics };
+        let mut examine = |items: Items<Option<Candidate>>, news: &mut Vec<News>| {
             workers.each(
                 share,
-                candidates.values_mut(),
-                batch,
-                &mut news,
+                items,
+                news,
                 |_, candidate| {
                     objects.fetch(candidate.iter().flat_map(|candidate| [candidate.a, candidate.b]))
                 },
-                |place, candidate, news, scratch| {
-                    examiner.renew(place, candidate, news, scratch);
-                },
+                |place, candidate, news, scratch| examiner.renew(place, candidate, news, scratch),
             );
-            for news in news.iter_mut().take(batch.len().div_ceil(PART)) {
-                self.statistics += std::mem::take(&mut news.work);
-                candidates.count += std::mem::take(&mut news.matter);
-                candidates.count -= std::mem::take(&mut news.mattered);
-                let mut described = news.described.drain(..);
-                for (place, key, outcome) in news.changed.drain(..) {
-                    let found = outcome.found(|| described.next());
-                    let &mut Candidate { a, b, found: ref mut id, .. } = candidates.get_mut(place);
-                    match (*id, found) {
-                        (None, None) => {}
-                        (None, Some((when, contact))) => {
-                            *id = Some(findings.add(key, Collision { a, b, when, contact }));
-                        }
-                        (Some(was), None) => {
-                            findings.remove(was);
-                            *id = None;
-                        }
-                        (Some(was), Some((when, contact))) => findings.replace(was, when, contact),
-                    }
-                }
+        };
+        if share {
+            places.sort_unstable();
+            // What some gave is kept while the next are examined.
+            let (mut earlier, mut rest) = Items { first: 0, values, places }.split_at(0);
+            while !rest.places.is_empty() {
+                let (mut batch, later) = rest.split_at(BATCH);
+                both(
+                    true,
+                    || notes.keep(earlier, &mut earlier_news),
+                    || examine(batch.reborrow(), &mut news),
+                );
+                std::mem::swap(&mut news, &mut earlier_news);
+                (earlier, rest) = (batch, later);
+            }
+            notes.keep(earlier, &mut earlier_news);
+        } else {
+            for places in places.chunks(PART) {
+                let mut part = Items { first: 0, values: &mut *values, places };
+                examine(part.reborrow(), &mut news);
+                notes.keep(part, &mut news);
             }
         }
-        self.news = news;
+        self.news = [news, earlier_news];
     }
 }
 
@@ -311,7 +310,7 @@ mod tests {
                     assert_eq!(found(&mut world, &ids), found(&mut fresh, &fresh_ids), "{kind:?}, {i}");
                 }
             }
-            let places = world.candidates.values_mut().len();
+            let places = world.candidates.values_and_count_mut().0.len();
             assert!(places < 2000, "{kind:?}: {places} places");
         }
     }

@@ -12,7 +12,7 @@ use crate::pair::Scratch;
 const WORK_MIN: u64 = 4_000;
 
 /// Items of which the results are kept at a time, where work is shared: what they take is bounded by it.
-const BATCH: usize = 4096;
+pub(super) const BATCH: usize = 4096;
 
 /// Items that are worth passing to another thread. Their results stay at hand until they are read.
 pub(super) const PART: usize = 16;
@@ -48,37 +48,36 @@ impl Workers {
         if share { BATCH } else { PART }
     }
 
-    /// Calls `work` with each of `places`, what stands there, and the result of the [`PART`] that it is of, of which there are as many as
-    /// parts or more; with the feature `rayon` on the threads of the current pool, if `share`. Then places must ascend.
+    /// Calls `work` with each of the items and the result of the [`PART`] that it is of, of which there are as many as parts or more; with the
+    /// feature `rayon` on the threads of the current pool, if `share`. Then places must ascend.
     ///
     /// Before a part `fetch` is called with each of it: it reads what `work` is going to, and gives any number of that. So what is far away
     /// in memory is waited for once for all of a part, not by each in turn.
     pub fn each<T: Send, R: Default + Send>(
         &mut self,
         share: bool,
-        values: &mut [T],
-        places: &[Place],
+        items: Items<T>,
         results: &mut Vec<R>,
         fetch: impl Fn(Place, &T) -> u64 + Sync + Send,
         work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
-        let parts = places.len().div_ceil(PART);
+        let parts = items.places.len().div_ceil(PART);
         if results.len() < parts {
             results.resize_with(parts, R::default);
         }
-        let items = Items { first: 0, values, places, results };
+        let results = &mut results[..parts];
         #[cfg(feature = "rayon")]
         if share {
-            return self.on_threads(items, fetch, work);
+            return self.on_threads((items, results), fetch, work);
         }
         let _ = share;
-        items.each(&mut self.own, &fetch, &work);
+        items.each(results, &mut self.own, &fetch, &work);
     }
 
     #[cfg(feature = "rayon")]
     fn on_threads<T: Send, R: Send>(
         &mut self,
-        items: Items<T, R>,
+        items: Shared<T, R>,
         fetch: impl Fn(Place, &T) -> u64 + Sync + Send,
         work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
@@ -95,51 +94,69 @@ impl Workers {
             // What a panic left is as good as new: it is memory to be overwritten, and counts of which differences are taken.
             of_pool[thread].lock().unwrap_or_else(PoisonError::into_inner)
         };
-        rayon::iter::split(items, Items::halves)
-            .for_each_init(scratch, |scratch, items| items.each(scratch, &fetch, &work));
+        rayon::iter::split(items, halves)
+            .for_each_init(scratch, |scratch, (items, results)| items.each(results, scratch, &fetch, &work));
     }
 }
 
-/// Some of the values, and the results for them.
-struct Items<'a, T, R> {
+/// Some of the places of values.
+pub(super) struct Items<'a, T> {
     /// The place of the first of `values`.
-    first: Place,
-    values: &'a mut [T],
-    places: &'a [Place],
-    results: &'a mut [R],
+    pub first: Place,
+    pub values: &'a mut [T],
+    pub places: &'a [Place],
 }
 
-impl<T, R> Items<'_, T, R> {
-    fn each(
-        self,
+impl<'a, T> Items<'a, T> {
+    /// The same, for a while.
+    pub fn reborrow(&mut self) -> Items<'_, T> {
+        Items { first: self.first, values: self.values, places: self.places }
+    }
+
+    /// What stands at a place.
+    pub fn at(&mut self, place: Place) -> &mut T {
+        &mut self.values[(place - self.first) as usize]
+    }
+
+    /// The first so many, or all, and those after them, which ascend; both have what stands there.
+    pub fn split_at(self, count: usize) -> (Self, Self) {
+        let Items { first, values, places } = self;
+        let (places, later) = places.split_at(count.min(places.len()));
+        let at = later.first().map_or(values.len(), |&place| (place - first) as usize);
+        let (values, later_values) = values.split_at_mut(at);
+        let later = Items { first: first + at as Place, values: later_values, places: later };
+        (Items { first, values, places }, later)
+    }
+
+    fn each<R>(
+        mut self,
+        results: &mut [R],
         scratch: &mut Scratch,
         fetch: &impl Fn(Place, &T) -> u64,
         work: &impl Fn(Place, &mut T, &mut R, &mut Scratch),
     ) {
-        let at = |place: Place| (place - self.first) as usize;
-        for (part, result) in self.places.chunks(PART).zip(self.results) {
-            let fetched = part.iter().fold(0, |all, &place| all ^ fetch(place, &self.values[at(place)]));
+        for (part, result) in self.places.chunks(PART).zip(results) {
+            let fetched = part.iter().fold(0, |all, &place| all ^ fetch(place, self.at(place)));
             std::hint::black_box(fetched);
             for &place in part {
-                work(place, &mut self.values[at(place)], result, scratch);
+                work(place, self.at(place), result, scratch);
             }
         }
     }
-
-    /// Two halves, if there is more than a part.
-    #[cfg(feature = "rayon")]
-    fn halves(self) -> (Self, Option<Self>) {
-        let Items { first, values, places, results } = self;
-        if places.len() <= PART {
-            return (Items { first, values, places, results }, None);
-        }
-        let parts = places.len().div_ceil(PART) / 2;
-        let (places, later_places) = places.split_at(parts * PART);
-        let (results, later_results) = results.split_at_mut(parts);
-        let later_first = later_places[0];
-        let (values, later_values) = values.split_at_mut((later_first - first) as usize);
-        let later =
-            Items { first: later_first, values: later_values, places: later_places, results: later_results };
-        (Items { first, values, places, results }, Some(later))
-    }
 }
+
+/// Two halves of items and the results of their parts, if there is more than a part.
+#[cfg(feature = "rayon")]
+fn halves<'a, T, R>((items, results): Shared<'a, T, R>) -> (Shared<'a, T, R>, Option<Shared<'a, T, R>>) {
+    if results.len() <= 1 {
+        return ((items, results), None);
+    }
+    let parts = results.len() / 2;
+    let (items, later) = items.split_at(parts * PART);
+    let (results, later_results) = results.split_at_mut(parts);
+    ((items, results), Some((later, later_results)))
+}
+
+/// Items, and the result of each part.
+#[cfg(feature = "rayon")]
+type Shared<'a, T, R> = (Items<'a, T>, &'a mut [R]);

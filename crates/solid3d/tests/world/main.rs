@@ -176,6 +176,46 @@ fn the_number_of_threads_changes_no_bit_and_no_count() {
     }
 }
 
+/// The same of so many pairs that what is found of some is kept while others are examined; events too.
+#[cfg(feature = "rayon")]
+#[test]
+fn nor_does_it_where_pairs_are_many() {
+    const FRAMES: u64 = 5;
+    let run = |threads: usize| {
+        let mut rng = seeded(203);
+        let mut world = world(BroadPhaseKind::DynamicTree, true);
+        let mut crowd = |_| {
+            let (shape, mut at) = (shape_of(&random_shape(&mut rng, 1.0)), placement(&mut rng, 1.0));
+            at.translation = in_cube(&mut rng);
+            (world.add(&shape, at).unwrap(), at)
+        };
+        let crowd: Vec<_> = (0..240).map(&mut crowd).collect();
+        for (k, &(id, _)) in crowd.iter().enumerate() {
+            world.set_object_response(id, RESPONSES[k % RESPONSES.len()]).unwrap();
+        }
+        let mut found = Vec::new();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        for _ in 0..FRAMES {
+            for &(id, mut at) in &crowd {
+                at.translation += 0.5 * in_cube(&mut rng);
+                world.set_placement(id, at).unwrap();
+            }
+            found.push((all_bits(&pool.install(|| world.test())), world.events().collect::<Vec<_>>()));
+            world.proceed();
+        }
+        (found, world.statistics())
+    };
+    let one = run(1);
+    println!("{:?}", one.1);
+    // In each frame more than twice as many as are examined at a time.
+    assert!(one.1.candidates > FRAMES * 8192 && 10 * one.1.collisions < 9 * one.1.candidates);
+    for threads in [2, 3] {
+        let many = run(threads);
+        assert_eq!(one.1, many.1, "{threads} threads");
+        assert!(one.0 == many.0, "results differ with {threads} threads");
+    }
+}
+
 /// Law: in a coherent scene of convex shapes the cache answers most of what is apart.
 #[test]
 fn caching_saves_primitive_tests_in_a_coherent_scene() {
