@@ -8,6 +8,7 @@ use gltf::json::Buffer;
 
 use super::uri::{Source, resolve};
 use crate::fault::Result;
+use crate::text::quoted;
 
 /// The bytes of a buffer, `byteLength` of them. `binary` is the binary part of a `.glb`, which buffer 0 is when it has
 /// no URI.
@@ -25,7 +26,9 @@ pub(super) fn load(
         Some(uri) => match resolve(uri).map_err(|wrong| format!("{name} {wrong}"))? {
             Source::Bytes(bytes) => bytes,
             Source::File(path) => {
-                let wrong = |error| format!("{name}: `{}` can't be read: {error}", path.display());
+                // A data URI without its first letters is long.
+                let wrong =
+                    |error| format!("{name}: `{}` can't be read: {error}", quoted(&path.to_string_lossy()));
                 read(&folder.join(&path), needed).map_err(wrong)?
             }
         },

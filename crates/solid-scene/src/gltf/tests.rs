@@ -396,6 +396,10 @@ fn buffers_that_are_not_there_are_named() {
             json!({"byteLength": 36, "uri": "../a.bin", "name": "b"}),
             "buffer 0 (`b`) is at `../a.bin`; expected a path",
         ),
+        (
+            json!({"byteLength": 36, "uri": "AAAA".repeat(1000)}),
+            "buffer 0: `AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA...` can't be read: ",
+        ),
         (json!({"byteLength": 36, "uri": "data:;base64,!"}), "buffer 0 has bad base64: "),
         (json!({"byteLength": 36, "uri": "data:;base64,AAAA"}), "buffer 0 has 3 bytes; it should have 36"),
         (json!({"byteLength": 36}), "buffer 0 has no URI and no binary part"),
