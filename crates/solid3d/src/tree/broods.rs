@@ -3,14 +3,17 @@
 //! Those of a node stay together with their bounds, and the nearest is found when it is wanted: most are never visited, as what is found before is
 //! nearer. Sorting them as they came took a tenth of a walk, for branches that nobody can foretell.
 
-use fearless_simd::Simd;
 use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f64x8};
 
 use super::Place;
 use super::node::WIDTH;
 
 /// Room that most queries do with, taken at once.
 const BROODS_USUAL: usize = 32;
+
+/// The numbers of the lanes.
+const LANES: [f64; WIDTH] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Nodes with children to be visited, the last opened at the end.
 #[derive(Clone, Debug, Default)]
@@ -42,16 +45,13 @@ impl Broods {
     /// Adds the children of a node whose bounds are below a limit, or are no numbers.
     #[inline(always)]
     pub fn add<S: Simd>(&mut self, simd: S, node: usize, bounds: &[f64; WIDTH], limit: f64) {
-        let mut brood = Brood { bounds: [0.0; WIDTH], least: 0.0, node };
-        for from in (0..WIDTH).step_by(S::f64s::LEN) {
-            let bound = S::f64s::from_slice(simd, &bounds[from..from + S::f64s::LEN]);
-            let is_far = bound.simd_ge(S::f64s::splat(simd, limit));
-            let is_number = bound.simd_ge(S::f64s::splat(simd, f64::NEG_INFINITY));
-            let bound = is_number.select(bound, S::f64s::splat(simd, f64::NEG_INFINITY));
-            let bound = is_far.select(S::f64s::splat(simd, f64::INFINITY), bound);
-            bound.store_slice(&mut brood.bounds[from..from + S::f64s::LEN]);
-        }
-        brood.least = brood.least_of_all(simd);
+        let infinity = f64x8::splat(simd, f64::INFINITY);
+        let bound = f64x8::from_slice(simd, bounds);
+        let is_far = bound.simd_ge(f64x8::splat(simd, limit));
+        let is_number = bound.simd_ge(-infinity);
+        let bound = is_far.select(infinity, is_number.select(bound, -infinity));
+        let mut brood = Brood { bounds: [0.0; WIDTH], least: bound.reduce_min(), node };
+        bound.store_slice(&mut brood.bounds);
         self.0.push(brood);
     }
 
@@ -71,34 +71,17 @@ impl Broods {
                 self.0.truncate(first);
                 continue;
             }
-            let lane = brood.lane_of(simd, least);
+            // What was written as a vector is read as one: a lane that is written alone would be waited for.
+            let bounds = f64x8::from_slice(simd, &brood.bounds);
+            let lane =
+                bounds.simd_eq(f64x8::splat(simd, least)).to_bitmask().trailing_zeros() as usize % WIDTH;
+            let is_taken = f64x8::from_slice(simd, &LANES).simd_eq(f64x8::splat(simd, LANES[lane]));
+            let left = is_taken.select(f64x8::splat(simd, f64::INFINITY), bounds);
+            left.store_slice(&mut brood.bounds);
+            brood.least = left.reduce_min();
             let place = Place::lane(brood.node, lane);
-            brood.bounds[lane] = f64::INFINITY;
-            brood.least = brood.least_of_all(simd);
             return Some((least, place));
         }
-    }
-}
-
-impl Brood {
-    #[inline(always)]
-    fn least_of_all<S: Simd>(&self, simd: S) -> f64 {
-        let mut least = S::f64s::from_slice(simd, &self.bounds[..S::f64s::LEN]);
-        for from in (0..WIDTH).step_by(S::f64s::LEN).skip(1) {
-            least = least.min(S::f64s::from_slice(simd, &self.bounds[from..from + S::f64s::LEN]));
-        }
-        least.reduce_min()
-    }
-
-    /// The lowest lane with a bound.
-    #[inline(always)]
-    fn lane_of<S: Simd>(&self, simd: S, bound: f64) -> usize {
-        let mut lanes = 0;
-        for from in (0..WIDTH).step_by(S::f64s::LEN) {
-            let bounds = S::f64s::from_slice(simd, &self.bounds[from..from + S::f64s::LEN]);
-            lanes |= (bounds.simd_eq(S::f64s::splat(simd, bound)).to_bitmask() as u32) << from;
-        }
-        lanes.trailing_zeros() as usize % WIDTH
     }
 }
 

@@ -1,7 +1,7 @@
 //! Branch and bound for one query.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x4, mask64x4};
+use fearless_simd::{Simd, f32x8, f64x4, f64x8, mask64x4};
 use solid_convex::simd::{Level, dispatch};
 
 use super::lanes::{LANES, bits, distances_squared_to_box, lanes};
@@ -183,10 +183,8 @@ impl Tree {
 /// The lanes whose bound is at least a limit, as bits.
 #[inline(always)]
 fn reaching<S: Simd>(simd: S, bounds: &[f64; WIDTH], limit: f64) -> u32 {
-    let limit = f64x4::splat(simd, limit);
-    let low = f64x4::from_slice(simd, &bounds[..4]).simd_ge(limit).to_bitmask() as u32;
-    let high = f64x4::from_slice(simd, &bounds[4..]).simd_ge(limit).to_bitmask() as u32;
-    low | high << 4 | !LANES
+    let bounds = f64x8::from_slice(simd, bounds);
+    bounds.simd_ge(f64x8::splat(simd, limit)).to_bitmask() as u32 | !LANES
 }
 
 /// What needs no vectors. Not generic over the function: the walk is compiled for every level of instructions.
@@ -235,6 +233,6 @@ fn bound_lanes_on<S: Simd>(
             *bound = counts.select(least, *bound);
         }
     }
-    all[0].store_slice(&mut bounds[..4]);
-    all[1].store_slice(&mut bounds[4..]);
+    // At once, as they will be read.
+    simd.combine_f64x4(all[0], all[1]).store_slice(bounds);
 }

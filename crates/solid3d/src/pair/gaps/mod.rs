@@ -26,7 +26,7 @@ mod body;
 mod triangles;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x4};
+use fearless_simd::{Simd, f32x8, f64x8};
 use glam::{DMat3, DVec3};
 use solid_convex::Support;
 
@@ -181,13 +181,14 @@ impl Gaps {
         let furthest = 2.0 * self.middle_in_tree.abs().element_sum() + 3.0;
         let error = self.slack + ROUNDING * (furthest + self.size);
         let (low, high) = simd.widen_f32x8(gap);
-        let (unit, error) = (f64x4::splat(simd, self.unit), f64x4::splat(simd, error));
-        let radius = f64x4::splat(simd, self.radius);
-        for (half, bounds) in [low, high].into_iter().zip(bounds.chunks_exact_mut(4)) {
-            let raised = (half - error) * unit - radius;
-            let bound = f64x4::from_slice(simd, bounds);
-            raised.simd_gt(bound).select(raised, bound).store_slice(bounds);
-        }
+        let gap = simd.combine_f64x4(low, high);
+        let [unit, error, radius] = [self.unit, error, self.radius].map(
+            #[inline(always)]
+            |x| f64x8::splat(simd, x),
+        );
+        let raised = (gap - error) * unit - radius;
+        let bound = f64x8::from_slice(simd, bounds);
+        raised.simd_gt(bound).select(raised, bound).store_slice(bounds);
     }
 
     /// Which of the triangles of an image in some lanes may be the nearest, where one is sought that is nearer than a distance of the
