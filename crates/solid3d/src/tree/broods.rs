@@ -42,17 +42,32 @@ impl Broods {
         self.0.capacity() * size_of::<Brood>()
     }
 
-    /// Adds the children of a node whose bounds are below a limit, or are no numbers.
+    /// Adds the children of a node whose bounds are below a limit, or are no numbers, of which there are some; then [takes](Self::take) one. Mostly
+    /// it is of these, and then at hand.
     #[inline(always)]
-    pub fn add<S: Simd>(&mut self, simd: S, node: usize, bounds: &[f64; WIDTH], limit: f64) {
+    pub fn add_and_take<S: Simd>(
+        &mut self,
+        simd: S,
+        (node, bounds): (usize, &[f64; WIDTH]),
+        nodes: usize,
+        limit: f64,
+    ) -> Option<(f64, Place)> {
         let infinity = f64x8::splat(simd, f64::INFINITY);
         let bound = f64x8::from_slice(simd, bounds);
         let is_far = bound.simd_ge(f64x8::splat(simd, limit));
         let is_number = bound.simd_ge(-infinity);
         let bound = is_far.select(infinity, is_number.select(bound, -infinity));
-        let mut brood = Brood { bounds: [0.0; WIDTH], least: bound.reduce_min(), node };
+        let least = bound.reduce_min();
+        let mut brood = Brood { bounds: [0.0; WIDTH], least, node };
+        let earlier = &self.0[self.0.len().saturating_sub(nodes - 1)..];
+        if earlier.iter().all(|brood| least <= brood.least) {
+            let place = brood.take(simd, bound);
+            self.0.push(brood);
+            return Some((least, place));
+        }
         bound.store_slice(&mut brood.bounds);
         self.0.push(brood);
+        self.take(simd, nodes, limit)
     }
 
     /// Takes the nearest child of the last so many nodes, at least one, with its bound; where none of these is below the limit, of those before them.
@@ -71,17 +86,24 @@ impl Broods {
                 self.0.truncate(first);
                 continue;
             }
-            // What was written as a vector is read as one: a lane that is written alone would be waited for.
             let bounds = f64x8::from_slice(simd, &brood.bounds);
-            let lane =
-                bounds.simd_eq(f64x8::splat(simd, least)).to_bitmask().trailing_zeros() as usize % WIDTH;
-            let is_taken = f64x8::from_slice(simd, &LANES).simd_eq(f64x8::splat(simd, LANES[lane]));
-            let left = is_taken.select(f64x8::splat(simd, f64::INFINITY), bounds);
-            left.store_slice(&mut brood.bounds);
-            brood.least = left.reduce_min();
-            let place = Place::lane(brood.node, lane);
-            return Some((least, place));
+            return Some((least, brood.take(simd, bounds)));
         }
+    }
+}
+
+impl Brood {
+    /// Takes the nearest child out of the bounds that it is to have, the lowest lane of equal ones. These are written as a vector, as they will be
+    /// read: a lane that is written alone would be waited for.
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, simd: S, bounds: f64x8<S>) -> Place {
+        let nearest = bounds.simd_eq(f64x8::splat(simd, self.least)).to_bitmask();
+        let lane = nearest.trailing_zeros() as usize % WIDTH;
+        let is_taken = f64x8::from_slice(simd, &LANES).simd_eq(f64x8::splat(simd, LANES[lane]));
+        let left = is_taken.select(f64x8::splat(simd, f64::INFINITY), bounds);
+        left.store_slice(&mut self.bounds);
+        self.least = left.reduce_min();
+        Place::lane(self.node, lane)
     }
 }
 
@@ -101,29 +123,36 @@ mod tests {
         for case in 0..2000 {
             let nodes = 1 + case % 4;
             let few = rng.random_range(1..20);
+            let limit = [f64::INFINITY, 4.0, 0.5][case % 3];
             let mut bound = || match rng.random_range(0..12) {
                 0 => f64::NAN,
                 1 => f64::INFINITY,
                 _ => f64::from(rng.random_range(-2..few)),
             };
-            let bounds: Vec<[f64; WIDTH]> =
+            let mut bounds: Vec<[f64; WIDTH]> =
                 (0..1 + case % 5).map(|_| std::array::from_fn(|_| bound())).collect();
-            let limit = [f64::INFINITY, 4.0, 0.0][case % 3];
+            // Some child is near.
+            bounds.iter_mut().for_each(|bounds| bounds[case % WIDTH] = 0.0);
             let taken = alike(|level| {
                 let mut broods = Broods::default();
                 dispatch!(widest level, simd => {
-                    bounds.iter().enumerate().for_each(|(node, bounds)| broods.add(simd, node, bounds, limit));
-                    std::iter::from_fn(|| broods.take(simd, nodes, limit)).collect::<Vec<_>>()
+                    let mut taken = Vec::new();
+                    for (node, bounds) in bounds.iter().enumerate() {
+                        taken.extend(broods.add_and_take(simd, (node, bounds), nodes, limit));
+                    }
+                    taken.extend(std::iter::from_fn(|| broods.take(simd, nodes, limit)));
+                    taken
                 })
             });
             let mut left: Vec<Vec<(f64, Place)>> = Vec::new();
-            for (node, bounds) in bounds.iter().enumerate() {
-                let known = bounds.map(|bound| if bound.is_nan() { f64::NEG_INFINITY } else { bound });
-                let all = (0..WIDTH).map(|lane| (known[lane], Place::lane(node, lane)));
-                left.push(all.filter(|child| child.0 < limit).collect());
-            }
             let mut expected = Vec::new();
-            while !left.is_empty() {
+            let mut bounds = bounds.iter().enumerate();
+            loop {
+                if let Some((node, bounds)) = bounds.next() {
+                    let known = bounds.map(|bound| if bound.is_nan() { f64::NEG_INFINITY } else { bound });
+                    let all = (0..WIDTH).map(|lane| (known[lane], Place::lane(node, lane)));
+                    left.push(all.filter(|child| child.0 < limit).collect());
+                }
                 let first = left.len().saturating_sub(nodes);
                 let of_last = left[first..].iter().rev().flatten().copied();
                 match of_last.reduce(|x, y| if y.0 < x.0 { y } else { x }) {
@@ -131,6 +160,7 @@ mod tests {
                         left.iter_mut().for_each(|children| children.retain(|child| child.1 != next.1));
                         expected.push(next);
                     }
+                    None if left.is_empty() => break,
                     None => left.truncate(first),
                 }
             }

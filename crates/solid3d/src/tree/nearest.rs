@@ -130,9 +130,9 @@ impl Tree {
     ) {
         let Traversal { counters, near: broods, .. } = traversal;
         broods.clear();
-        // Of a node with one near child that is next: what is added would be taken at once.
-        let mut only = Some((f64::NEG_INFINITY, Place::ROOT));
-        while let Some((least, place)) = only.take().or_else(
+        // What comes next, where it is known: of a node with near children mostly one of these.
+        let mut next = Some((f64::NEG_INFINITY, Place::ROOT));
+        while let Some((least, place)) = next.take().or_else(
             #[inline(always)]
             || broods.take(simd, V::NODES_LOOKED_AT, *best),
         ) {
@@ -163,7 +163,7 @@ impl Tree {
                     }
                     if near.is_power_of_two() {
                         let lane = near.trailing_zeros() as usize;
-                        only = Some((of_lanes[lane], Place::lane(index, lane)));
+                        next = Some((of_lanes[lane], Place::lane(index, lane)));
                         continue;
                     }
                     for lane in bits(near) {
@@ -173,7 +173,7 @@ impl Tree {
                             |leaf| visitor.prefetch(leaf),
                         );
                     }
-                    broods.add(simd, index, &of_lanes, *best);
+                    next = broods.add_and_take(simd, (index, &of_lanes), V::NODES_LOOKED_AT, *best);
                 }
             }
         }
