@@ -29,7 +29,8 @@ pub(super) struct Frame {
     /// World lengths times this are lengths of the common frame.
     pub scale: f64,
     /// The linear parts of the placements of `A` and `B`, and the inverse of the first.
-    linear: [DMat3; 2],
+    linear_a: DMat3,
+    linear_b: DMat3,
     inverse_a: DMat3,
     /// The origin of `A` from that of `B`, in the world.
     offset: DVec3,
@@ -70,7 +71,8 @@ impl Frame {
             common,
             origin,
             scale,
-            linear: [at_a.matrix3, at_b.matrix3],
+            linear_a: at_a.matrix3,
+            linear_b: at_b.matrix3,
             inverse_a,
             offset,
             size,
@@ -80,7 +82,7 @@ impl Frame {
     /// Takes points of either space to the other. Of what is convex, where it is in the space of a mesh is mostly enough.
     #[inline(always)]
     pub fn relative(&self) -> Relative {
-        let [linear_a, linear_b] = &self.linear;
+        let Frame { linear_a, linear_b, .. } = self;
         let inverse_b = inverse_linear(linear_b);
         Relative {
             b_to_a: self.b_to_a,
@@ -97,7 +99,7 @@ impl Frame {
 
     /// Bounds on how distances local to `A` and `B` show in the common frame.
     pub fn stretch(&self) -> [Stretch; 2] {
-        [self.stretch_of_a(), Stretch::new(&inverse_linear(&self.linear[1]), self.scale)]
+        [self.stretch_of_a(), Stretch::new(&inverse_linear(&self.linear_b), self.scale)]
     }
 
     /// The same, of `A` alone.

@@ -41,7 +41,7 @@ pub(super) fn closest_primitive(
         complex,
         convex,
         frame,
-        direct,
+        direct: &direct,
         shadow,
         gaps,
         images,
@@ -60,7 +60,7 @@ struct Approach<'s> {
     complex: PlacedComplex<'s>,
     convex: PlacedConvex<'s>,
     frame: &'s Frame,
-    direct: Direct,
+    direct: &'s Direct,
     /// Its axis is from the closest point of the convex shape to that of the complex one so far.
     shadow: Shadow<'s>,
     /// What tells, by boxes and images, which primitives may be nearest.
@@ -106,7 +106,7 @@ impl NearLeaves for Approach<'_> {
             return;
         }
         match self.direct {
-            Direct::Round(round) => self.look_from_core(simd, &round, near, best),
+            Direct::Round(round) => self.look_from_core(simd, round, near, best),
             _ => {
                 let near = near & !self.shadow.beyond(simd, self.row, sought(*best));
                 self.look(simd, near, is_known, best);
@@ -160,7 +160,7 @@ impl Approach<'_> {
 
     /// The closest points of a triangle and a ball, where they are clear.
     fn in_closed_form(&self, primitive: u32) -> Option<Closest> {
-        let Direct::Round(round) = &self.direct else { return None };
+        let Direct::Round(round) = self.direct else { return None };
         let &[p, q, r] = self.complex.0.primitive(primitive) else { return None };
         let triangle = [p, q, r].map(|vertex| self.complex.0.vertices()[vertex as usize]);
         ball::closest_points(&triangle, round, self.frame)

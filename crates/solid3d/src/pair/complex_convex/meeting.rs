@@ -42,17 +42,16 @@ pub(super) fn primitives(
     let metric = frame.stretch_of_a().metric(&Stretch::NONE);
     let end = ControlFlow::Continue(());
     // Where all that meet are wanted, most leaves that are visited hold some.
-    let glance = if wants_any {
-        let glance = Glance::new(&direct, &map, CLEARLY_APART, complex.0.tree().normal());
-        glance.zip(complex.0.images())
-    } else {
-        None
+    let glance = match wants_any {
+        true => Glance::new(&direct, &map, CLEARLY_APART, complex.0.tree().normal()),
+        false => None,
     };
+    let glance = glance.as_ref().zip(complex.0.images());
     let mut meeting = Meeting {
         complex,
         convex,
         frame: &frame,
-        direct,
+        direct: &direct,
         map,
         shadow,
         glance,
@@ -74,12 +73,12 @@ struct Meeting<'s> {
     complex: PlacedComplex<'s>,
     convex: PlacedConvex<'s>,
     frame: &'s Frame,
-    direct: Direct,
+    direct: &'s Direct,
     /// Where primitives are placed: in the common frame, or the space of a box.
     map: DAffine3,
     shadow: Shadow<'s>,
     /// What looks at images of triangles, where any that meets will do.
-    glance: Option<(Glance, &'s LeafImages)>,
+    glance: Option<(&'s Glance, &'s LeafImages)>,
     /// How many nodes were opened, and what bounds the distances of their boxes once they are many.
     opened: usize,
     gaps: Option<Gaps>,
@@ -98,7 +97,7 @@ impl NearLeaves for Meeting<'_> {
         self.opened += 1;
         // Of what is round, the bounds are as good as they get.
         if self.opened == LONG && !matches!(self.direct, Direct::Round(_)) {
-            self.gaps = Gaps::new(self.convex.0, &self.direct, self.frame, self.complex.0.tree().normal());
+            self.gaps = Gaps::new(self.convex.0, self.direct, self.frame, self.complex.0.tree().normal());
             if let Some(gaps) = &mut self.gaps {
                 gaps.look_along(simd, self.shadow.axis());
             }
@@ -110,7 +109,7 @@ impl NearLeaves for Meeting<'_> {
 
     #[inline(always)]
     fn prefetch(&self, leaf: &Leaf) {
-        if let Some((_, images)) = &self.glance {
+        if let Some((_, images)) = self.glance {
             images.prefetch(leaf);
         }
     }
@@ -131,7 +130,7 @@ impl Meeting<'_> {
     /// Looks at the image of a leaf; `None` when that leaves something open.
     #[inline(always)]
     fn glance<S: Simd>(&mut self, simd: S, leaf: &Leaf) -> Option<ControlFlow<()>> {
-        let (glance, images) = self.glance.as_ref()?;
+        let (glance, images) = self.glance?;
         let Verdict { meet, apart } = glance.verdict(simd, &images.of(leaf));
         let lanes = leaf.lanes();
         let first = bits(meet & lanes).next();
@@ -147,7 +146,7 @@ impl Meeting<'_> {
         let (complex, at_complex) = self.complex;
         let row = self.row.get_or_insert_default();
         row.place(simd, complex, leaf, &self.map);
-        let bounds = match &self.direct {
+        let bounds = match self.direct {
             Direct::Cube(cube) => &cube.bounds(),
             _ => &self.shadow.bounds,
         };
@@ -156,7 +155,7 @@ impl Meeting<'_> {
             return ControlFlow::Continue(());
         }
         let triangles = near & row.triangles();
-        let sure = match &self.direct {
+        let sure = match self.direct {
             Direct::Round(round) => round.verdict(simd, row, triangles, CLEARLY_APART),
             Direct::Cube(cube) => cube.verdict(simd, row, triangles),
             Direct::None => Verdict { meet: 0, apart: self.shadow.beyond(simd, row, CLEARLY_APART) },
