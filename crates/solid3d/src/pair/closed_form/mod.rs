@@ -111,6 +111,7 @@ fn size([of_a, of_b]: [Simple; 2], [at_a, at_b]: [&Similarity; 2], offset: DVec3
 }
 
 impl Pair {
+    #[inline(always)]
     fn new(a: Placed, b: Placed) -> Option<Pair> {
         let kinds = [a.shape.simple()?, b.shape.simple()?];
         let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];
@@ -118,6 +119,7 @@ impl Pair {
     }
 
     /// Of two shapes under similarities; `offset` leads from the origin of the first to that of the second.
+    #[inline(always)]
     fn of([of_a, of_b]: [Simple; 2], [at_a, at_b]: [Similarity; 2], offset: DVec3) -> Option<Pair> {
         let scale = unit_scale(size([of_a, of_b], [&at_a, &at_b], offset));
         let (at_a, at_b) = (at_a.scaled(scale), at_b.scaled(scale));
