@@ -35,7 +35,7 @@ pub(super) fn closest_primitive(
     let shadow = Shadow::new(convex.0, frame, &direct, ROUNDINGS);
     let around = shadow.around(&direct);
     let from = [convex.0.center(); 2];
-    let gaps = Gaps::new(convex.0, &direct, frame, complex.0.tree().normal());
+    let mut gaps = Gaps::new(convex.0, &direct, frame, complex.0.tree().normal());
     let images = complex.0.images();
     let mut approach = Approach {
         complex,
@@ -43,7 +43,7 @@ pub(super) fn closest_primitive(
         frame,
         direct: &direct,
         shadow,
-        gaps,
+        gaps: gaps.as_mut(),
         images,
         from,
         row,
@@ -64,7 +64,7 @@ struct Approach<'s> {
     /// Its axis is from the closest point of the convex shape to that of the complex one so far.
     shadow: Shadow<'s>,
     /// What tells, by boxes and images, which primitives may be nearest.
-    gaps: Option<Gaps>,
+    gaps: Option<&'s mut Gaps>,
     images: Option<&'s LeafImages>,
     /// Points of the convex shape, in its space, from which to look: the way to what is closest to one of them is a direction
     /// along which the shapes may be far apart. The first is its centre, the second one near to the closest so far.
