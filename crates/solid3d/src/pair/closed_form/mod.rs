@@ -111,7 +111,7 @@ fn size([of_a, of_b]: [Simple; 2], [at_a, at_b]: [&Similarity; 2], offset: DVec3
 }
 
 impl Pair {
-    #[inline(always)]
+    #[inline(always)] // as `of`: made where it is looked at, since it is large
     fn new(a: Placed, b: Placed) -> Option<Pair> {
         let kinds = [a.shape.simple()?, b.shape.simple()?];
         let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];

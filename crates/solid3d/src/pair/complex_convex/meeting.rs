@@ -42,10 +42,8 @@ pub(super) fn primitives(
     let metric = frame.stretch_of_a().metric(&Stretch::NONE);
     let end = ControlFlow::Continue(());
     // Where all that meet are wanted, most leaves that are visited hold some.
-    let glance = match wants_any {
-        true => Glance::new(&direct, &map, CLEARLY_APART, complex.0.tree().normal()),
-        false => None,
-    };
+    let glance =
+        if wants_any { Glance::new(&direct, &map, CLEARLY_APART, complex.0.tree().normal()) } else { None };
     let glance = glance.as_ref().zip(complex.0.images());
     let mut meeting = Meeting {
         complex,

@@ -100,7 +100,7 @@ fn contained(
     inside.then(|| Witness { on_a: frame.b_to_a.transform_point3(center), on_b: center })
 }
 
-#[inline(always)]
+#[inline(always)] // made where it stays: it is large
 fn frame(complex: PlacedComplex, convex: PlacedConvex) -> Frame {
     Frame::new(complex.1, complex.0.reach(), convex.1, convex.0.reach())
 }
