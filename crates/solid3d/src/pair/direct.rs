@@ -26,6 +26,8 @@ pub(super) struct Round {
     pub radius: f64,
     /// The ends of the core, in the shape's own space: of a ball both the same.
     pub local_ends: [DVec3; 2],
+    /// The way from that space.
+    pub at: Similarity,
     ends: [DVec3; 2],
 }
 
@@ -48,9 +50,9 @@ impl Round {
     fn new(shape: &dyn Support, frame: &Frame) -> Option<Round> {
         let (local_ends, radius) = core(shape)?;
         let map = &frame.common[1];
-        let stretch = Similarity::new(&map.matrix3)?.stretch;
+        let at = Similarity::new(&map.matrix3)?;
         let ends = local_ends.map(|end| map.transform_point3(end));
-        Some(Round { radius: radius * stretch, local_ends, ends })
+        Some(Round { radius: radius * at.stretch, local_ends, at, ends })
     }
 
     /// The centre of a ball, in the common frame; `None` for a capsule.

@@ -3,7 +3,6 @@
 use glam::DVec3;
 use solid_convex::{Closest, Witness};
 
-use super::super::closed_form::Similarity;
 use super::super::direct::Round;
 use super::super::frame::Frame;
 use super::super::row::CONFIRMED;
@@ -14,8 +13,7 @@ use super::CLEARLY_APART;
 /// `None` of what is no ball, where GJK has to say whether they touch, and where rounding hides which point of a sliver is the closest.
 pub(super) fn closest_points(triangle: &Triangle, round: &Round, frame: &Frame) -> Option<Closest> {
     let center = round.center()?;
-    let [from_complex, from_ball] = &frame.common;
-    let placed = triangle.map(|corner| from_complex.transform_point3(corner));
+    let placed = triangle.map(|corner| frame.common[0].transform_point3(corner));
     let [s, t] = nearest_to(center, &placed);
     let point = |[p, q, r]: &Triangle| *p + (*q - *p) * s + (*r - *p) * t;
     let way = center - point(&placed);
@@ -30,7 +28,7 @@ pub(super) fn closest_points(triangle: &Triangle, round: &Round, frame: &Frame) 
         // The point is in the ball.
         (gap < -CLEARLY_APART).then_some(1.0)?
     };
-    let on_b = round.local_ends[0] - Similarity::new(&from_ball.matrix3)?.local(way * to_surface);
+    let on_b = round.local_ends[0] - round.at.local(way * to_surface);
     Some(Closest { distance: gap.max(0.0) / frame.scale, points: Witness { on_a: point(triangle), on_b } })
 }
 
