@@ -37,8 +37,11 @@ pub const CAST_ERROR: f64 = 1e-10;
 /// about this part of the way. Between 0.1 and 1e-4 the cost hardly changes.
 const STEP_TOLERANCE: f64 = 1e-2;
 
-/// A gap, relative to the size of the data, within which objects meet: four times what a support point may be off.
-const CONTACT_GAP: f64 = 4.0 * SUPPORT_ERROR;
+/// A gap within which objects meet, relative to what a support point may be off.
+const CONTACT_GAP: f64 = 4.0;
+
+/// How far a place on the way may be off, relative to the length of the way so far: by its rounding, and by that of the time.
+const WAY_ERROR: f64 = f64::EPSILON;
 
 /// Steps after which a cast ends where it is, which is before the impact: a grazing motion halves the gap with each,
 /// so that 50 steps use up the digits of a gap.
@@ -52,9 +55,9 @@ const NORMAL_GAP: f64 = 1e-7;
 /// `None` when it does not up to the time `until`, which may be endless.
 ///
 /// Conservative: the time is never later than the first contact, and no contact is missed. At the time given the gap is
-/// below [`CAST_ERROR`] of the size of the data; on a grazing motion that may be some 1e-5 of the size before the contact. The placements and the
-/// motion must be finite, with entries of at most [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX). Cost: some three to ten times
-/// [`intersection`](super::intersection()).
+/// below [`CAST_ERROR`] of the size of the data, or 1e-14 of how far apart they start; on a grazing motion that may be some 1e-5 of the
+/// size before the contact. The placements and the motion must be finite, with entries of at most
+/// [`MAGNITUDE_MAX`](crate::MAGNITUDE_MAX). Cost: some three to ten times [`intersection`](super::intersection()).
 ///
 /// ```
 /// use solid_convex::{Sphere, gjk};
@@ -80,12 +83,17 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
+    // As seen from where A starts: far from the origin of the world every step would be rounded anew, past what is flat.
+    let way = placement_b.translation - placement_a.translation;
+    let at_b = DAffine3 { translation: way, ..*placement_b };
     // lambda: the time, never past the impact; r: the motion; v: a separating axis; w: a support point of A - B against it.
     let (mut lambda, mut normal, mut points) = (0.0, None, None);
     for _ in 0..STEPS_MAX {
-        let at = DAffine3 { translation: placement_a.translation + motion * lambda, ..*placement_a };
-        let difference = Difference::new(a, &at, b, placement_b);
-        let (clip, witness) = clip(&difference);
+        let at_a = DAffine3 { translation: motion * lambda, ..*placement_a };
+        let difference = Difference::new(a, &at_a, b, &at_b);
+        // Beyond the way, A goes no further than the size of the data, of which the rounding is within that of support points.
+        let error = SUPPORT_ERROR + WAY_ERROR * difference.scale() * way.abs().max_element();
+        let (clip, witness) = clip(&difference, error);
         points = Some(witness);
         let Some((v, gap)) = clip else { break };
         let r = motion * difference.scale();
@@ -110,8 +118,8 @@ where
 }
 
 /// A unit axis that separates the objects by more than [`CONTACT_GAP`], and the gap along it, less what may be rounding; `None` when
-/// they meet. With points of either: the closest ones, nearly.
-fn clip<A, B>(difference: &Difference<A, B>) -> (Option<(DVec3, f64)>, Witness)
+/// they meet. With points of either: the closest ones, nearly. Of a support point each coordinate may be off by `error`.
+fn clip<A, B>(difference: &Difference<A, B>, error: f64) -> (Option<(DVec3, f64)>, Witness)
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
@@ -119,7 +127,7 @@ where
     let nearest = descend(difference, Goal::Distance { tolerance: STEP_TOLERANCE });
     let (on_a, on_b) = nearest.simplex.witness();
     let v = nearest.axis.normalize_or_zero();
-    let gap = v.dot(difference.support_against(v).w) - SUPPORT_ERROR * v.abs().element_sum();
-    let clip = (nearest.end != End::Inside && gap > CONTACT_GAP).then_some((v, gap));
+    let gap = v.dot(difference.support_against(v).w) - error * v.abs().element_sum();
+    let clip = (nearest.end != End::Inside && gap > CONTACT_GAP * error).then_some((v, gap));
     (clip, Witness { on_a, on_b })
 }

@@ -15,7 +15,7 @@ use super::{
 use crate::difference::Difference;
 use crate::simd;
 use crate::testing::{in_cube, placement, shapes};
-use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
+use crate::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 
 #[test]
 fn swapping_negates_the_axis() {
@@ -528,4 +528,45 @@ fn a_cast_ends_at_the_stated_gap() {
         assert!(gap <= CAST_ERROR * size, "seed {SEED}, {case}: {:e} of the size", gap / size);
     }
     assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
+}
+
+/// Law: what is flat is not passed, neither by what is flat itself, however long the way to it is or far from the origin of the world, where
+/// positions are rounded.
+#[test]
+fn a_cast_passes_nothing_that_is_flat() {
+    const SEED: u64 = 53;
+    let mut rng = seeded(SEED);
+    let polytope = |corners: &[DVec3]| Polytope::new(corners.to_vec()).unwrap();
+    for case in 0..20_000 {
+        let mut corners: [DVec3; 3] = std::array::from_fn(|_| in_cube(&mut rng));
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        if normal.length() < 0.1 {
+            continue;
+        }
+        let inside = |corners: &[DVec3]| corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let target = polytope(&corners);
+        let met = inside(&corners);
+        // A point, a segment, or a triangle; these all parallel to the target, or not.
+        if case % 2 == 0 {
+            corners = std::array::from_fn(|_| in_cube(&mut rng));
+        }
+        let corners = &corners[..1 + case % 3];
+        let mover = polytope(corners);
+        let far = |rng: &mut StdRng| 10_f64.powf(rng.random_range(0.0..8.0)) * in_cube(rng).normalize();
+        let (origin, motion) = (far(&mut rng), far(&mut rng));
+        if motion.normalize().dot(normal.normalize()).abs() < 0.05 {
+            continue;
+        }
+        let time = rng.random_range(0.1..0.9);
+        let from = DAffine3::from_translation(origin);
+        let at = DAffine3::from_translation(origin + motion * time + inside(corners) - met);
+        let impact = cast(&mover, &from, motion, &target, &at, 1.0);
+        let impact = impact.unwrap_or_else(|| panic!("seed {SEED}, {case}: {corners:?} passes"));
+        let off = (impact.time - time) * motion.length();
+        let rounding = 1e-9 + 1e-14 * (origin.length() + motion.length());
+        assert!(off < rounding, "seed {SEED}, {case}: late by {off:e}");
+        if corners.len() == 1 {
+            assert!(off > -100.0 * rounding, "seed {SEED}, {case}: early by {off:e}");
+        }
+    }
 }

@@ -26,10 +26,10 @@ pub struct ShapeCast {
 /// meet at time 0, also where one is inside of the other, a solid.
 ///
 /// Conservative: the time is never later than the first contact, up to the rounding of positions, and no contact is missed. At that
-/// time the shapes are nearer to each other than [`CAST_ERROR`](solid_convex::gjk::CAST_ERROR) of the size of the data. So the way
-/// from there to the contact is as short when they meet head on; when they only graze, up to about the square root of it. Of
-/// contacts at the same time, one is reported. Cost: some ten times [`intersects`](super::intersects) for convex shapes; for
-/// meshes, branch and bound over their trees.
+/// time the shapes are nearer to each other than [`CAST_ERROR`](solid_convex::gjk::CAST_ERROR) of the size of the data, or 1e-14 of how far
+/// apart they start. So the way from there to the contact is as short when they meet head on; when they only graze, up to about the
+/// square root of it. Of contacts at the same time, one is reported. Cost: some ten times [`intersects`](super::intersects) for convex
+/// shapes; for meshes, branch and bound over their trees.
 ///
 /// ```
 /// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
