@@ -8,7 +8,7 @@
 mod common;
 
 use std::collections::BTreeSet;
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 use common::{assert_rate, at, placement, random_complex, random_mesh, sheet, size_of};
 use glam::{DAffine3, DQuat, DVec3};
@@ -365,6 +365,33 @@ fn ridges_have_normals() {
     normals.sort_by(f64::total_cmp);
     assert_eq!(found.len(), 2, "{found:#?}");
     assert!((normals[0] + 0.5f64.sqrt()).abs() < 1e-9 && (normals[1] - 0.5f64.sqrt()).abs() < 1e-9);
+}
+
+/// Law: a region has one normal also where a surface turns by so little from facet to facet that all of them are of one normal with
+/// the next: that of the surface at each of its points.
+#[test]
+fn a_smooth_surface_has_many_normals() {
+    // A quarter of a pipe along z, in facets of 4e-4 radians, and a rod that nearly fills it.
+    let facets = 4000;
+    let angle = |i: u32| PI + FRAC_PI_4 + FRAC_PI_2 * f64::from(i) / f64::from(facets);
+    let edge = |i: u32| [-1.0, 1.0].map(|z| DVec3::new(angle(i).cos(), angle(i).sin(), z));
+    let vertices: Vec<DVec3> = (0..=facets).flat_map(edge).collect();
+    let strip = |i: u32| [[2 * i, 2 * i + 1, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 2]];
+    let pipe = Shape::mesh(vertices, (0..facets).flat_map(strip).collect::<Vec<_>>()).unwrap();
+    let rod = Shape::cylinder(0.999, 1.0).unwrap();
+    let along_z = DAffine3::from_rotation_x(FRAC_PI_2);
+    let found = query::contacts(&rod, &along_z, &pipe, &DAffine3::IDENTITY, &within(0.01)).unwrap();
+    let mut points = 0;
+    for region in &found {
+        for point in &region.points {
+            let inward = -DVec3::new(point.point_on_b.x, point.point_on_b.y, 0.0);
+            let off = region.normal.angle_between(inward);
+            assert!(off < 2e-3, "{off} radians at {point:?}");
+            points += 1;
+        }
+    }
+    println!("{} regions of {points} points", found.len());
+    assert!((700..2000).contains(&found.len()), "{} regions", found.len());
 }
 
 /// What stands on the upper floor of a step, and hangs over its edge, is held by that floor: not pushed off by the riser below it.

@@ -22,49 +22,95 @@ pub(super) struct Region {
     pub points: Vec<([u32; 2], Touch)>,
 }
 
-/// Puts patches together whose primitives are connected on both sides, and whose normals are the same. In the order of their first
-/// primitives. Cost: follows the pairs of patches at one vertex.
+/// Puts patches together whose primitives are connected on both sides, and whose normals are that of the deepest of them. In the order
+/// of their first primitives. Cost: follows the patches at one vertex, times how many normals they have.
 pub(super) fn regions(a: &Part, b: &Part, patches: Vec<Patch>) -> Vec<Region> {
-    let mut parent: Vec<usize> = (0..patches.len()).collect();
-    let corners: Vec<[Vec<u32>; 2]> = patches
-        .iter()
-        .map(|patch| [corners(a, patch.primitives[0]), corners(b, patch.primitives[1])])
-        .collect();
-    let mut at_vertex: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
-    for (i, [of_a, of_b]) in corners.iter().enumerate() {
-        for &x in of_a {
-            for &y in of_b {
-                let here = at_vertex.entry([x, y]).or_default();
-                for &j in &*here {
-                    if patches[i].normal.dot(patches[j].normal) > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL {
-                        unite(&mut parent, i, j);
-                    }
-                }
-                here.push(i);
-            }
-        }
-    }
-    let mut members: Vec<Vec<usize>> = vec![Vec::new(); patches.len()];
-    for i in 0..patches.len() {
-        members[root(&mut parent, i)].push(i);
-    }
-    let joined = members.into_iter().filter(|members| !members.is_empty()).map(|members| {
-        let deepest =
-            |&i: &usize| patches[i].touches.iter().map(|touch| touch.depth).fold(f64::MIN, f64::max);
-        let first = members
-            .iter()
-            .copied()
-            .max_by(|i, j| deepest(i).total_cmp(&deepest(j)).then(j.cmp(i)))
-            .expect("a region has a patch");
-        let normal = patches[first].normal;
+    let deepest = |patch: &Patch| patch.touches.iter().map(|touch| touch.depth).fold(f64::MIN, f64::max);
+    let depths: Vec<f64> = patches.iter().map(deepest).collect();
+    let mut seeds: Vec<usize> = (0..patches.len()).collect();
+    seeds.sort_by(|&i, &j| depths[j].total_cmp(&depths[i])); // stable
+    let mut joining = Joining::new(a, b, &patches);
+    let mut joined: Vec<(DVec3, Vec<usize>)> =
+        seeds.into_iter().filter_map(|seed| Some((patches[seed].normal, joining.grow(seed)?))).collect();
+    joined.sort_unstable_by_key(|(_, members)| members[0]);
+    let region = |(normal, members): (DVec3, Vec<usize>)| {
         let touches = members.iter().flat_map(|&i| {
             let patch = &patches[i];
             patch.touches.iter().map(|&touch| (patch.primitives, touch))
         });
-        let points = thinned(touches.collect(), normal, members.len() > 1);
-        Region { normal, points }
-    });
-    joined.collect()
+        Region { normal, points: thinned(touches.collect(), normal, members.len() > 1) }
+    };
+    joined.into_iter().map(region).collect()
+}
+
+/// Patches, and by which vertices they are connected.
+struct Joining<'p> {
+    patches: &'p [Patch],
+    is_taken: Vec<bool>,
+    /// Of each patch, a vertex of either surface: those by which it is connected.
+    vertices: Vec<Vec<[u32; 2]>>,
+    at_vertex: HashMap<[u32; 2], Neighbours>,
+}
+
+/// Patches that have a vertex of either surface in common.
+#[derive(Default)]
+struct Neighbours {
+    /// Those of no region yet, and perhaps some that are of one.
+    patches: Vec<usize>,
+    /// The seed of the region that looked at them last.
+    seen_by: Option<usize>,
+}
+
+impl<'p> Joining<'p> {
+    fn new(a: &Part, b: &Part, patches: &'p [Patch]) -> Self {
+        let vertices: Vec<Vec<[u32; 2]>> = patches.iter().map(|patch| vertices(a, b, patch)).collect();
+        let mut at_vertex: HashMap<[u32; 2], Neighbours> = HashMap::new();
+        for (i, vertices) in vertices.iter().enumerate() {
+            for &vertex in vertices {
+                at_vertex.entry(vertex).or_default().patches.push(i);
+            }
+        }
+        Joining { patches, is_taken: vec![false; patches.len()], vertices, at_vertex }
+    }
+
+    /// Takes a patch, and all of its normal that are connected with it; `None` when it is taken already. In ascending order.
+    fn grow(&mut self, seed: usize) -> Option<Vec<usize>> {
+        let Joining { patches, is_taken, vertices, at_vertex } = self;
+        if std::mem::replace(&mut is_taken[seed], true) {
+            return None;
+        }
+        let mut members = vec![seed];
+        let mut next = 0;
+        while let Some(&member) = members.get(next) {
+            next += 1;
+            for vertex in &vertices[member] {
+                let neighbours = at_vertex.get_mut(vertex).expect("each vertex of a patch has neighbours");
+                if neighbours.seen_by.replace(seed) == Some(seed) {
+                    continue;
+                }
+                neighbours.patches.retain(|&i| {
+                    if !is_taken[i] && is_same(patches[i].normal, patches[seed].normal) {
+                        is_taken[i] = true;
+                        members.push(i);
+                    }
+                    !is_taken[i]
+                });
+            }
+        }
+        members.sort_unstable();
+        Some(members)
+    }
+}
+
+/// Whether two unit normals are one.
+fn is_same(normal: DVec3, other: DVec3) -> bool {
+    normal.dot(other) > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL
+}
+
+/// By which a patch is connected to others: a vertex of each surface.
+fn vertices(a: &Part, b: &Part, patch: &Patch) -> Vec<[u32; 2]> {
+    let [of_a, of_b] = [corners(a, patch.primitives[0]), corners(b, patch.primitives[1])];
+    of_a.iter().flat_map(|&x| of_b.iter().map(move |&y| [x, y])).collect()
 }
 
 /// The vertices of a primitive by which it is connected to others; a body is connected to itself.
@@ -79,20 +125,6 @@ fn corners(part: &Part, primitive: u32) -> Vec<u32> {
             corners
         }
     }
-}
-
-fn unite(parent: &mut [usize], i: usize, j: usize) {
-    let (i, j) = (root(parent, i), root(parent, j));
-    parent[i.max(j)] = i.min(j);
-}
-
-/// The root of an element; the way to it is halved.
-fn root(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    i
 }
 
 /// Points without duplicates; of flat surfaces of several primitives, those at the outline, which say all of the others.
