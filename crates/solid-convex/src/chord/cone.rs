@@ -2,8 +2,12 @@
 
 use glam::DVec3;
 
+use super::round::capped_cylinder;
 use super::{Chord, End, Line, slab};
 use crate::Cone;
+
+/// A cone whose height is this part of its radius, or less, is no more than rounding thinner than a cylinder: its sides would be lost.
+const FLAT: f64 = 16.0 * f64::EPSILON;
 
 /// A quadratic `a t^2 + 2 b t + c`, whose sign says on which side of a double cone a point of a line is.
 struct Quadratic {
@@ -48,9 +52,11 @@ fn endless_cone(foot: DVec3, along: DVec3, apex: f64, radius: f64, height: f64) 
         c: h * (foot.x * foot.x + foot.z * foot.z) - r * depth * depth,
     };
     let depth_at = |t: f64| depth - t * along.y;
+    // By the way from the axis alone: near to the apex the depth is rounded.
     let end = |t: f64| {
-        let p = foot + along * t;
-        End { t, normal: DVec3::new(h * p.x, r * depth_at(t), h * p.z).try_normalize().unwrap_or(DVec3::Y) }
+        let (x, z) = (foot.x + along.x * t, foot.z + along.z * t);
+        let out = DVec3::new(height * x, radius * (x * x + z * z).sqrt(), height * z);
+        End { t, normal: out.try_normalize().unwrap_or(DVec3::Y) }
     };
     let [first, last] = quadratic.roots()?;
     if quadratic.a > 0.0 {
@@ -74,6 +80,9 @@ impl Cone {
         let (radius, half) = (self.radius(), 0.5 * self.height());
         let (foot, scale) = line.near(radius.max(half))?;
         let (radius, half) = (radius * scale, half * scale);
+        if 2.0 * half <= FLAT * radius {
+            return line.chord(capped_cylinder(foot, line.along, radius, half), scale);
+        }
         let sides = endless_cone(foot, line.along, half, radius, 2.0 * half)?;
         line.chord(sides.and(slab(foot, line.along, 1, half)?), scale)
     }

@@ -36,7 +36,7 @@ fn endless_cylinder(foot: DVec3, along: DVec3, radius: f64) -> Option<Chord> {
 }
 
 /// The chord of a cylinder around the axis y.
-fn capped_cylinder(foot: DVec3, along: DVec3, radius: f64, half_height: f64) -> Option<Chord> {
+pub(super) fn capped_cylinder(foot: DVec3, along: DVec3, radius: f64, half_height: f64) -> Option<Chord> {
     endless_cylinder(foot, along, radius)?.and(slab(foot, along, 1, half_height)?)
 }
 

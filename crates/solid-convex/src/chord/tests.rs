@@ -94,11 +94,12 @@ fn chords_end_where_casts_do() {
     }
 }
 
-/// Cones flat or slim down to 1e-12: a line through a point inside has a chord, that point is on it, and both its ends are on the cone.
+/// Cones slim down to 1e-12, or flat: a line through a point inside has a chord, that point is on it, both its ends are on the cone, and it
+/// comes in from outside.
 #[test]
 fn chords_of_flat_cones_end_on_them() {
-    for power in 0..=12 {
-        for (radius, height) in [(1.0, 0.1f64.powi(power)), (0.1f64.powi(power), 1.0)] {
+    for power in 0..=90 {
+        for (radius, height) in [(1.0, 0.1f64.powi(power)), (0.1f64.powi(power.min(12)), 1.0)] {
             let cone = Cone::new(radius, height).unwrap();
             for i in 0..500 {
                 let part = |step: f64| 0.5 + 0.5 * spread(i, step);
@@ -109,6 +110,8 @@ fn chords_of_flat_cones_end_on_them() {
                 let chord = cone.chord(&Line::new(inside - away, away).unwrap()).unwrap();
                 let context = || format!("{radius:e} {height:e}, {i}: {chord:?}");
                 assert!(chord.enter.t <= 1.0 + 1e-15 && 1.0 - 1e-15 <= chord.leave.t, "{}", context());
+                let (enter, leave) = (chord.enter.normal.dot(away), chord.leave.normal.dot(away));
+                assert!(enter <= 0.0 && leave >= 0.0 || chord.enter == chord.leave, "{}", context());
                 for t in [chord.enter.t, chord.leave.t] {
                     let end = inside + away * (t - 1.0);
                     let below = 0.5 - end.y / height;
