@@ -13,6 +13,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use common::{assert_rate, at, placement, random_complex, random_mesh, sheet, size_of};
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
+use rand::rngs::StdRng;
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
 use solid3d::query::{self, ContactOptions, ContactPoint, Feature, Manifold};
 use solid3d::{Motion, Response, Shape, When, World, WorldOptions, glam};
@@ -392,6 +393,36 @@ fn a_smooth_surface_has_many_normals() {
     }
     println!("{} regions of {points} points", found.len());
     assert!((700..2000).contains(&found.len()), "{} regions", found.len());
+}
+
+/// Law: shapes whose vertices are far from their local origins, as in coordinates of the earth, have the contacts that they have around them.
+#[test]
+fn far_from_local_origins_contacts_are_the_same() {
+    let mut rng = seeded(SEED + 9);
+    let (mut hits, cases) = (0, 300);
+    // On a grid on which no coordinate is rounded, there or here.
+    let on_grid = |p: DVec3| (p * 2f64.powi(20)).round() / 2f64.powi(20);
+    for case in 0..cases {
+        let far = (common::direction(&mut rng) * [3e3, 1e5, 5e6][case % 3]).round();
+        let soup = |rng: &mut StdRng| {
+            let mut soup = random_mesh(rng, 60);
+            soup.vertices.iter_mut().for_each(|vertex| *vertex = on_grid(*vertex));
+            let here = soup.shape();
+            soup.vertices.iter_mut().for_each(|vertex| *vertex += far);
+            [here, soup.shape()]
+        };
+        let ([a, far_a], [b, far_b]) = (soup(&mut rng), soup(&mut rng));
+        let still = DAffine3::IDENTITY;
+        let at = DAffine3::from_translation(on_grid(1.6 * common::in_cube(&mut rng)));
+        let (here, there) = (contacts(&a, &still, &b, &at), contacts(&far_a, &still, &far_b, &at));
+        assert_eq!(here.len(), there.len(), "case {case}");
+        for (x, y) in here.iter().zip(&there) {
+            assert!((x.normal - y.normal).length() < 1e-5, "case {case}: {} and {}", x.normal, y.normal);
+        }
+        hits += usize::from(!here.is_empty());
+        assert!((deepest(&here) - deepest(&there)).abs() < 1e-9 || here.is_empty(), "case {case}");
+    }
+    assert_rate("pairs", hits, cases);
 }
 
 /// What stands on the upper floor of a step, and hangs over its edge, is held by that floor: not pushed off by the riser below it.

@@ -4,12 +4,17 @@ use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::{gjk, unit_scale};
 
 use super::reach::image_reach;
+use crate::bounds::Aabb;
 use crate::placement::{inverse_linear, row_norm};
 use crate::tree::{PairMetric, Relative};
 
 /// Roundings of 2^-53, relative to the size of the data, that lie between a local point and its image in another local
 /// space: two products with matrices, three translations, and the products that made the matrices.
 pub(super) const ROUNDINGS: f64 = 64.0 / (1u64 << 53) as f64;
+
+/// The unit of a space around shapes is at least this part of the size of the data: by that much, positions are rounded less than what counts as
+/// one place in such a unit.
+const UNIT_MIN: f64 = 1.0 / (1u64 << 18) as f64;
 
 /// Beyond what any shape that matters to the size of the data has; less is as valid a bound, and never infinite.
 const STRETCH_MAX: f64 = 1e200;
@@ -77,6 +82,22 @@ impl Frame {
             offset,
             size,
         }
+    }
+
+    /// The same, but that the common space is around two shapes, whose boxes in the world are given, and its unit near their sizes: they may lie
+    /// far from their local origins, as what is given in coordinates of the earth.
+    pub fn around(self, [at_a, at_b]: [&DAffine3; 2], bounds: [Aabb; 2]) -> Frame {
+        let [center_a, center_b] = bounds.map(|bounds| bounds.center());
+        let [half_a, half_b] = bounds.map(|bounds| bounds.half_extents().max_element());
+        let between = center_a - center_b;
+        let size = half_a + half_b + between.abs().max_element();
+        let scale = unit_scale(size.max(UNIT_MIN * self.size));
+        let origin = if comes_first(between) { center_a } else { center_b };
+        let common = [at_a, at_b].map(|at| DAffine3 {
+            matrix3: at.matrix3 * scale,
+            translation: (at.translation - origin) * scale,
+        });
+        Frame { common, origin, scale, ..self }
     }
 
     /// Takes points of either space to the other. Of what is convex, where it is in the space of a mesh is mostly enough.

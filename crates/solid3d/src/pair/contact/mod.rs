@@ -7,7 +7,7 @@
 //! Of meshes and complex shapes: the contacts of all pairs of primitives, each with a normal that the surface around the
 //! primitive has ([`soup`]), put together where the surface is connected and the normal the same ([`region`]).
 //!
-//! Everything is computed in the common frame of the pair: lengths near 1, so that tolerances are relative to the data.
+//! Everything is computed in a common frame around the pair: lengths near 1, so that tolerances are relative to the shapes.
 
 mod clip;
 mod face;
@@ -19,7 +19,7 @@ use solid_convex::{Support, epa, gjk};
 
 use super::depth::of_common;
 use super::frame::Frame;
-use super::{Placed, Relation, Scratch, table};
+use super::{Placed, Relation, Scratch, table, world_bounds};
 use crate::shape::{Body, Class, Complex};
 use clip::{Origin, clip};
 use face::{Face, triangle_normal};
@@ -138,6 +138,7 @@ pub(crate) fn contacts(
 ) -> Vec<Manifold> {
     let (mut part_a, mut part_b) = (part(a), part(b));
     let frame = Frame::new(a.placement, reach(a), b.placement, reach(b));
+    let frame = frame.around([a.placement, b.placement], [world_bounds(a), world_bounds(b)]);
     let margin = options.margin * frame.scale;
     let pair = Pair { a, b, frame, margin };
     // A surface that is taken for the body it bounds does not collide with what is inside.

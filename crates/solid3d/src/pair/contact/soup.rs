@@ -15,6 +15,7 @@ use glam::{DAffine3, DVec3};
 use solid_convex::Support;
 use solid_convex::simd::level;
 
+use super::super::frame::Frame;
 use super::super::row::{Rows, verdict};
 use super::super::table::PlacedConvex;
 use super::super::{Scratch, complex_convex, table, triangle_triangle};
@@ -178,7 +179,10 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     let [map_a, map_b] = pair.frame.common;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     rows.iter_mut().for_each(Rows::clear);
-    let (soups, maps, margin) = ([a, b], &pair.frame.common, pair.margin);
+    // Those meet that do wherever it is asked whether they do: placed in the same space, to the bit.
+    let placing = Frame::new(pair.a.placement, a.reach(), pair.b.placement, b.reach());
+    let margin = pair.margin / pair.frame.scale * placing.scale;
+    let (soups, maps) = ([a, b], &placing.common);
     let mut near = NearPairs { soups, maps, margin, rows, primitive_tests, found: Vec::new() };
     let _ = pairs_on(level(), a.tree(), b.tree(), &relative, traversal, &mut near);
     let mut found = near.found;
