@@ -296,6 +296,48 @@ fn no_contact_of_deforming_meshes_is_missed() {
     assert_rate("deforming meshes", hits, cases);
 }
 
+/// Law: vertices far from the local origin, as in coordinates of the earth, change the time by no more than their rounding does.
+#[test]
+fn far_from_local_origins_the_time_is_the_same() {
+    let mut rng = seeded(1107);
+    let (mut hits, cases) = (0, 600);
+    for case in 0..cases {
+        let far = direction(&mut rng) * [3e3, 5e6][case % 2];
+        // The same shape around its origin and far from it, and what brings it back.
+        let shape = |rng: &mut StdRng| {
+            let hull = rng.random_bool(0.5);
+            let soup = random_mesh(rng, 40);
+            let here = &soup.vertices;
+            let there: Vec<DVec3> = here.iter().map(|vertex| *vertex + far).collect();
+            if hull {
+                return [Shape::convex_hull(here).unwrap(), Shape::convex_hull(&there).unwrap()];
+            }
+            [Shape::mesh(&here[..], soup.triangles()).unwrap(), Shape::mesh(there, soup.triangles()).unwrap()]
+        };
+        let ([a, far_a], [b, far_b]) = (shape(&mut rng), shape(&mut rng));
+        let back = DAffine3::from_translation(-far);
+        let way = in_cube(&mut rng) * 3.0;
+        let from = DAffine3::from_translation(in_cube(&mut rng) * 2.5) * placement(&mut rng, 1.0);
+        let to = DAffine3 { translation: from.translation + way, ..from };
+        let still = placement(&mut rng, 1.0);
+        let time = |a: &Shape, b: &Shape, from: DAffine3, to: DAffine3, still: DAffine3| {
+            query::time_of_impact(a, &from, &to, b, &still, &still, &OPTIONS)
+                .unwrap()
+                .map(|impact| impact.time)
+        };
+        let here = time(&a, &b, from, to, still);
+        let there = time(&far_a, &far_b, from * back, to * back, still * back);
+        hits += usize::from(here.is_some());
+        match (here, there) {
+            (None, None) => {}
+            // What just grazes is a matter of rounding.
+            (Some(here), Some(there)) => assert!((here - there).abs() < 1e-3, "{case}: {here} and {there}"),
+            _ => panic!("{case}: {here:?} and {there:?}"),
+        }
+    }
+    assert_rate("pairs", hits, cases);
+}
+
 /// What starts nearly in touch and leaves, or slides, does not meet.
 #[test]
 fn what_leaves_does_not_meet_at_the_start() {

@@ -16,12 +16,13 @@ pub type Impact = super::ShapeCast;
 pub struct ImpactOptions {
     /// How the shapes move between their placements.
     pub path: Path,
-    /// How near the shapes may be that are reported as meeting, relative to the sum of how far they reach from their local origins,
+    /// How near the shapes may be that are reported as meeting, relative to the sum of their sizes: of the half extents of their local boxes,
     /// placed; from 1e-10 to 1. Default: 1e-8.
     ///
-    /// Also at least 1e-13 of the distance of the origins at the start and at the end. Shapes that start nearer than this count as
-    /// meeting when half of the gap is left, so that what slides or leaves does not meet at the start. A gap of less than some 1e-7 of the
-    /// size may pass for one that is within the tolerance: where points are so near, rounding hides in which direction.
+    /// Also at least 1e-13 of the distance of the origins at the start and at the end, and of how far the shapes reach from these. Shapes
+    /// that start nearer than this count as meeting when half of the gap is left, so that what slides or leaves does not meet at the start.
+    /// A gap of less than some 1e-7 of the size may pass for one that is within the tolerance: where points are so near, rounding hides in
+    /// which direction.
     pub tolerance: f64,
 }
 
@@ -38,7 +39,7 @@ impl Default for ImpactOptions {
 /// start meet at time 0, without a normal, also where one is inside of the other, a solid.
 ///
 /// Conservative: the time is never later than the first contact, up to the rounding of positions, and no contact is missed. At
-/// that time the shapes are nearer to each other than the tolerance, or than some 1e-7 of how far they reach and their origins are apart;
+/// that time the shapes are nearer to each other than the tolerance, or than some 1e-7 of their sizes and of how far they are apart;
 /// shapes that pass each other nearer than that may be reported, too. When the search gives up, after 4,096 steps of a pair of
 /// primitives, it reports a contact where it is, which is earlier: only shapes that turn past each other for long, at a gap of less than
 /// some 1e-6 of their size, take so many.

@@ -4,8 +4,12 @@ use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::{Points, Support};
 
 use super::path::Way;
+use crate::bounds::Aabb;
 use crate::pair::reach::image_reach;
 use crate::shape::Complex;
+
+/// A shape whose middle is further from its local origin than so many of its half extents is far.
+const FAR: f64 = 16.0;
 
 /// A convex object on its way. Space: along the world's axes, in a unit of length near the size of the data, seen from the local
 /// origin of the other object, which may itself be on its way: only relative motion counts. What it says of points holds at the time to
@@ -21,9 +25,52 @@ pub(super) struct Body<'a> {
 
 enum Geometry<'a> {
     /// A convex shape: the linear part of its placement, and how that changes.
-    Shape { shape: &'a dyn Support, linear: [DMat3; 2] },
+    Shape { shape: &'a dyn Support, linear: [DMat3; 2], far: Option<Far<'a>> },
     /// A primitive of a complex shape.
     Vertices(Vertices),
+}
+
+/// A convex shape that is far from its local origin, as seen from its middle: what is found of it is then as exact as of one that is near.
+struct Far<'a> {
+    shape: &'a dyn Support,
+    middle: DVec3,
+    half_extents: DVec3,
+}
+
+impl<'a> Far<'a> {
+    /// `None` for a shape that is near.
+    fn new(shape: &'a dyn Support) -> Option<Self> {
+        let bounds = local_bounds(shape);
+        let middle = bounds.center();
+        let is_far = middle.abs().max_element() > FAR * bounds.half_extents().max_element();
+        // Grown by what the difference from the middle is rounded.
+        let half_extents = bounds.half_extents() + middle.abs() * f64::EPSILON;
+        is_far.then_some(Far { shape, middle, half_extents })
+    }
+}
+
+impl Support for Far<'_> {
+    fn support(&self, direction: DVec3) -> DVec3 {
+        self.shape.support(direction) - self.middle
+    }
+
+    fn reach(&self) -> DVec3 {
+        self.half_extents
+    }
+
+    fn center(&self) -> DVec3 {
+        self.shape.center() - self.middle
+    }
+
+    fn is_polytope(&self) -> bool {
+        self.shape.is_polytope()
+    }
+}
+
+/// The box of a convex shape in its own space.
+pub(super) fn local_bounds(shape: &dyn Support) -> Aabb {
+    let [min, max] = shape.image_bounds(&DMat3::IDENTITY);
+    Aabb::new(min, max)
 }
 
 /// The vertices of a primitive, as seen from the local origin.
@@ -34,6 +81,8 @@ struct Vertices {
     /// Now, and how they move.
     positions: Vec<DVec3>,
     velocities: Vec<DVec3>,
+    /// Now, as seen from the first: the local origin may be far.
+    around: Vec<DVec3>,
 }
 
 /// The way of a body's local origin, in its space.
@@ -46,7 +95,7 @@ impl<'a> Body<'a> {
         let reach = |linear: &DMat3| image_reach(linear, shape.reach()).length();
         let [from, to] = way.linear;
         let acceleration = way.acceleration(reach(&from).max(reach(&to)), reach(&(to - from)));
-        let geometry = Geometry::Shape { shape, linear: [DMat3::IDENTITY; 2] };
+        let geometry = Geometry::Shape { shape, linear: [DMat3::IDENTITY; 2], far: Far::new(shape) };
         Body { geometry, way, acceleration, origin }
     }
 
@@ -87,7 +136,7 @@ impl<'a> Body<'a> {
                 let between = from * (1.0 - t) + to * t;
                 *linear = [turn * between, rate * between + turn * (to - from)];
             }
-            Geometry::Vertices(Vertices { ends, positions, velocities }) => {
+            Geometry::Vertices(Vertices { ends, positions, velocities, around }) => {
                 positions.clear();
                 velocities.clear();
                 for (&from, &to) in ends[0].iter().zip(&ends[1]) {
@@ -95,6 +144,8 @@ impl<'a> Body<'a> {
                     positions.push(turn * between);
                     velocities.push(rate * between + turn * (to - from));
                 }
+                around.clear();
+                around.extend(positions.iter().map(|position| *position - positions[0]));
             }
         }
     }
@@ -102,7 +153,7 @@ impl<'a> Body<'a> {
     /// The largest of `direction . (x + ahead * v)` over all its points `x` and their velocities `v`.
     pub fn furthest(&self, direction: DVec3, ahead: f64) -> f64 {
         let of_points = match &self.geometry {
-            Geometry::Shape { shape, linear } => {
+            Geometry::Shape { shape, linear, .. } => {
                 let linear = linear[0] + linear[1] * ahead;
                 (linear * shape.support(linear.transpose() * direction)).dot(direction)
             }
@@ -117,12 +168,16 @@ impl<'a> Body<'a> {
     /// Calls a function with the body as it is now, and its placement.
     pub fn with_placed<T>(&self, ask: impl FnOnce(&dyn Support, &DAffine3) -> T) -> T {
         match &self.geometry {
-            Geometry::Shape { shape, linear } => {
-                ask(*shape, &DAffine3 { matrix3: linear[0], translation: self.origin[0] })
+            Geometry::Shape { shape, linear: [linear, _], far } => {
+                let (shape, middle): (&dyn Support, _) = match far {
+                    Some(far) => (far, *linear * far.middle),
+                    None => (*shape, DVec3::ZERO),
+                };
+                ask(shape, &DAffine3 { matrix3: *linear, translation: self.origin[0] + middle })
             }
-            Geometry::Vertices(Vertices { positions, .. }) => {
-                let points = Points::new(positions).expect("a primitive has a vertex");
-                ask(&points, &DAffine3::from_translation(self.origin[0]))
+            Geometry::Vertices(Vertices { positions, around, .. }) => {
+                let points = Points::new(around).expect("a primitive has a vertex");
+                ask(&points, &DAffine3::from_translation(self.origin[0] + positions[0]))
             }
         }
     }

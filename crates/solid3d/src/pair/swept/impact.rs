@@ -9,12 +9,12 @@ use solid_convex::unit_scale;
 
 use super::advance::{Arrival, Nearness, Span, advance};
 use super::bodies::{Moving, MovingClass, MovingComplex, MovingConvex};
-use super::body::Body;
+use super::body::{Body, local_bounds};
 use super::path::{Path, Way};
 use super::query::{TreeSpace, size};
 use crate::pair::reach::image_reach;
 use crate::pair::{Placed, Relation, Scratch, intersection, midpoint};
-use crate::shape::Class;
+use crate::shape::{Class, Shape};
 
 /// When and where two moving shapes meet. Space: world.
 #[derive(Clone, Copy, Debug)]
@@ -25,11 +25,11 @@ pub(crate) struct Meeting {
     pub normal: Option<DVec3>,
 }
 
-/// The least tolerance, of the extents: ten times what GJK takes for touching, so that there is a gap to advance by.
+/// The least tolerance, of the sizes: ten times what GJK takes for touching, so that there is a gap to advance by.
 pub(crate) const TOLERANCE_MIN: f64 = 1e-10;
 
-/// The least gap that is a contact, of the way of one origin as seen from the other: positions on the way are off by some 1e-15
-/// of it.
+/// The least gap that is a contact, of the way of one origin as seen from the other, and of how far shapes reach from theirs: positions on the
+/// way are off by some 1e-15 of it.
 const WAY_ERROR: f64 = 1e-13;
 
 /// The most by which a shape turns in a piece of its way: an arc is then off its chord by 0.5 % of the radius.
@@ -41,7 +41,7 @@ const STILL: [DVec3; 2] = [DVec3::ZERO; 2];
 /// The whole way.
 const WHOLE: Span = Span { from: 0.0, to: 1.0 };
 
-/// When two shapes first meet on their way; the tolerance is relative to the sum of their extents.
+/// When two shapes first meet on their way; the tolerance is relative to the sum of their sizes.
 pub(crate) fn impact(
     a: &Moving,
     b: &Moving,
@@ -89,11 +89,12 @@ impl Course {
         let path = if deforms { Path::Straight } else { path };
         let ways = [a, b].map(|moving| Way::new(moving.from.placement, moving.to.placement, path));
         let origin = [0, 1].map(|end| ways[0].origin[end] - ways[1].origin[end]);
-        let extents: f64 = [a, b].map(extent).iter().sum();
-        let way = origin[0].abs().max(origin[1].abs()).max_element();
-        let scale = unit_scale(extents + way);
-        let least = (TOLERANCE_MIN * extents).max(WAY_ERROR * way) * scale;
-        let nearness = Nearness { tolerance: (tolerance * extents * scale).max(least), least };
+        let far =
+            greatest(a, reach) + greatest(b, reach) + origin[0].abs().max(origin[1].abs()).max_element();
+        let sizes = greatest(a, half_extents) + greatest(b, half_extents);
+        let scale = unit_scale(far);
+        let least = (TOLERANCE_MIN * sizes).max(WAY_ERROR * far) * scale;
+        let nearness = Nearness { tolerance: (tolerance * sizes * scale).max(least), least };
         Course { ways, origin, scale, nearness }
     }
 
@@ -208,16 +209,26 @@ fn piece<'a>(moving: &MovingComplex<'a>, from: &'a DAffine3, to: &'a DAffine3) -
     MovingComplex { from: (moving.from.0, from), to: (moving.to.0, to), deformation: moving.deformation }
 }
 
-/// How far a shape reaches from its local origin in the world, at the larger end of its way.
-fn extent(moving: &Moving) -> f64 {
-    let at = |placed: Placed| {
-        let reach = match placed.shape.class() {
-            Class::Convex(convex) => convex.reach(),
-            Class::Complex(complex) => complex.reach(),
-        };
-        image_reach(&placed.placement.matrix3, reach).max_element()
-    };
+/// The greatest coordinate of what a shape has in its own space, placed in the world, at the larger end of its way.
+fn greatest(moving: &Moving, of: impl Fn(&Shape) -> DVec3) -> f64 {
+    let at = |Placed { shape, placement }| image_reach(&placement.matrix3, of(shape)).max_element();
     at(moving.from).max(at(moving.to))
+}
+
+/// How far a shape reaches from its local origin.
+fn reach(shape: &Shape) -> DVec3 {
+    match shape.class() {
+        Class::Convex(convex) => convex.reach(),
+        Class::Complex(complex) => complex.reach(),
+    }
+}
+
+/// The same from its middle.
+fn half_extents(shape: &Shape) -> DVec3 {
+    match shape.class() {
+        Class::Convex(convex) => local_bounds(convex).half_extents(),
+        Class::Complex(complex) => complex.bounds().half_extents(),
+    }
 }
 
 /// The earliest contact so far in a span, of which only what is before is of interest.
