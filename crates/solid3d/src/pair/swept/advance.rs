@@ -2,7 +2,7 @@
 //!
 //! Mirtich, *Impulse-based Dynamic Simulation of Rigid Body Systems*, 1996, section 2.3.2, advances by a distance over a bound on
 //! the speed. Here a step goes as far as the supporting planes of the closest points are sure to stay apart. With `n` their normal
-//! from `B` to `A`, `x` and `v` the positions and velocities of points now, and `c` a bound on the accelerations of both,
+//! from `B` to `A`, `x` and `v` the positions and velocities of points now, and `c` a bound on the accelerations of both along it,
 //!
 //! ```text
 //! gap(s) = min over A of n.(x + s v)  -  max over B of n.(x + s v)  -  c s^2 / 2
@@ -10,7 +10,8 @@
 //!
 //! is a lower bound on the gap after the time `s`: each minimum is a support mapping of the objects as they are moved to first order.
 //! It is concave in `s`, so a time at which it is positive is reached without contact. Straight motion has no third
-//! term, and a step is one of Newton's method; a ball that turns about its centre is known to stay where it is to second order.
+//! term, nor has what turns about the normal, as on a turntable, and a step is one of Newton's method; a ball that turns about its
+//! centre is known to stay where it is to second order.
 
 use glam::DVec3;
 use solid_convex::gjk;
@@ -18,7 +19,7 @@ use solid_convex::gjk;
 use super::body::Body;
 
 /// Steps after which an advance ends where it is, which is before the contact. What slides by at a gap of `g` of its size, turning
-/// by the angle `t`, takes some `t / sqrt(g)`.
+/// by the angle `t` about an axis across the normal, takes some `t / sqrt(g)`.
 const STEPS_MAX: usize = 4096;
 
 /// Rounds in which the end of a step is narrowed down; each halves at least what is left.
@@ -56,7 +57,8 @@ const AXES: [DVec3; 6] = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG
 
 /// A lower bound on the gap along a direction from `B` to `A`, after a time from that of the bodies.
 fn gap(a: &Body, b: &Body, n: DVec3, s: f64) -> f64 {
-    -a.furthest(-n, s) - b.furthest(n, s) - 0.5 * s * s * (a.acceleration() + b.acceleration())
+    let acceleration = a.acceleration_along(n) + b.acceleration_along(n);
+    -a.furthest(-n, s) - b.furthest(n, s) - 0.5 * s * s * acceleration
 }
 
 /// When two bodies first meet in a span of time; `None` when they do not. Never later than they do.

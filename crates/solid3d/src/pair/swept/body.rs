@@ -121,9 +121,9 @@ impl<'a> Body<'a> {
         self.acceleration = self.way.acceleration(far, change);
     }
 
-    /// Bounds the acceleration of its points, in the body's unit of length.
-    pub fn acceleration(&self) -> f64 {
-        self.acceleration
+    /// Bounds the acceleration of its points along a unit vector, in the body's unit of length.
+    pub fn acceleration_along(&self, n: DVec3) -> f64 {
+        self.acceleration * self.way.share_along(n)
     }
 
     /// Goes to a time.

@@ -160,6 +160,12 @@ impl Way {
         let angle = self.turn.map_or(0.0, |turn| turn.angle);
         angle * (angle * reach + 2.0 * change)
     }
+
+    /// A bound on the share of an acceleration that is along a unit vector `n`. With `w` the axis times the angle, the acceleration is
+    /// `w x (w x y) + 2 w x y'`, whose product with `n` is one of two vectors with `n x w`: along the axis nothing accelerates.
+    pub fn share_along(&self, n: DVec3) -> f64 {
+        self.turn.map_or(0.0, |turn| n.cross(turn.axis).length())
+    }
 }
 
 #[cfg(test)]
@@ -198,6 +204,35 @@ mod tests {
             }
         }
         assert!(turned > 600, "{turned}");
+    }
+
+    /// Law: no point accelerates by more than the bound, nor along a direction by more than its share; along the axis by nothing.
+    #[test]
+    fn accelerations_are_bounded_along_every_direction() {
+        const STEP: f64 = 1e-3;
+        let mut rng = seeded(2101);
+        let mut most: f64 = 0.0;
+        for case in 0..2000 {
+            let kind = PlacementKind::ALL[case % PlacementKind::ALL.len()];
+            let [from, to] = [0, 1].map(|_| random_placement(&mut rng, kind));
+            let way = Way::new(&from, &to, Path::Turning);
+            let mut vector = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+            let (point, any) = (vector(), vector().normalize());
+            let n = way.turn.filter(|_| case % 3 == 0).map_or(any, |turn| turn.axis);
+            let t = rng.random_range(STEP..1.0 - STEP);
+            let height = |t: f64| n.dot(way.placement_at(t).transform_vector3(point));
+            let (was, is, will) = (height(t - STEP), height(t), height(t + STEP));
+            let acceleration = (was - 2.0 * is + will) / (STEP * STEP);
+            let ends = way.linear.map(|linear| linear * point);
+            let far = ends[0].length().max(ends[1].length());
+            let bound = way.acceleration(far, ends[0].distance(ends[1])) * way.share_along(n);
+            assert!(
+                acceleration.abs() <= bound * (1.0 + STEP) + 1e-8 * far,
+                "{case}: {acceleration}, {bound}"
+            );
+            most = most.max(acceleration.abs() / bound);
+        }
+        assert!(most > 0.5, "the bound is {most} of what is needed");
     }
 
     #[test]
