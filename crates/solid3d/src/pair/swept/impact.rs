@@ -211,8 +211,11 @@ fn piece<'a>(moving: &MovingComplex<'a>, from: &'a DAffine3, to: &'a DAffine3) -
 
 /// The greatest coordinate of what a shape has in its own space, placed in the world, at the larger end of its way.
 fn greatest(moving: &Moving, of: impl Fn(&Shape) -> DVec3) -> f64 {
-    let at = |Placed { shape, placement }| image_reach(&placement.matrix3, of(shape)).max_element();
-    at(moving.from).max(at(moving.to))
+    let (from, to) = (moving.from, moving.to);
+    let at_first = of(from.shape);
+    let at_last = if std::ptr::eq(from.shape, to.shape) { at_first } else { of(to.shape) };
+    let placed = |at: Placed, of_shape| image_reach(&at.placement.matrix3, of_shape).max_element();
+    placed(from, at_first).max(placed(to, at_last))
 }
 
 /// How far a shape reaches from its local origin.
