@@ -7,7 +7,7 @@ use solid_convex::{Support, gjk};
 
 use super::Placed;
 use crate::bounds::{Aabb, abs};
-use crate::shape::Class;
+use crate::shape::{Class, Shape};
 
 /// How much a world box is grown, relative to the object's extent and position: more than the narrow phase's
 /// [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR), so that objects whose boxes are apart are never touching.
@@ -83,6 +83,14 @@ pub(super) fn core(shape: &dyn Support) -> Option<([DVec3; 2], f64)> {
 fn length(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if largest > 0.0 { largest * (v / largest).length() } else { 0.0 }
+}
+
+/// How far a shape reaches from its local origin.
+pub(super) fn reach(shape: &Shape) -> DVec3 {
+    match shape.class() {
+        Class::Convex(convex) => convex.reach(),
+        Class::Complex(complex) => complex.reach(),
+    }
 }
 
 /// The largest magnitude of each coordinate over the image of a box under a linear map.

@@ -19,6 +19,7 @@ use solid_convex::{Support, epa, gjk};
 
 use super::depth::of_common;
 use super::frame::Frame;
+use super::reach::reach;
 use super::{Placed, Relation, Scratch, table, world_bounds};
 use crate::shape::{Body, Class, Complex};
 use clip::{Origin, clip};
@@ -137,7 +138,7 @@ pub(crate) fn contacts(
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
     let (mut part_a, mut part_b) = (part(a), part(b));
-    let frame = Frame::new(a.placement, reach(a), b.placement, reach(b));
+    let frame = Frame::new(a.placement, reach(a.shape), b.placement, reach(b.shape));
     let frame = frame.around([a.placement, b.placement], [world_bounds(a), world_bounds(b)]);
     let margin = options.margin * frame.scale;
     let pair = Pair { a, b, frame, margin };
@@ -188,13 +189,6 @@ fn surface<'a>(placed: Placed<'a>) -> Part<'a> {
 /// Whether a surface without an inside counts as the body that it bounds.
 fn is_hollow(placed: Placed) -> bool {
     !placed.shape.is_solid() && matches!(part(placed), Part::Body(..))
-}
-
-fn reach(placed: Placed) -> DVec3 {
-    match placed.shape.class() {
-        Class::Convex(convex) => convex.reach(),
-        Class::Complex(complex) => complex.reach(),
-    }
 }
 
 impl Patch {

@@ -9,7 +9,7 @@ mod solid;
 use glam::{DAffine3, DVec3};
 use solid_convex::gjk::TOUCHING_ERROR;
 
-use super::reach::image_reach;
+use super::reach::{image_reach, reach};
 use super::{Placed, Scratch, closed_form, closest, penetration};
 use crate::shape::{Class, ShapeKind};
 
@@ -54,7 +54,7 @@ fn of_union(shape: Placed, point: Placed, scratch: &mut Scratch) -> SurfacePoint
     let offset = point.placement.translation - shape.placement.translation;
     let way = offset - shape.placement.matrix3 * closest.points.on_a;
     let on_surface = shape.placement.transform_point3(closest.points.on_a);
-    let normal = if closest.distance > NEAR * (reach(shape) + offset.abs().max_element()) {
+    let normal = if closest.distance > NEAR * (placed_reach(shape) + offset.abs().max_element()) {
         away(way)
     } else {
         let foot = DAffine3::from_translation(on_surface);
@@ -72,11 +72,7 @@ fn away(v: DVec3) -> DVec3 {
     if largest > 0.0 { (v / largest).normalize() } else { DVec3::X }
 }
 
-/// How far a shape reaches from its origin.
-fn reach(shape: Placed) -> f64 {
-    let reach = match shape.shape.class() {
-        Class::Convex(convex) => convex.reach(),
-        Class::Complex(complex) => complex.reach(),
-    };
-    image_reach(&shape.placement.matrix3, reach).max_element()
+/// How far a shape reaches from its origin in the world.
+fn placed_reach(shape: Placed) -> f64 {
+    image_reach(&shape.placement.matrix3, reach(shape.shape)).max_element()
 }

@@ -12,7 +12,7 @@ use super::bodies::{Moving, MovingClass, MovingComplex, MovingConvex};
 use super::body::{Body, local_bounds};
 use super::path::{Path, Way};
 use super::query::{TreeSpace, size};
-use crate::pair::reach::image_reach;
+use crate::pair::reach::{image_reach, reach};
 use crate::pair::{Placed, Relation, Scratch, intersection, midpoint};
 use crate::shape::{Class, Shape};
 
@@ -218,15 +218,7 @@ fn greatest(moving: &Moving, of: impl Fn(&Shape) -> DVec3) -> f64 {
     placed(from, at_first).max(placed(to, at_last))
 }
 
-/// How far a shape reaches from its local origin.
-fn reach(shape: &Shape) -> DVec3 {
-    match shape.class() {
-        Class::Convex(convex) => convex.reach(),
-        Class::Complex(complex) => complex.reach(),
-    }
-}
-
-/// The same from its middle.
+/// How far a shape reaches from its middle.
 fn half_extents(shape: &Shape) -> DVec3 {
     match shape.class() {
         Class::Convex(convex) => local_bounds(convex).half_extents(),
