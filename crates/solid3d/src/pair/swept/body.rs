@@ -4,8 +4,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::{Points, Support};
 
 use super::path::Way;
-use crate::bounds::Aabb;
-use crate::pair::reach::image_reach;
+use crate::pair::reach::{convex_bounds, image_reach};
 use crate::shape::Complex;
 
 /// A shape whose middle is further from its local origin than so many of its half extents is far.
@@ -40,7 +39,7 @@ struct Far<'a> {
 impl<'a> Far<'a> {
     /// `None` for a shape that is near.
     fn new(shape: &'a dyn Support) -> Option<Self> {
-        let bounds = local_bounds(shape);
+        let bounds = convex_bounds(shape, &DMat3::IDENTITY);
         let middle = bounds.center();
         let is_far = middle.abs().max_element() > FAR * bounds.half_extents().max_element();
         // Grown by what the difference from the middle is rounded.
@@ -65,12 +64,6 @@ impl Support for Far<'_> {
     fn is_polytope(&self) -> bool {
         self.shape.is_polytope()
     }
-}
-
-/// The box of a convex shape in its own space.
-pub(super) fn local_bounds(shape: &dyn Support) -> Aabb {
-    let [min, max] = shape.image_bounds(&DMat3::IDENTITY);
-    Aabb::new(min, max)
 }
 
 /// The vertices of a primitive, as seen from the local origin.

@@ -9,10 +9,10 @@ use solid_convex::unit_scale;
 
 use super::advance::{Arrival, Nearness, Span, advance};
 use super::bodies::{Moving, MovingClass, MovingComplex, MovingConvex};
-use super::body::{Body, local_bounds};
+use super::body::Body;
 use super::path::{Path, Way};
 use super::query::{TreeSpace, size};
-use crate::pair::reach::{image_reach, reach};
+use crate::pair::reach::{convex_bounds, image_reach, reach};
 use crate::pair::{Placed, Relation, Scratch, intersection, midpoint};
 use crate::shape::{Class, Shape};
 
@@ -221,7 +221,7 @@ fn greatest(moving: &Moving, of: impl Fn(&Shape) -> DVec3) -> f64 {
 /// How far a shape reaches from its middle.
 fn half_extents(shape: &Shape) -> DVec3 {
     match shape.class() {
-        Class::Convex(convex) => local_bounds(convex).half_extents(),
+        Class::Convex(convex) => convex_bounds(convex, &DMat3::IDENTITY).half_extents(),
         Class::Complex(complex) => complex.bounds().half_extents(),
     }
 }
