@@ -86,7 +86,7 @@ impl Frame {
 
     /// The same, but that the common space is around two shapes, whose boxes in the world are given, and its unit near their sizes: they may lie
     /// far from their local origins, as what is given in coordinates of the earth.
-    pub fn around(self, [at_a, at_b]: [&DAffine3; 2], bounds: [Aabb; 2]) -> Frame {
+    pub fn around(&self, [at_a, at_b]: [&DAffine3; 2], bounds: [Aabb; 2]) -> Frame {
         let [center_a, center_b] = bounds.map(|bounds| bounds.center());
         let [half_a, half_b] = bounds.map(|bounds| bounds.half_extents().max_element());
         let between = center_a - center_b;
@@ -97,7 +97,7 @@ impl Frame {
             matrix3: at.matrix3 * scale,
             translation: (at.translation - origin) * scale,
         });
-        Frame { common, origin, scale, ..self }
+        Frame { common, origin, scale, ..*self }
     }
 
     /// Takes points of either space to the other. Of what is convex, where it is in the space of a mesh is mostly enough.

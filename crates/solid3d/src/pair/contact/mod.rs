@@ -119,6 +119,9 @@ struct Meeting {
 struct Pair<'a> {
     a: Placed<'a>,
     b: Placed<'a>,
+    /// Where it is decided which primitives meet, here as everywhere.
+    placing: Frame,
+    /// Around the shapes: where their contacts are.
     frame: Frame,
     /// Space: common.
     margin: f64,
@@ -138,10 +141,10 @@ pub(crate) fn contacts(
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
     let (mut part_a, mut part_b) = (part(a), part(b));
-    let frame = Frame::new(a.placement, reach(a.shape), b.placement, reach(b.shape));
-    let frame = frame.around([a.placement, b.placement], [world_bounds(a), world_bounds(b)]);
+    let placing = Frame::new(a.placement, reach(a.shape), b.placement, reach(b.shape));
+    let frame = placing.around([a.placement, b.placement], [world_bounds(a), world_bounds(b)]);
     let margin = options.margin * frame.scale;
-    let pair = Pair { a, b, frame, margin };
+    let pair = Pair { a, b, placing, frame, margin };
     // A surface that is taken for the body it bounds does not collide with what is inside.
     let hollow = is_hollow(a) || is_hollow(b);
     let apart = |scratch: &mut _| matches!(table::intersection(a, b, scratch), Relation::Separated { .. });

@@ -15,7 +15,6 @@ use glam::{DAffine3, DVec3};
 use solid_convex::Support;
 use solid_convex::simd::level;
 
-use super::super::frame::Frame;
 use super::super::row::{Rows, verdict};
 use super::super::table::PlacedConvex;
 use super::super::{Scratch, complex_convex, table, triangle_triangle};
@@ -173,16 +172,14 @@ impl LeafPairs<()> for NearPairs<'_> {
 
 /// The contacts of two soups.
 pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scratch) -> Vec<Patch> {
-    let mut relative = pair.frame.relative();
+    let mut relative = pair.placing.relative();
     relative.slack_in_a += pair.local_margin(0);
     relative.slack_in_b += pair.local_margin(1);
     let [map_a, map_b] = pair.frame.common;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     rows.iter_mut().for_each(Rows::clear);
-    // Those meet that do wherever it is asked whether they do: placed in the same space, to the bit.
-    let placing = Frame::new(pair.a.placement, a.reach(), pair.b.placement, b.reach());
-    let margin = pair.margin / pair.frame.scale * placing.scale;
-    let (soups, maps) = ([a, b], &placing.common);
+    let margin = pair.margin / pair.frame.scale * pair.placing.scale;
+    let (soups, maps) = ([a, b], &pair.placing.common);
     let mut near = NearPairs { soups, maps, margin, rows, primitive_tests, found: Vec::new() };
     let _ = pairs_on(level(), a.tree(), b.tree(), &relative, traversal, &mut near);
     let mut found = near.found;
