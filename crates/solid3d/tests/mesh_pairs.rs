@@ -578,6 +578,65 @@ fn a_deformation_to_the_same_positions_answers_alike() {
     assert_rate("meshes and convex shapes", hits, cases);
 }
 
+/// What tells soups apart where boxes overlap is used until they are deformed: to the same positions, for the same answers, also where they
+/// nearly touch.
+#[test]
+fn soups_deformed_to_the_same_positions_answer_alike() {
+    let mut rng = seeded(141);
+    let (mut hits, cases) = (0, 400);
+    for case in 0..cases {
+        let mut soup = || match case % 4 {
+            0 => random_complex(&mut rng, 300),
+            _ => random_mesh(&mut rng, 2000),
+        };
+        let (a, b) = (soup(), soup());
+        let Case { a, at_a, b, mut at_b, .. } = Case::new(&mut rng, a, b, 4.0, 10.0);
+        let shapes = [a.shape(), b.shape()];
+        if case % 3 == 0 {
+            // Beside each other by next to nothing.
+            let closest = query::distance(&shapes[0], &at_a, &shapes[1], &at_b).unwrap();
+            let nearer = 1.0 - [0.0, 1e-3, 1e-6, -1e-6, 1e-9, 1e-13][case / 3 % 6];
+            at_b.translation += (closest.point_on_a - closest.point_on_b) * nearer;
+        }
+        let mut deformed = shapes.clone();
+        for (shape, soup) in deformed.iter_mut().zip([&a, &b]) {
+            shape.deform(&soup.vertices).unwrap();
+        }
+        let answers = [&shapes, &deformed].map(|[a, b]| {
+            let mut pairs = Vec::new();
+            query::intersecting_primitives(a, &at_a, b, &at_b, |i, j| {
+                pairs.push([i, j]);
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+            (pairs, query::common_point(a, &at_a, b, &at_b).unwrap())
+        });
+        assert_eq!(answers[0], answers[1], "case {case}");
+        hits += usize::from(answers[0].1.is_some());
+    }
+    assert_rate("soups", hits, cases);
+}
+
+/// Of two surfaces that lie close above each other, boxes overlap all along, and few nodes are opened all the same; once they are deformed, more,
+/// as nothing is made then that the next deformation would undo.
+#[test]
+fn surfaces_close_above_each_other_open_few_nodes() {
+    let sheet = sheet(129, 129, [false, false], |u, v| {
+        DVec3::new(u, v, 0.3 * (4.0 * u).sin() * (3.0 * v).cos() + u + 0.5 * v)
+    });
+    let (shape, mut deformed) = (sheet.shape(), sheet.shape());
+    deformed.deform(&sheet.vertices).unwrap();
+    let tests = [&shape, &deformed].map(|shape| {
+        let mut world = World::new();
+        let ids = [0.0, 1e-2].map(|up| world.add(shape, DAffine3::from_translation(DVec3::Z * up)).unwrap());
+        assert_eq!(world.test_pair(ids[0], ids[1]).unwrap(), None);
+        world.statistics().box_tests
+    });
+    println!("{tests:?} boxes tested");
+    assert!(tests[0] < 2000 && tests[1] > 8 * tests[0], "{tests:?}");
+    assert!(shape.memory() > deformed.memory());
+}
+
 /// Which of two meshes comes first changes nothing about which of their triangles meet, even where they touch up to rounding.
 #[test]
 fn either_order_says_the_same() {

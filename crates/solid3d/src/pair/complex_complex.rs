@@ -64,7 +64,8 @@ fn meeting_pairs_in(
     let (relative, common) = (dispatch!(_simd => frame.relative()), &frame.common);
     rows.iter_mut().for_each(Rows::clear);
     let mut meeting = Meeting { a, b, common, wants_first, rows, primitive_tests, found };
-    pairs_on(level(), a.0.tree(), b.0.tree(), &relative, traversal, &mut meeting)
+    let slabs = || Some([a.0.lasting_slabs()?, b.0.lasting_slabs()?]);
+    pairs_on(level(), a.0.tree(), b.0.tree(), &relative, &slabs, traversal, &mut meeting)
 }
 
 /// Looks for primitives that meet in pairs of leaves.
@@ -82,7 +83,6 @@ impl LeafPairs<()> for Meeting<'_> {
     fn wants_first(&self) -> bool {
         self.wants_first
     }
-
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32]) -> ControlFlow<()> {
         let [rows_a, rows_b] = &mut *self.rows;

@@ -29,9 +29,11 @@ pub(crate) struct Complex {
     topology: OnceLock<Arc<Topology>>,
     /// How flat it is, at these positions, found when first asked for.
     slabs: OnceLock<Arc<Slabs>>,
-    /// Images of the triangles of a mesh, found when first asked for. None while the positions are others than those for which the tree
-    /// was built: what deforms again and again would make them again and again.
+    /// Images of the triangles of a mesh, found when first asked for.
     images: OnceLock<Option<Arc<LeafImages>>>,
+    /// Whether the positions are others than those for which the tree was built: then nothing is found that only saves time, as what deforms
+    /// again and again would have it found again and again.
+    is_deformed: bool,
     /// What a refit reads, of this tree at any positions, found at the first deformation.
     leaf_points: OnceLock<Arc<LeafPoints>>,
 }
@@ -126,6 +128,7 @@ impl Complex {
             topology: OnceLock::new(),
             slabs: OnceLock::new(),
             images: OnceLock::new(),
+            is_deformed: false,
             leaf_points: OnceLock::new(),
         })
     }
@@ -183,8 +186,16 @@ impl Complex {
         })
     }
 
+    /// The slabs, if they are likely to last: not after a deformation, also when they are known.
+    pub fn lasting_slabs(&self) -> Option<&Slabs> {
+        (!self.is_deformed).then(|| self.slabs())
+    }
+
     /// Images of the triangles in the leaves of the tree; none of other primitives, nor after a deformation. Cost: O(n) at the first call.
     pub fn images(&self) -> Option<&LeafImages> {
+        if self.is_deformed {
+            return None;
+        }
         let found = self.images.get_or_init(|| {
             let triangles = self.triangles()?;
             let triangle = |primitive: u32| triangles[primitive as usize];
@@ -289,10 +300,10 @@ impl Complex {
         both(positions.len() >= validate::VERTICES_MANY, refit, copy);
         self.topology = OnceLock::new();
         self.slabs = OnceLock::new();
-        self.images = OnceLock::from(None);
-        if self.tree.degraded() {
+        self.images = OnceLock::new();
+        self.is_deformed = !self.tree.degraded();
+        if !self.is_deformed {
             self.tree = build(&self.primitives, &self.vertices);
-            self.images = OnceLock::new();
             self.leaf_points = OnceLock::new();
         }
     }

@@ -1,9 +1,7 @@
 //! Two trees that face each other: bounds on distances, by boxes that are cut with slabs.
 //!
-//! The body that counts is the box of a lane cut with its slab ([`slabs`](super::slabs)). Along a
-//! direction it reaches no further than the box does along what is left of the direction without a multiple of the
-//! slab's normal, and the slab along that multiple; for any multiple, so for the projection on the normal. There are three
-//! directions to look along: from centre to centre, and across each of the two slabs.
+//! The body that counts is the [patch](super::patch) in a lane. There are three directions to look along: from centre to centre, and
+//! across each of the two slabs.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
@@ -11,8 +9,9 @@ use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::simd::part;
 
 use super::lanes::splat;
-use super::node::{Node, WIDTH};
-use super::slabs::{Eight, Slabs, center};
+use super::node::WIDTH;
+use super::patch::{Patch, Vector, dot, transposed_product};
+use super::slabs::{Eight, Slabs};
 use super::{Place, Tree};
 
 /// Two trees, in a space in which distances count.
@@ -105,8 +104,8 @@ impl<'t> Faces<'t> {
         let (many, one) = (&self.sides[OF], &self.sides[1 - OF]);
         let offset = if OF == 0 { -self.offset } else { self.offset };
         part!(simd => {
-            let lanes = Patch::lanes(simd, &many.tree.nodes[node], &many.slabs[node]);
-            let single = Patch::one(simd, one, place);
+            let lanes = Patch::lanes(simd, many.tree, many.slabs, node);
+            let single = Patch::one(simd, one.tree, one.slabs, place);
             let gaps = Gaps::new(simd, many, lanes, one, single, offset);
             let zero = splat(simd, 0.0);
             let kept = [splat(simd, kept.x as f32), splat(simd, kept.y as f32), splat(simd, kept.z as f32)];
@@ -139,78 +138,13 @@ impl<'t> Faces<'t> {
     }
 }
 
-/// A vector in each lane.
-type Vector<S> = [f32x8<S>; 3];
-
-/// Boxes cut with slabs, in tree coordinates.
-struct Patch<S: Simd> {
-    center: Vector<S>,
-    extents: Vector<S>,
-    normal: Vector<S>,
-    middle: f32x8<S>,
-    half: f32x8<S>,
-}
-
 impl<S: Simd> Patch<S> {
-    #[inline(always)]
-    fn lanes(simd: S, node: &Node, slabs: &Eight) -> Self {
-        let half = splat(simd, 0.5);
-        let none = splat(simd, 0.0);
-        let [mut center, mut extents, mut normal] = [[none; 3]; 3];
-        for axis in 0..3 {
-            let min = f32x8::load_array_ref(simd, &node.min[axis]);
-            let max = f32x8::load_array_ref(simd, &node.max[axis]);
-            center[axis] = half * (min + max);
-            extents[axis] = half * (max - min);
-            normal[axis] = f32x8::load_array_ref(simd, &slabs.normal[axis]);
-        }
-        Patch {
-            center,
-            extents,
-            normal,
-            middle: f32x8::load_array_ref(simd, &slabs.middle),
-            half: f32x8::load_array_ref(simd, &slabs.half),
-        }
-    }
-
-    /// The same in all lanes.
-    #[inline(always)]
-    fn one(simd: S, side: &Side, place: Place) -> Self {
-        let bounds = side.tree.box_at(place);
-        let (min, max) = (bounds.min(), bounds.max());
-        let none = splat(simd, 0.0);
-        let [mut centers, mut extents, mut normal] = [[none; 3]; 3];
-        let (mut middle, mut half) = (none, none);
-        for axis in 0..3 {
-            centers[axis] = splat(simd, center(min[axis], max[axis]));
-            extents[axis] = splat(simd, 0.5 * (max[axis] - min[axis]));
-        }
-        if let Some((node, lane)) = place.split() {
-            let slabs = &side.slabs[node];
-            for (x, row) in normal.iter_mut().zip(&slabs.normal) {
-                *x = splat(simd, row[lane]);
-            }
-            (middle, half) = (splat(simd, slabs.middle[lane]), splat(simd, slabs.half[lane]));
-        }
-        Patch { center: centers, extents, normal, middle, half }
-    }
-
     /// How far it reaches from its centre along a direction of tree coordinates, at most.
     #[inline(always)]
     fn reach(&self, along: &Vector<S>) -> f32x8<S> {
-        let multiple = dot(along, &self.normal);
-        let mut rest = *along;
-        for axis in 0..3 {
-            rest[axis] = along[axis] - multiple * self.normal[axis];
-        }
+        let (rest, multiple) = self.split(along);
         let of_slab = multiple * self.middle + multiple.abs() * self.half;
         (self.reach_of_box(&rest) + of_slab).min(self.reach_of_box(along))
-    }
-
-    #[inline(always)]
-    fn reach_of_box(&self, along: &Vector<S>) -> f32x8<S> {
-        let [x, y, z] = &self.extents;
-        along[0].abs() * *x + along[1].abs() * *y + along[2].abs() * *z
     }
 }
 
@@ -276,18 +210,4 @@ fn product<S: Simd>(simd: S, rows: &[[f32; 3]; 3], v: &Vector<S>) -> Vector<S> {
         sums[axis] = splat(simd, *a) * v[0] + splat(simd, *b) * v[1] + splat(simd, *c) * v[2];
     }
     sums
-}
-
-#[inline(always)]
-fn transposed_product<S: Simd>(simd: S, [x, y, z]: &[[f32; 3]; 3], v: &Vector<S>) -> Vector<S> {
-    let mut sums = *v;
-    for axis in 0..3 {
-        sums[axis] = splat(simd, x[axis]) * v[0] + splat(simd, y[axis]) * v[1] + splat(simd, z[axis]) * v[2];
-    }
-    sums
-}
-
-#[inline(always)]
-fn dot<S: Simd>(a: &Vector<S>, b: &Vector<S>) -> f32x8<S> {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -27,7 +27,8 @@
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
 //! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
 //! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
-//! | `slabs`, `facing` | how flat what hangs in each lane is; better bounds for tree against tree by that |
+//! | `slabs`, `patch` | how flat what hangs in each lane is; the lane's box cut by that |
+//! | `parting`, `facing` | by that, for tree against tree: what is apart though boxes overlap; better bounds on distances |
 //!
 //! # Laws
 //!
@@ -35,7 +36,7 @@
 //! 2. No overlapping pair is lost, whatever the affine map, the sizes and the distance from the origin; none nearer than the
 //!    reported distance either.
 //! 3. A build of boxes scaled by a power of two gives the same bits; so does a refit of unchanged boxes.
-//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but the upper nodes of a build.
+//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but the upper nodes of a build and the search for slabs.
 //! 5. Every order is a function of the input alone, not of the number of threads.
 
 mod beam;
@@ -60,6 +61,8 @@ mod order;
 mod overlap;
 mod packed;
 mod pairs;
+mod parting;
+mod patch;
 mod ray;
 mod refit;
 mod relative;

@@ -9,8 +9,10 @@ use super::eights::{Image, overlaps};
 use super::lanes::overlapping_probe;
 use super::node::{Kind, WIDTH};
 use super::packed::PackedBox;
+use super::parting::Parting;
 use super::relative::Relative;
 use super::siblings::Subtree;
+use super::slabs::Slabs;
 use super::{Place, Traversal, Tree};
 use std::cell::OnceCell;
 use std::ops::ControlFlow;
@@ -43,7 +45,7 @@ pub fn pairs<B>(
     traversal: &mut Traversal,
     mut visit: impl FnMut(&[u32], &[u32]) -> ControlFlow<B>,
 ) -> ControlFlow<B> {
-    pairs_on(level(), a, b, relative, traversal, &mut Plain(&mut visit))
+    pairs_on(level(), a, b, relative, &|| None, traversal, &mut Plain(&mut visit))
 }
 
 /// What is done with pairs of leaves, in vectors of the level of instructions that the walk runs on.
@@ -69,22 +71,30 @@ impl<B> LeafPairs<B> for Plain<'_, B> {
     }
 }
 
+/// Finds the slabs of both trees, unless they cost more than they save.
+pub(crate) type SlabsOf<'f, 't> = &'f dyn Fn() -> Option<[&'t Slabs; 2]>;
+
+/// A walk that opens so many pairs of nodes is long: from then on it asks slabs. What is quickly found is found sooner without.
+const LONG: u32 = 4;
+
 /// As [`pairs`], on a level of instructions.
-pub(crate) fn pairs_on<B>(
+pub(crate) fn pairs_on<'t, B>(
     level: Level,
-    a: &Tree,
-    b: &Tree,
+    a: &'t Tree,
+    b: &'t Tree,
     relative: &Relative,
+    slabs: SlabsOf<'_, 't>,
     traversal: &mut Traversal,
     visitor: &mut impl LeafPairs<B>,
 ) -> ControlFlow<B> {
-    dispatch!(widest level, simd => walk(simd, &Duel::new(a, b, relative), traversal, visitor))
+    dispatch!(widest level, simd => walk(simd, &Duel::new(a, b, relative), slabs, traversal, visitor))
 }
 
 #[inline(always)] // into the function that is compiled for a level of instructions
-fn walk<B, S: Simd>(
+fn walk<'t, B, S: Simd>(
     simd: S,
-    duel: &Duel,
+    duel: &Duel<'t>,
+    slabs: SlabsOf<'_, 't>,
     traversal: &mut Traversal,
     visitor: &mut impl LeafPairs<B>,
 ) -> ControlFlow<B> {
@@ -95,6 +105,7 @@ fn walk<B, S: Simd>(
     let wants_first = visitor.wants_first();
     // Of the boxes tested last: several in a row are often the same.
     let (mut in_a, mut in_b) = (Tested::default(), Tested::default());
+    let (mut opened, mut parting) = (0, None);
     while let Some(subtrees) = stack.pop(simd, wants_first) {
         let [of_a, of_b] = &subtrees;
         match duel.step_of(&subtrees) {
@@ -105,15 +116,21 @@ fn walk<B, S: Simd>(
             Step::OpenA(node) => {
                 counters.box_tests += 1;
                 let (node_a, probe) = (&a.nodes[node], in_b.probe(simd, duel.b_to_a(), b, of_b.place));
-                let found = overlapping_probe(simd, node_a, duel.b_to_a(), probe);
-                stack.above().of_a(simd, (node, node_a), of_b, found);
+                let (mut hits, gaps) = overlapping_probe(simd, node_a, duel.b_to_a(), probe);
+                if let Some(parting) = &parting {
+                    hits &= !Parting::apart_from::<S, 0>(parting, simd, node, of_b.place);
+                }
+                stack.above().of_a(simd, (node, node_a), of_b, (hits, gaps));
                 stack.push();
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
                 let (node_b, probe) = (&b.nodes[node], in_a.probe(simd, duel.a_to_b(), a, of_a.place));
-                let found = overlapping_probe(simd, node_b, duel.a_to_b(), probe);
-                stack.above().of_b(simd, (node, node_b), of_a, found);
+                let (mut hits, gaps) = overlapping_probe(simd, node_b, duel.a_to_b(), probe);
+                if let Some(parting) = &parting {
+                    hits &= !Parting::apart_from::<S, 1>(parting, simd, node, of_a.place);
+                }
+                stack.above().of_b(simd, (node, node_b), of_a, (hits, gaps));
                 stack.push();
             }
             Step::OpenBoth(node_a, node_b, images) => {
@@ -130,6 +147,13 @@ fn walk<B, S: Simd>(
                     &mut siblings.left,
                 );
                 counters.box_tests += u64::from(siblings.left.tested.count_ones());
+                opened += 1;
+                if opened == LONG {
+                    parting = slabs().map(|slabs| duel.parting(slabs));
+                }
+                if let Some(parting) = &parting {
+                    parting.part(simd, node_a, node_b, &mut siblings.left);
+                }
                 stack.push();
             }
             Step::Nothing => {}
@@ -258,6 +282,12 @@ impl<'t> Duel<'t> {
             let [of_b, of_a] = &self.ways;
             [Crossing::of(of_b, of_a), Crossing::of(of_a, of_b)]
         })
+    }
+
+    /// By the slabs of both: where there are images.
+    #[cold]
+    fn parting(&self, slabs: [&'t Slabs; 2]) -> Parting<'t> {
+        Parting::new([self.a, self.b], slabs, &self.ways)
     }
 
     /// Where the centre of the box of `b` is in the coordinates of `a`, and the length of their unit.

@@ -181,7 +181,7 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     let margin = pair.margin / pair.frame.scale * pair.placing.scale;
     let (soups, maps) = ([a, b], &pair.placing.common);
     let mut near = NearPairs { soups, maps, margin, rows, primitive_tests, found: Vec::new() };
-    let _ = pairs_on(level(), a.tree(), b.tree(), &relative, traversal, &mut near);
+    let _ = pairs_on(level(), a.tree(), b.tree(), &relative, &|| None, traversal, &mut near);
     let mut found = near.found;
     found.sort_unstable();
     let patch = |(primitives, must): ([u32; 2], bool)| {
