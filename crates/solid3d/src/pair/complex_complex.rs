@@ -83,6 +83,7 @@ impl LeafPairs<()> for Meeting<'_> {
     fn wants_first(&self) -> bool {
         self.wants_first
     }
+
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32]) -> ControlFlow<()> {
         let [rows_a, rows_b] = &mut *self.rows;

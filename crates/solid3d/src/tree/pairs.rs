@@ -105,7 +105,7 @@ fn walk<'t, B, S: Simd>(
     let wants_first = visitor.wants_first();
     // Of the boxes tested last: several in a row are often the same.
     let (mut in_a, mut in_b) = (Tested::default(), Tested::default());
-    let (mut opened, mut parting) = (0, None);
+    let (mut opened, mut parting) = (0, None::<Parting>);
     while let Some(subtrees) = stack.pop(simd, wants_first) {
         let [of_a, of_b] = &subtrees;
         match duel.step_of(&subtrees) {
@@ -118,7 +118,7 @@ fn walk<'t, B, S: Simd>(
                 let (node_a, probe) = (&a.nodes[node], in_b.probe(simd, duel.b_to_a(), b, of_b.place));
                 let (mut hits, gaps) = overlapping_probe(simd, node_a, duel.b_to_a(), probe);
                 if let Some(parting) = &parting {
-                    hits &= !Parting::apart_from::<S, 0>(parting, simd, node, of_b.place);
+                    hits &= !parting.apart_from::<S, 0>(simd, node, of_b.place);
                 }
                 stack.above().of_a(simd, (node, node_a), of_b, (hits, gaps));
                 stack.push();
@@ -128,7 +128,7 @@ fn walk<'t, B, S: Simd>(
                 let (node_b, probe) = (&b.nodes[node], in_a.probe(simd, duel.a_to_b(), a, of_a.place));
                 let (mut hits, gaps) = overlapping_probe(simd, node_b, duel.a_to_b(), probe);
                 if let Some(parting) = &parting {
-                    hits &= !Parting::apart_from::<S, 1>(parting, simd, node, of_a.place);
+                    hits &= !parting.apart_from::<S, 1>(simd, node, of_a.place);
                 }
                 stack.above().of_b(simd, (node, node_b), of_a, (hits, gaps));
                 stack.push();

@@ -39,7 +39,8 @@ impl<S: Simd> Patch<S> {
             normal[axis] = f32x8::load_array_ref(simd, &slabs.normal[axis]);
         }
         let middle = f32x8::load_array_ref(simd, &slabs.middle);
-        Patch { center, half_extents, normal, middle, half: f32x8::load_array_ref(simd, &slabs.half) }
+        let half = f32x8::load_array_ref(simd, &slabs.half);
+        Patch { center, half_extents, normal, middle, half }
     }
 
     /// What hangs at a place, the same in all lanes.

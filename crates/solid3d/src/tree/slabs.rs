@@ -1,17 +1,17 @@
-//! Slabs: how flat the surface under each lane of a tree is, for bounds on distances.
+//! Slabs: how flat the surface under each lane of a tree is, for bounds on distances, and to part what only boxes hold together.
 //!
 //! A box around a patch of surface that lies aslant is nearly as thick as it is wide, so boxes tell distances badly: of two
 //! tori of 100,000 triangles, 8,080 pairs of leaves seem nearer than their distance. The patch itself is thinner by far:
 //! it lies between two parallel planes, across its mean normal. With bounds that know of these ([`facing`](super::facing)), 318 pairs
-//! remain.
+//! remain; of the pairs of leaves whose boxes overlap in an intersection, half ([`parting`](super::parting)).
 //!
 //! Swept spheres serve the same end (Larsen, Gottschalk, Lin and Manocha, *Fast proximity queries with swept
 //! sphere volumes*, 1999); they are tight all around, but take three times the memory beside the boxes that are here anyway.
 
-use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f64x4};
 use std::ops::Range;
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f64x4};
 use glam::DVec3;
 use solid_convex::simd::dispatch;
 

@@ -1,4 +1,4 @@
-//! Slabs, and what they do for distances.
+//! Slabs, and what they do for distances and intersections.
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
