@@ -16,7 +16,7 @@ use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::gjk::Glance;
 use solid_convex::simd::dispatch;
-use solid_convex::{Closest, Witness, unit_scale};
+use solid_convex::{Closest, unit_scale};
 
 use super::{Mirror, Placed, Relation};
 use crate::shape::Simple;
@@ -162,9 +162,4 @@ impl Gap {
             None
         }
     }
-}
-
-/// A common point, or the closest points: of either shape in the space of the pair, then in the shape's own.
-fn witness([at_a, at_b]: [(&Similarity, DVec3); 2], [on_a, on_b]: [DVec3; 2]) -> Witness {
-    Witness { on_a: at_a.0.local(on_a - at_a.1), on_b: at_b.0.local(on_b - at_b.1) }
 }

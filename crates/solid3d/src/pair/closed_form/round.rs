@@ -5,36 +5,42 @@ use solid_convex::Witness;
 
 use super::boxes::PlacedBox;
 use super::similarity::Similarity;
-use super::{Gap, Relation, witness};
+use super::{Gap, Relation};
 use crate::shape::Round;
 
 /// A ball or a capsule, in the space of the pair.
 pub(super) struct PlacedRound {
     radius: f64,
     center: DVec3,
-    /// From the centre to an end of the core; zero for a ball.
+    /// From the centre to an end of the core, in its own space; zero for a ball.
+    half_height: f64,
+    /// The same in the space of the pair.
     half_axis: DVec3,
     at: Similarity,
 }
 
 /// The closest points of the cores of two shapes, the second of which may be a box without a radius.
 pub(super) struct Cores<'a> {
-    on_a: DVec3,
-    on_b: DVec3,
-    /// From the one on `B` to the one on `A`: known better than the points.
+    /// From the one on `B` to the one on `A`, in the space of the pair.
     way: DVec3,
     radii: [f64; 2],
     /// The gap of the cores along the way: no more than the distance of the cores. The points'
     /// own distance is no less.
     gap_along: f64,
-    at_a: (&'a Similarity, DVec3),
-    at_b: (&'a Similarity, DVec3),
+    /// The points, each in its shape's own space: in that of the pair, one on a small shape beside a large one would have no digits.
+    local: [DVec3; 2],
+    at: [&'a Similarity; 2],
 }
 
 impl PlacedRound {
     pub fn new(Round { radius, half_height }: Round, at: Similarity, center: DVec3) -> PlacedRound {
         let half_axis = if half_height == 0.0 { DVec3::ZERO } else { at.y_axis() * half_height };
-        PlacedRound { radius: radius * at.stretch, center, half_axis, at }
+        PlacedRound { radius: radius * at.stretch, center, half_height, half_axis, at }
+    }
+
+    /// Where on the core, in half heights from its middle.
+    fn on_core(&self, part: f64) -> DVec3 {
+        DVec3::Y * (self.half_height * part)
     }
 }
 
@@ -42,18 +48,15 @@ impl<'a> Cores<'a> {
     pub fn of_rounds(a: &'a PlacedRound, b: &'a PlacedRound) -> Cores<'a> {
         let between = a.center - b.center;
         let [s, t] = Products::new(between, a.half_axis, b.half_axis).closest();
-        let (on_a, on_b) = (a.center + a.half_axis * s, b.center + b.half_axis * t);
-        let v = on_a - on_b;
+        let v = between + a.half_axis * s - b.half_axis * t;
         // What A has least along v, less what B has most.
         let along = v.dot(between) - v.dot(a.half_axis).abs() - v.dot(b.half_axis).abs();
         Cores {
-            on_a,
-            on_b,
             way: v,
             radii: [a.radius, b.radius],
             gap_along: along,
-            at_a: (&a.at, a.center),
-            at_b: (&b.at, b.center),
+            local: [a.on_core(s), b.on_core(t)],
+            at: [&a.at, &b.at],
         }
         .with_length()
     }
@@ -64,17 +67,16 @@ impl<'a> Cores<'a> {
             return None;
         }
         let local = b.at.local(a.center - b.center);
+        let on_box = local.clamp(-b.half, b.half);
         // From the difference in the box's own space, which is exactly along its axes where the centre is beyond a face: as
         // an axis it must be right over the whole box, however near to it a small ball is.
-        let v = b.at.apply(local - local.clamp(-b.half, b.half));
+        let v = b.at.apply(local - on_box);
         let cores = Cores {
-            on_a: a.center,
-            on_b: a.center - v,
             way: v,
             radii: [a.radius, 0.0],
             gap_along: v.dot(a.center - b.center) - b.at.reach_along(v, b.half),
-            at_a: (&a.at, a.center),
-            at_b: (&b.at, b.center),
+            local: [DVec3::ZERO, on_box],
+            at: [&a.at, &b.at],
         };
         Some(cores.with_length())
     }
@@ -101,9 +103,9 @@ impl<'a> Cores<'a> {
 
     /// A point between those of the cores, as far from each as its radius is of both; of a box without a radius, its own.
     fn common_point(&self) -> Witness {
-        let part = self.radii[0] / (self.radii[0] + self.radii[1]);
-        let point = if self.radii[1] == 0.0 { self.on_b } else { self.on_a.lerp(self.on_b, part) };
-        witness([self.at_a, self.at_b], [point, point])
+        let [a, b] =
+            [0, 1].map(|k| self.at[k].local(self.way * (self.radii[k] / (self.radii[0] + self.radii[1]))));
+        Witness { on_a: self.local[0] - a, on_b: self.local[1] + b }
     }
 }
 

@@ -11,15 +11,19 @@ pub(in crate::pair) struct Similarity {
     pub stretch: f64,
 }
 
+/// The least square of a scale: of its products, what is a digit of theirs is a number yet.
+const SQUARE_MIN: f64 = 1e-270;
+
 impl Similarity {
-    /// `None` for other maps.
+    /// `None` for other maps, and for one so small that squares of its lengths lose digits.
     #[inline]
     pub fn new(linear: &DMat3) -> Option<Similarity> {
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = *linear;
         let square = x.length_squared();
         let skew = (y.length_squared() - square).abs().max((z.length_squared() - square).abs());
         let skew = skew.max(x.dot(y).abs()).max(y.dot(z).abs()).max(z.dot(x).abs());
-        (skew <= SKEW_MAX * square).then(|| Similarity { linear: *linear, stretch: square.sqrt() })
+        ((skew <= SKEW_MAX * square) & (square >= SQUARE_MIN))
+            .then(|| Similarity { linear: *linear, stretch: square.sqrt() })
     }
 
     /// The map, then a scale.
@@ -48,7 +52,8 @@ impl Similarity {
     }
 
     pub fn local(&self, displacement: DVec3) -> DVec3 {
-        self.linear.mul_transpose_vec3(displacement) / (self.stretch * self.stretch)
+        // Not by the square, which vanishes where a tiny shape is in the unit of a huge one.
+        self.linear.mul_transpose_vec3(displacement / self.stretch) / self.stretch
     }
 }
 
@@ -67,6 +72,7 @@ mod tests {
                 let point = DVec3::new(1.0, 2.0, 3.0);
                 assert!((similarity.local(similarity.apply(point)) - point).length() < 1e-13);
             }
+            assert!(Similarity::new(&(turn * 1e-160)).is_none());
             for skew in
                 [DVec3::new(1.0, 1.0, 1.0 + 1e-13), DVec3::new(1.0, 2.0, 1.0), DVec3::new(1.0, 0.0, 1.0)]
             {

@@ -90,6 +90,33 @@ fn closed_forms_say_what_gjk_says() {
     assert!((30..=70).contains(&(100 * all_hits / all_decided)), "{all_hits} of {all_decided}");
 }
 
+/// A common point is in either shape as told in its own space, however much smaller than the other that is.
+#[test]
+fn a_common_point_is_in_the_smaller_too() {
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let [ball, capsule, block] = kinds();
+    let mut found = 0;
+    for (a, b) in [(&ball, &capsule), (&capsule, &capsule), (&capsule, &ball), (&ball, &block)] {
+        for exponent in -200..200 {
+            let [mut at_a, mut at_b] = placements(&mut rng);
+            at_a.matrix3 *= 10f64.powi(-exponent / 2);
+            at_b.matrix3 *= 10f64.powi((exponent + 1) / 2);
+            let way = (at_b.translation - at_a.translation) * 0.2;
+            at_b.translation = at_a.translation + way * 10f64.powi(exponent.abs() / 2);
+            let placed = [Placed { shape: a, placement: &at_a }, Placed { shape: b, placement: &at_b }];
+            let Some(Relation::Common(points)) = intersection(placed[0], placed[1]) else { continue };
+            found += 1;
+            for (shape, point) in [(a, points.on_a), (b, points.on_b)] {
+                let dot = solid_convex::Points::new(std::slice::from_ref(&point)).unwrap();
+                let here = DAffine3::IDENTITY;
+                let out = gjk::closest_points(support(shape), &here, &dot, &here).distance;
+                assert!(out < 1e-12, "{out:e} outside: {at_a}, {at_b}");
+            }
+        }
+    }
+    assert!(found > 500, "{found}");
+}
+
 /// Nearer than the error, a closed form says nothing.
 #[test]
 fn what_touches_is_left_to_gjk() {
