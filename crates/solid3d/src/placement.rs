@@ -32,10 +32,11 @@ fn checked_at_length(placement: &DAffine3) -> Result<&DAffine3> {
         return Err(Error::PlacementEntry { value });
     }
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
-    let flat = match (direction(x), direction(y), direction(z)) {
-        (Some(x), Some(y), Some(z)) => x.cross(y).dot(z).abs() < VOLUME_MIN,
-        _ => true,
-    };
+    let flat =
+        match [x, y, z].map(|axis| direction(axis).filter(|_| axis.abs().max_element() >= MAGNITUDE_MIN)) {
+            [Some(x), Some(y), Some(z)] => x.cross(y).dot(z).abs() < VOLUME_MIN,
+            _ => true,
+        };
     if flat { Err(Error::SingularPlacement { x, y, z }) } else { Ok(placement) }
 }
 
@@ -81,10 +82,10 @@ fn plainly_good<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) 
         & (translation.length_squared() <= MAGNITUDE_MAX * MAGNITUDE_MAX)
 }
 
-/// The unit vector along an axis, without overflow or underflow on the way; `None` for one that is too short.
-fn direction(axis: DVec3) -> Option<DVec3> {
-    let largest = axis.abs().max_element();
-    (largest >= MAGNITUDE_MIN).then(|| (axis / largest).normalize())
+/// The unit vector along a vector of any length, without overflow or underflow on the way; `None` for zero.
+pub(crate) fn direction(v: DVec3) -> Option<DVec3> {
+    let largest = v.abs().max_element();
+    (largest > 0.0).then(|| (v / largest).normalize())
 }
 
 /// The inverse of a checked placement's linear part. Axes of very different length do it no harm.

@@ -7,6 +7,7 @@ use glam::{DAffine3, DVec3};
 use super::cast::bounded;
 use super::{Distance, distance, intersects, placed};
 use crate::error::{Error, Result};
+use crate::placement::direction;
 use crate::shape::{Shape, ShapeKind};
 
 /// Whether a point is in a placed shape: in a convex shape or a solid mesh, or on the surface of a mesh or a complex shape.
@@ -86,14 +87,7 @@ pub fn winding_number(mesh: &Shape, placement: &DAffine3, point: DVec3) -> Resul
 /// shows its back. 0 where the origin is a corner.
 fn half_solid_angle(corners: [DVec3; 3]) -> f64 {
     // Only directions count; unit vectors stay in range whatever the unit of length.
-    let unit = corners.map(|p| {
-        let largest = p.abs().max_element();
-        if largest > 0.0 { (p / largest).normalize() } else { DVec3::ZERO }
-    });
-    let [a, b, c] = unit;
-    if unit.contains(&DVec3::ZERO) {
-        return 0.0;
-    }
+    let [Some(a), Some(b), Some(c)] = corners.map(direction) else { return 0.0 };
     a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }
 

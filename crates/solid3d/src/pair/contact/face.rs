@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use glam::{DAffine3, DMat3, DVec3};
-use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Line, Sphere, Support};
+use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Line, Sphere, Support, unit_scale};
 
-use crate::placement::inverse_linear;
+use crate::placement::{direction, inverse_linear};
 use crate::shape::{Body, Facets};
 
 /// Corners of the polygon that stands for a circle: what is cut off is 2 % of the radius.
@@ -170,9 +170,9 @@ impl<'a> Placed<'a> {
         Corner { point: self.map.transform_point3(local), vertex }
     }
 
-    /// The image of a normal: by the inverse transposed.
+    /// The image of a normal: by the inverse transposed, whose entries may be so large that their squares are not numbers.
     fn normal(&self, local: DVec3) -> DVec3 {
-        (self.inverse.transpose() * local).normalize_or_zero()
+        direction(self.inverse.transpose() * local).unwrap_or(DVec3::ZERO)
     }
 
     fn ball(&self, sphere: &Sphere, direction: DVec3, local: DVec3) -> Face {
@@ -328,6 +328,9 @@ pub(super) fn triangle_normal(corners: &[Corner]) -> Option<DVec3> {
     const SINE_MIN: f64 = 1e-12;
     let &[p, q, r] = corners else { return None };
     let (u, v) = (q.point - p.point, r.point - p.point);
+    // In a unit of its own, where squares of its area do not vanish: the other shape may be any number of times as large.
+    let unit = unit_scale(u.abs().max(v.abs()).max_element());
+    let (u, v) = (u * unit, v * unit);
     let cross = u.cross(v);
     let area = cross.length();
     let longest = u.length_squared().max(v.length_squared()).max((v - u).length_squared());
@@ -343,4 +346,26 @@ fn azimuth(local: DVec3) -> (f64, f64) {
     let (x, z) = (local.x / largest, local.z / largest);
     let length = x.hypot(z);
     (x / length, z / length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle may be any number of times smaller than the pair that the frame is around.
+    #[test]
+    fn a_triangle_of_any_size_has_a_unit_normal() {
+        for exponent in (-200..=0).step_by(3) {
+            let corners = [[1.0, 2.0, 3.0], [2.5, -1.0, 0.5], [-0.5, 1.5, -2.0]];
+            let corners =
+                corners.map(|p| Corner { point: DVec3::from_array(p) * 10f64.powi(exponent), vertex: 0 });
+            let normal = triangle_normal(&corners).expect("it has an area");
+            assert!((normal.length() - 1.0).abs() < 1e-14, "1e{exponent}: {normal}");
+            let [p, q, r] = corners.map(|corner| corner.point * 10f64.powi(-exponent));
+            assert!(
+                normal.dot(q - p).abs() < 1e-12 && normal.dot(r - p).abs() < 1e-12,
+                "1e{exponent}: {normal}"
+            );
+        }
+    }
 }

@@ -14,7 +14,7 @@ use super::glance::Glance;
 use super::triangle::{Corners, LANES, Shear, TriangleHit, put};
 use super::{FromInside, Hits, SurfaceHit, world_normal};
 use crate::bounds::Aabb;
-use crate::placement::inverse_linear;
+use crate::placement::{direction, inverse_linear};
 use crate::shape::Complex;
 use crate::tree::{Leaf, LeafImages, RayLeaves, TreeRay, bits};
 use crate::triangle_triangle::Triangle;
@@ -172,10 +172,7 @@ impl LocalRay {
                 }
             }
             // A segment or a point has none: it turns to the ray.
-            None => {
-                let direction = hits.ray.direction;
-                -(direction / direction.abs().max_element()).normalize()
-            }
+            None => -direction(hits.ray.direction).expect("a ray has a direction"),
         };
         hits.add(t, Some(SurfaceHit { normal, back, primitive, barycentric: Some(barycentric) }));
     }

@@ -12,6 +12,7 @@ use glam::{DMat3, DVec3};
 
 use super::{Placed, Scratch};
 use crate::error::{Error, Result};
+use crate::placement::direction;
 use crate::shape::Class;
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN};
 
@@ -227,7 +228,5 @@ pub(crate) fn ray_hits(placed: Placed, hits: &mut Hits, scratch: &mut Scratch) {
 /// The world's unit normal of a surface that has a normal in local space; `None` where that is zero.
 fn world_normal(to_local: &DMat3, normal: DVec3) -> Option<DVec3> {
     // Normals go by the inverse transpose. Its entries may be so large or small that their squares are not numbers.
-    let normal = to_local.transpose() * normal;
-    let largest = normal.abs().max_element();
-    (largest > 0.0).then(|| (normal / largest).normalize())
+    direction(to_local.transpose() * normal)
 }

@@ -11,6 +11,7 @@ use solid_convex::gjk::TOUCHING_ERROR;
 
 use super::reach::{image_reach, reach};
 use super::{Placed, Scratch, closed_form, closest, penetration};
+use crate::placement::direction;
 use crate::shape::{Class, ShapeKind};
 
 /// Where the surface of a shape is nearest to a point. Space: world.
@@ -68,8 +69,7 @@ fn of_union(shape: Placed, point: Placed, scratch: &mut Scratch) -> SurfacePoint
 
 /// The direction of a vector; of zero any.
 fn away(v: DVec3) -> DVec3 {
-    let largest = v.abs().max_element();
-    if largest > 0.0 { (v / largest).normalize() } else { DVec3::X }
+    direction(v).unwrap_or(DVec3::X)
 }
 
 /// How far a shape reaches from its origin in the world.

@@ -1,0 +1,136 @@
+//! Shapes of any size that a shape may have, under placements of any size that they may have, beside shapes of any other: answers are
+//! numbers, directions are of length one, points are as far apart as is said, and the questions about one pair agree.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and prints its seed"
+)]
+
+mod common;
+
+use common::{direction, log_uniform, torus};
+use glam::{DAffine3, DQuat, DVec3};
+use rand::Rng;
+use rand::rngs::StdRng;
+use solid_oracle::generate::seeded;
+use solid3d::query::{self, ContactOptions};
+use solid3d::{ComplexShapeBuilder, Shape, glam};
+
+const PAIRS: usize = 8_000;
+
+/// Points may be this far off, of the size of the data.
+const ERROR: f64 = 1e-10;
+
+/// Any size; the ends and the middle are likelier.
+fn size(rng: &mut StdRng) -> f64 {
+    match rng.random_range(0..6) {
+        0 => 1e-99,
+        1 => 1.0,
+        2 => 3e99,
+        _ => log_uniform(rng, 1e-99, 3e99),
+    }
+}
+
+/// Any shape of about a size.
+fn shape(rng: &mut StdRng, size: f64) -> Shape {
+    let sizes = [0; 3].map(|_| size * rng.random_range(0.3..=1.5));
+    let ring = || torus(9, 7, 0.4).scaled(size).shape();
+    match rng.random_range(0..9) {
+        0 => Shape::sphere(sizes[0]).unwrap(),
+        1 => Shape::capsule(sizes[0], sizes[1]).unwrap(),
+        2 => Shape::cuboid(sizes).unwrap(),
+        3 => Shape::cone(sizes[0], sizes[1]).unwrap(),
+        4 => Shape::cylinder(sizes[0], sizes[1]).unwrap(),
+        5 => Shape::convex_hull(&(0..20).map(|_| direction(rng) * size).collect::<Vec<_>>()).unwrap(),
+        6 => ring(),
+        7 => ring().into_solid().unwrap(),
+        _ => {
+            let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE].map(|v| v * size);
+            let builder = ComplexShapeBuilder::new(corners.to_vec());
+            builder.tetrahedron([0, 1, 2, 3]).triangle([1, 2, 4]).build().unwrap()
+        }
+    }
+}
+
+/// Turned, and scaled by about as much in all directions.
+fn placement(rng: &mut StdRng, scale: f64) -> DAffine3 {
+    let turn = DQuat::from_axis_angle(direction(rng), rng.random_range(0.0..6.0));
+    let along_z = if rng.random_range(0..3) == 0 { rng.random_range(-1.5..-0.5) } else { 1.0 };
+    let scale = DVec3::new(scale, scale, scale * along_z);
+    DAffine3::from_scale_rotation_translation(scale, turn, DVec3::ZERO)
+}
+
+/// A shape and a placement, and the size of the shape there: small enough to be moved by some of it.
+fn placed(rng: &mut StdRng) -> (Shape, DAffine3, f64) {
+    loop {
+        let (own, scale) = (size(rng), size(rng));
+        if own * scale < 1e99 {
+            return (shape(rng, own), placement(rng, scale), own * scale);
+        }
+    }
+}
+
+fn is_unit(v: DVec3) -> bool {
+    (v.length() - 1.0).abs() < 1e-9
+}
+
+#[test]
+fn answers_are_whole_at_any_size() {
+    let seed = 303;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let mut hits = 0;
+    for pair in 0..PAIRS {
+        let ((a, at_a, of_a), (b, mut at_b, of_b)) = (placed(&mut rng), placed(&mut rng));
+        at_b.translation = direction(&mut rng) * (of_a.max(of_b) * rng.random_range(0.0..2.0));
+        let context = format!("pair {pair}: {} of {of_a:e}, {} of {of_b:e}", a.kind(), b.kind());
+        let size = 10.0 * of_a.max(of_b);
+        // In units of the size, where nothing overflows.
+        let off = |from: DVec3, to: DVec3, way: DVec3| ((to - from) / size).distance(way / size);
+        let meet = query::intersects(&a, &at_a, &b, &at_b).unwrap();
+        hits += usize::from(meet);
+
+        let common = query::common_point(&a, &at_a, &b, &at_b).unwrap();
+        assert_eq!(common.is_some(), meet, "{context}");
+        for (shape, at) in [(&a, &at_a), (&b, &at_b)] {
+            if let Some(point) = common.filter(|point| point.abs().max_element() < 1e100) {
+                let away = query::closest_point(shape, at, point).unwrap().distance;
+                assert!(away <= ERROR * size, "{context}: {point} is {away:e} off");
+            }
+        }
+
+        let axis = query::separating_axis(&a, &at_a, &b, &at_b).unwrap();
+        assert!(axis.is_none_or(|axis| !meet && is_unit(axis)), "{context}: {axis:?}");
+
+        let found = query::distance(&a, &at_a, &b, &at_b).unwrap();
+        assert!(!meet || found.distance == 0.0, "{context}: {found:?}");
+        let apart = off(found.point_on_a, found.point_on_b, DVec3::ZERO);
+        assert!((apart - found.distance / size).abs() <= ERROR, "{context}: {found:?}");
+
+        let depth = query::penetration(&a, &at_a, &b, &at_b).unwrap();
+        assert_eq!(depth.is_some(), meet, "{context}");
+        // Round bodies nearly concentric leave a thousandth open, and the points the square root of it.
+        let loose = |open: f64| 2.0 * open.sqrt() + ERROR;
+        if let Some(found) = depth {
+            let open = (found.depth_max - found.depth_min) / size;
+            assert!(
+                (0.0..=size).contains(&found.depth) && (0.0..=1e-3).contains(&open),
+                "{context}: {found:?}"
+            );
+            assert!(is_unit(found.normal), "{context}: {found:?}");
+            let off = off(found.point_on_a, found.point_on_b, found.normal * found.depth);
+            assert!(off <= loose(open), "{context}: {found:?} is {off:e} off");
+        }
+
+        let contacts = query::contacts(&a, &at_a, &b, &at_b, &ContactOptions::default()).unwrap();
+        assert!(contacts.is_empty() || meet, "{context}");
+        for found in &contacts {
+            assert!(is_unit(found.normal), "{context}: {found:?}");
+            for point in &found.points {
+                let off = off(point.point_on_a, point.point_on_b, found.normal * point.depth);
+                assert!(off <= loose(1e-7), "{context}: {point:?} along {} is {off:e} off", found.normal);
+            }
+        }
+    }
+    assert!((PAIRS / 5..PAIRS / 2).contains(&hits), "{hits} of {PAIRS} meet");
+}
