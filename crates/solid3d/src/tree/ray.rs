@@ -102,6 +102,9 @@ const FAR_AWAY: f64 = 4.0;
 /// What is beyond is as good as endless, and its products do not overflow in `f32`.
 const ENDLESS: f64 = 1e20;
 
+/// What a moving box is at most in tree coordinates: coordinates of at most 1e200, in a tree of at least 1e-100.
+const HALF_MAX: f64 = 1e300;
+
 /// Room for the entries of most rays, so that memory is asked for once.
 const STACK: usize = 64;
 
@@ -122,8 +125,8 @@ impl Probe {
         let normal = &tree.normal;
         let to_tree = |v: DVec3| v * normal.inverse;
         let largest = ray.direction.abs().max_element();
-        // Rounded up, as the rounding of the origin is.
-        let mut half = to_tree(ray.half_extents).min(DVec3::splat(ENDLESS));
+        // Rounded up, as the rounding of the origin is. Not endless yet, since the origin may be as far.
+        let mut half = to_tree(ray.half_extents).min(DVec3::splat(HALF_MAX));
         let mut origin = to_tree(ray.origin - normal.origin);
         let unit = unit_scale(largest);
         let direction = ray.direction * unit;
@@ -305,13 +308,20 @@ mod tests {
                 .collect();
             let tree = Tree::build(&boxes);
             let far = 10f64.powi(rng.random_range(-1..12));
-            let target = point(&mut rng, 1.0);
+            let mut target = point(&mut rng, 1.0);
             let mut from = target + point(&mut rng, 1.0).normalize() * far;
             if case % 4 == 0 {
                 // Along an axis.
                 from = target + DVec3::AXES[case / 4 % 3] * far;
             }
-            let half = if case % 2 == 0 { DVec3::ZERO } else { point(&mut rng, 0.3).abs() };
+            let mut half = if case % 2 == 0 { DVec3::ZERO } else { point(&mut rng, 0.3).abs() };
+            if case % 10 == 7 {
+                // A box beside which the tree is nothing, and that passes over it with any part of it.
+                let huge = 10f64.powi(rng.random_range(1..100));
+                half *= huge;
+                from = target + (from - target) / far * huge;
+                target += half * point(&mut rng, 0.9);
+            }
             let ray = TreeRay {
                 origin: (from + away) * size,
                 direction: (target - from) * size * 10f64.powi(rng.random_range(-3..3)),
