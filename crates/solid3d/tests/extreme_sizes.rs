@@ -13,7 +13,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::seeded;
-use solid3d::query::{self, ContactOptions};
+use solid3d::query::{self, ContactOptions, Ray, RayOptions};
 use solid3d::{ComplexShapeBuilder, Shape, glam};
 
 const PAIRS: usize = 8_000;
@@ -133,4 +133,55 @@ fn answers_are_whole_at_any_size() {
         }
     }
     assert!((PAIRS / 5..PAIRS / 2).contains(&hits), "{hits} of {PAIRS} meet");
+}
+
+/// A cast finds what it leads into, no later than it is there and near to it; rays and points see the same shape as other questions.
+#[test]
+fn casts_and_rays_meet_what_is_in_the_way_at_any_size() {
+    let seed = 304;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut impacts, mut hits) = (0, 0);
+    for pair in 0..PAIRS / 4 {
+        let ((a, at_a, of_a), (b, mut at_b, of_b)) = (placed(&mut rng), placed(&mut rng));
+        let context = format!("pair {pair}: {} of {of_a:e}, {} of {of_b:e}", a.kind(), b.kind());
+        let size = 10.0 * of_a.max(of_b);
+        let way = direction(&mut rng) * size * 0.8;
+        at_b.translation = way.clamp(DVec3::splat(-9e99), DVec3::splat(9e99));
+        let motion = (way + direction(&mut rng) * 0.03 * size) * rng.random_range(0.5..1.2);
+        let moved = |t: f64| DAffine3 { translation: motion * t, ..at_a };
+        let meet = |t: f64| query::intersects(&a, &moved(t), &b, &at_b).unwrap();
+        let cast = query::cast_shape(&a, &at_a, motion, &b, &at_b, DVec3::ZERO).unwrap();
+        let clear = cast.map_or(1.0, |impact| impact.time - 1e-9);
+        for step in 0..=16 {
+            let t = clear * f64::from(step) / 16.0;
+            assert!(t < 0.0 || !meet(t), "{context}: they meet at {t} of {cast:?}");
+        }
+        if let Some(impact) = cast {
+            impacts += 1;
+            assert!(
+                (0.0..=1.0).contains(&impact.time) && impact.normal.is_none_or(is_unit),
+                "{context}: {impact:?}"
+            );
+            let gap = query::distance(&a, &moved(impact.time), &b, &at_b).unwrap().distance;
+            assert!(gap <= 1e-8 * size, "{context}: {impact:?} leaves {gap:e} of {size:e}");
+        }
+
+        let from = direction(&mut rng) * 3.0 * of_a;
+        let ray = Ray::new(from, (direction(&mut rng) * of_a * 0.8 - from) / of_a);
+        let hit = query::cast_ray(&a, &at_a, &ray, &RayOptions::default()).unwrap();
+        let meets = query::ray_meets(&a, &at_a, &ray, &RayOptions::default()).unwrap();
+        assert_eq!(hit.is_some(), meets, "{context}: {hit:?}");
+        if let Some(hit) = hit {
+            hits += 1;
+            let away = query::closest_point(&a, &at_a, hit.point).unwrap().distance;
+            let normal = hit.surface.map(|surface| surface.normal);
+            assert!(
+                away <= 1e-9 * 10.0 * of_a && normal.is_none_or(is_unit),
+                "{context}: {hit:?} is {away:e} off"
+            );
+        }
+    }
+    println!("{impacts} impacts, {hits} hits");
+    assert!(impacts > PAIRS / 16 && hits > PAIRS / 16);
 }
