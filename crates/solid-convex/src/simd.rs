@@ -134,8 +134,18 @@ pub use part;
 #[inline(always)]
 #[doc(hidden)]
 pub fn run_part<S: fearless_simd::Simd, R>(_: S, part: impl FnOnce() -> R) -> R {
-    if is_scalar::<S>() { one_by_one(part) } else { part() }
+    // What a constant decides is not compiled, even unoptimised; identities of types are compared in the program.
+    if const { size_of::<S::f32s>() > SCALAR_BYTES } {
+        part()
+    } else if cfg!(any(target_arch = "x86", target_arch = "x86_64")) || is_scalar::<S>() {
+        one_by_one(part)
+    } else {
+        part()
+    }
 }
+
+/// As wide are the vectors of the scalar level, and the wide ones of other architectures than x86.
+const SCALAR_BYTES: usize = 16;
 
 /// Whether a kernel is the copy that runs without vectors.
 #[inline(always)]
