@@ -32,11 +32,11 @@ fn checked_at_length(placement: &DAffine3) -> Result<&DAffine3> {
         return Err(Error::PlacementEntry { value });
     }
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
-    let flat =
-        match [x, y, z].map(|axis| direction(axis).filter(|_| axis.abs().max_element() >= MAGNITUDE_MIN)) {
-            [Some(x), Some(y), Some(z)] => x.cross(y).dot(z).abs() < VOLUME_MIN,
-            _ => true,
-        };
+    let is_long = |axis: &DVec3| axis.abs().max_element() >= MAGNITUDE_MIN;
+    let flat = match [x, y, z].map(|axis| Some(axis).filter(is_long).and_then(direction)) {
+        [Some(x), Some(y), Some(z)] => x.cross(y).dot(z).abs() < VOLUME_MIN,
+        _ => true,
+    };
     if flat { Err(Error::SingularPlacement { x, y, z }) } else { Ok(placement) }
 }
 

@@ -11,7 +11,7 @@ pub(in crate::pair) struct Similarity {
     pub stretch: f64,
 }
 
-/// The least square of a scale: of its products, what is a digit of theirs is a number yet.
+/// The least square of a scale, far enough above the least number for the digits of sums of such squares.
 const SQUARE_MIN: f64 = 1e-270;
 
 impl Similarity {
