@@ -8,7 +8,7 @@
 
 mod common;
 
-use common::{direction, log_uniform, torus};
+use common::{convex_of_kind, direction, log_uniform, torus};
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -36,19 +36,14 @@ fn shape(rng: &mut StdRng, size: f64) -> Shape {
     let sizes = [0; 3].map(|_| size * rng.random_range(0.3..=1.5));
     let ring = || torus(9, 7, 0.4).scaled(size).shape();
     match rng.random_range(0..9) {
-        0 => Shape::sphere(sizes[0]).unwrap(),
-        1 => Shape::capsule(sizes[0], sizes[1]).unwrap(),
-        2 => Shape::cuboid(sizes).unwrap(),
-        3 => Shape::cone(sizes[0], sizes[1]).unwrap(),
-        4 => Shape::cylinder(sizes[0], sizes[1]).unwrap(),
-        5 => Shape::convex_hull(&(0..20).map(|_| direction(rng) * size).collect::<Vec<_>>()).unwrap(),
         6 => ring(),
         7 => ring().into_solid().unwrap(),
-        _ => {
+        8 => {
             let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE].map(|v| v * size);
             let builder = ComplexShapeBuilder::new(corners.to_vec());
             builder.tetrahedron([0, 1, 2, 3]).triangle([1, 2, 4]).build().unwrap()
         }
+        kind => convex_of_kind(rng, kind, sizes, size),
     }
 }
 

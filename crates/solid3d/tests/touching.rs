@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{assert_rate, direction, placement, random_complex, random_mesh, torus};
+use common::{assert_rate, convex_of_kind, direction, placement, random_complex, random_mesh, torus};
 use glam::DAffine3;
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -22,15 +22,10 @@ fn shape(rng: &mut StdRng) -> Shape {
     let mut size = || rng.random_range(0.3..=1.5);
     let sizes = [size(), size(), size()];
     match rng.random_range(0..9) {
-        0 => Shape::sphere(sizes[0]).unwrap(),
-        1 => Shape::capsule(sizes[0], sizes[1]).unwrap(),
-        2 => Shape::cuboid(sizes).unwrap(),
-        3 => Shape::cone(sizes[0], sizes[1]).unwrap(),
-        4 => Shape::cylinder(sizes[0], sizes[1]).unwrap(),
-        5 => Shape::convex_hull(&(0..20).map(|_| direction(rng)).collect::<Vec<_>>()).unwrap(),
         6 => random_mesh(rng, 60).shape(),
         7 => torus(12, 8, 0.4).shape().into_solid().unwrap(),
-        _ => random_complex(rng, 5).shape(),
+        8 => random_complex(rng, 5).shape(),
+        kind => convex_of_kind(rng, kind, sizes, 1.0),
     }
 }
 

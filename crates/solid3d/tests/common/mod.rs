@@ -206,6 +206,19 @@ pub fn random_complex(rng: &mut StdRng, count: u32) -> Soup {
     Soup { vertices, primitives, is_mesh: false }
 }
 
+/// A convex shape of one of six kinds, by its number from 0 to 5, and its sizes; of a hull the radius.
+pub fn convex_of_kind(rng: &mut StdRng, kind: u32, sizes: [f64; 3], radius: f64) -> Shape {
+    let made = match kind {
+        0 => Shape::sphere(sizes[0]),
+        1 => Shape::capsule(sizes[0], sizes[1]),
+        2 => Shape::cuboid(sizes),
+        3 => Shape::cone(sizes[0], sizes[1]),
+        4 => Shape::cylinder(sizes[0], sizes[1]),
+        _ => Shape::convex_hull(&(0..20).map(|_| direction(rng) * radius).collect::<Vec<_>>()),
+    };
+    made.unwrap()
+}
+
 /// A small mesh or complex shape, or a convex shape, of about unit size; by the number of a case.
 pub fn some_shape(rng: &mut StdRng, case: u32) -> Shape {
     match case % 4 {
