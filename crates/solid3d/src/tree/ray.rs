@@ -102,9 +102,6 @@ const FAR_AWAY: f64 = 4.0;
 /// What is beyond is as good as endless, and its products do not overflow in `f32`.
 const ENDLESS: f64 = 1e20;
 
-/// What a moving box is at most in tree coordinates: coordinates of at most 1e200, in a tree of at least 1e-100.
-const HALF_MAX: f64 = 1e300;
-
 /// Room for the entries of most rays, so that memory is asked for once.
 const STACK: usize = 64;
 
@@ -125,8 +122,8 @@ impl Probe {
         let normal = &tree.normal;
         let to_tree = |v: DVec3| v * normal.inverse;
         let largest = ray.direction.abs().max_element();
-        // Rounded up, as the rounding of the origin is. Not endless yet, since the origin may be as far.
-        let mut half = to_tree(ray.half_extents).min(DVec3::splat(HALF_MAX));
+        // Rounded up, as the rounding of the origin is. Not cut off before it is added to that, which may be as far.
+        let mut half = to_tree(ray.half_extents);
         let mut origin = to_tree(ray.origin - normal.origin);
         let unit = unit_scale(largest);
         let direction = ray.direction * unit;

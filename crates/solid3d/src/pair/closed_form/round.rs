@@ -103,9 +103,9 @@ impl<'a> Cores<'a> {
 
     /// A point between those of the cores, as far from each as its radius is of both; of a box without a radius, its own.
     fn common_point(&self) -> Witness {
-        let [a, b] =
-            [0, 1].map(|k| self.at[k].local(self.way * (self.radii[k] / (self.radii[0] + self.radii[1]))));
-        Witness { on_a: self.local[0] - a, on_b: self.local[1] + b }
+        let both = self.radii[0] + self.radii[1];
+        let part = |k: usize| self.at[k].local(self.way * (self.radii[k] / both));
+        Witness { on_a: self.local[0] - part(0), on_b: self.local[1] + part(1) }
     }
 }
 
