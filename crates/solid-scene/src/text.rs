@@ -45,13 +45,18 @@ fn number(token: Option<&str>, line: usize, name: &str) -> Result<f64> {
     }
 }
 
-/// A word of the file, cut where it is too long for a message.
+/// A word or name of the file, cut where it is too long for a message.
 pub(crate) fn quoted(token: &str) -> String {
-    const CHARS_MAX: usize = 40;
+    const CHARS_MAX: usize = 80;
     match token.char_indices().nth(CHARS_MAX) {
         Some((end, _)) => format!("{}...", &token[..end]),
         None => token.to_owned(),
     }
+}
+
+/// A message of another program about the file, whose words may be the file's own.
+pub(crate) fn with_words_cut(message: &str) -> String {
+    message.split(' ').map(quoted).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use super::document::{Document, find};
 use super::local::Local;
 use super::sampler::Sampler;
 use crate::fault::Result;
+use crate::text::quoted;
 
 /// The animation that is played; without any, nothing changes.
 #[derive(Debug, Default)]
@@ -35,11 +36,11 @@ impl Animation {
     pub fn read(document: &Document, choice: Option<&str>, warnings: &mut Vec<String>) -> Result<Animation> {
         let names = names(document);
         let index = match choice {
-            Some(choice) => chosen(&names, choice)?,
+            Some(choice) => chosen(document, &names, choice)?,
             None if names.is_empty() => return Ok(Animation::default()),
             None => {
                 if names.len() > 1 {
-                    warnings.push(format!("plays the animation {}, not {}", names[0], names[1..].join(", ")));
+                    warnings.push(format!("plays the animation {}, not {}", names[0], list(&names[1..])));
                 }
                 0
             }
@@ -99,22 +100,32 @@ impl Animation {
     }
 }
 
-/// What to call the animations: by name in quotes, or by number where they have none.
+/// What messages call the animations: by name in quotes, or by number where they have none.
 fn names(document: &Document) -> Vec<String> {
     let animations = document.root.animations.iter().enumerate();
     let name = |(number, animation): (usize, &gltf::json::Animation)| match &animation.name {
-        Some(name) => format!("`{name}`"),
+        Some(name) => format!("`{}`", quoted(name)),
         None => number.to_string(),
     };
     animations.map(name).collect()
 }
 
-fn chosen(names: &[String], choice: &str) -> Result<usize> {
-    let quoted = format!("`{choice}`");
-    let by_name = names.iter().position(|name| *name == quoted);
+/// Names, as far as anybody would read them.
+fn list(names: &[String]) -> String {
+    const NAMES_MAX: usize = 20;
+    let (told, more) = names.split_at(names.len().min(NAMES_MAX));
+    match more.len() {
+        0 => told.join(", "),
+        count => format!("{} and {count} more", told.join(", ")),
+    }
+}
+
+fn chosen(document: &Document, names: &[String], choice: &str) -> Result<usize> {
+    let mut animations = document.root.animations.iter();
+    let by_name = animations.position(|animation| animation.name.as_deref() == Some(choice));
     let by_number = || choice.parse().ok().filter(|&number: &usize| number < names.len());
     by_name.or_else(by_number).ok_or_else(|| {
-        let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        let known = if names.is_empty() { "none".to_owned() } else { list(names) };
         format!("there is no animation `{choice}`; the file has {known}").into()
     })
 }

@@ -53,7 +53,7 @@ fn read(path: &Path, limit: u64) -> std::io::Result<Vec<u8>> {
 
 fn name(index: usize, buffer: &Buffer) -> String {
     match &buffer.name {
-        Some(name) => format!("buffer {index} (`{name}`)"),
+        Some(name) => format!("buffer {index} (`{}`)", quoted(name)),
         None => format!("buffer {index}"),
     }
 }

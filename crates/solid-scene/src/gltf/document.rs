@@ -8,7 +8,7 @@ use gltf::json::{Accessor, Mesh, Node, Root, Skin, buffer};
 
 use super::buffer::load;
 use crate::fault::Result;
-use crate::text::without_mark;
+use crate::text::{quoted, without_mark};
 
 /// How many numbers may be read out of a file per byte of it and its buffers. A text can name one buffer any number of
 /// times, so that a small one could ask for any amount of memory; files that mean well stay below 10.
@@ -129,7 +129,7 @@ fn check_version(root: &Root) -> Result<()> {
         return Ok(());
     }
     let version = asset.min_version.as_ref().unwrap_or(&asset.version);
-    Err(format!("the file is of glTF {version}; expected 2.0").into())
+    Err(format!("the file is of glTF {}; expected 2.0", quoted(version)).into())
 }
 
 fn check_extensions(root: &Root) -> Result<()> {
@@ -138,6 +138,7 @@ fn check_extensions(root: &Root) -> Result<()> {
             return Err(compressed(name).into());
         }
         if !UNDERSTOOD.iter().any(|known| name.starts_with(known)) {
+            let name = quoted(name);
             return Err(format!("the file requires the extension `{name}`, which is not supported").into());
         }
     }

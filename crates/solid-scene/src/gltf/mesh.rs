@@ -14,6 +14,7 @@ use super::primitive;
 use super::skin::Influences;
 use crate::fault::Result;
 use crate::soup::Soup;
+use crate::text::quoted;
 
 /// A mesh of the file: all its primitives over one vertex buffer.
 #[derive(Debug, Default)]
@@ -36,7 +37,7 @@ struct Attributes {
 /// How errors and warnings call a mesh.
 pub(super) fn name(document: &Document, index: usize) -> Result<String> {
     Ok(match &document.mesh(index)?.name {
-        Some(name) => format!("mesh {index} (`{name}`)"),
+        Some(name) => format!("mesh {index} (`{}`)", quoted(name)),
         None => format!("mesh {index}"),
     })
 }

@@ -17,6 +17,7 @@ use super::skin::Skin;
 use crate::fault::Result;
 use crate::part::{Part, PartObject};
 use crate::soup::Soup;
+use crate::text::quoted;
 
 /// The file's share of a scene.
 pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part> {
@@ -86,7 +87,8 @@ impl<'a> Reader<'a> {
         let changes = animation.morphs(index) && !geometry.targets.is_empty() || skinned && animation.moves();
         let name = self.object_name(index, node, mesh)?;
         if !skinned && self.worlds[index].matrix3.determinant() == 0.0 {
-            self.warnings.push(format!("`{name}` is flat at time 0: its placement is singular"));
+            let warning = format!("`{}` is flat at time 0: its placement is singular", quoted(&name));
+            self.warnings.push(warning);
         }
         let path = self.motion.graph.path(index);
         self.in_paths += path.len();

@@ -8,6 +8,7 @@ use super::payload::Payload;
 use crate::fault::{Fault, Result};
 use crate::polygon::{Cut, folded_warning, short_warning, triangulate};
 use crate::soup::Soup;
+use crate::text::quoted;
 
 /// The names that the list of a face's corners goes by.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -92,25 +93,25 @@ fn read_property(
     payload: &mut Payload,
     mut each: impl FnMut(f64),
 ) -> Result<f64> {
-    let ends =
-        |expected: String| format!("the file ends in `{}` {number}: expected {expected}", element.name);
-    let name = &property.name;
+    // Words for errors alone: they take memory, and this is asked for each number of the file.
+    let which = || format!("`{}` {number}", quoted(&element.name));
+    let name = || format!("`{}`", quoted(&property.name));
+    let ends = |expected: String| format!("the file ends in {}: expected {expected}", which());
     let first = payload.next(property.length.unwrap_or(property.scalar))?;
-    let Some(first) = first else { return Err(payload.fault(ends(format!("`{name}`")))) };
+    let Some(first) = first else { return Err(payload.fault(ends(name()))) };
     if property.length.is_none() {
         return Ok(first);
     }
     if !(first >= 0.0 && first.fract() == 0.0) {
-        let message = format!("`{}` {number} has a list `{name}` of length {first}", element.name);
-        return Err(payload.fault(message));
+        return Err(payload.fault(format!("{} has a list {} of length {first}", which(), name())));
     }
     if first > payload.left(property.scalar) as f64 {
-        return Err(payload.fault(ends(format!("{first} numbers of `{name}`"))));
+        return Err(payload.fault(ends(format!("{first} numbers of {}", name()))));
     }
     for _ in 0..first as u64 {
         match payload.next(property.scalar)? {
             Some(value) => each(value),
-            None => return Err(payload.fault(ends(format!("{first} numbers of `{name}`")))),
+            None => return Err(payload.fault(ends(format!("{first} numbers of {}", name())))),
         }
     }
     Ok(first)

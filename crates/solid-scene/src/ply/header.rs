@@ -141,14 +141,16 @@ impl Header {
     fn check_counts(&self, encoding: Encoding, mut bytes: usize) -> Result<()> {
         for Element { name, line, count, properties } in &self.elements {
             if properties.is_empty() && *count > 0 {
-                let message = format!("the header tells {count} of `{name}`, which has no property");
+                let message =
+                    format!("the header tells {count} of `{}`, which has no property", quoted(name));
                 return Err(Fault::at(*line, message));
             }
             let each: usize = properties.iter().map(|property| encoding.least_size(property.first())).sum();
             let needed = u128::from(*count) * each as u128;
             // The last number of a text needs no space after it.
             if needed > bytes as u128 + 1 {
-                let message = format!("the header tells {count} of `{name}`, which take {needed} bytes");
+                let message =
+                    format!("the header tells {count} of `{}`, which take {needed} bytes", quoted(name));
                 return Err(Fault::at(*line, format!("{message}; the file has {bytes} for them")));
             }
             bytes = bytes.saturating_sub(needed as usize);

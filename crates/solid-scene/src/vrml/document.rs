@@ -8,6 +8,7 @@ use vrml97::scene::{FieldLoc, FieldRef, NodeKind, ProtoRef, ROOT, Scene};
 
 use super::scan::{Mark, scan};
 use crate::error::SceneError;
+use crate::text::{quoted, with_words_cut};
 
 /// A node as written in a file, by its place in the file.
 pub(super) type Syntax = u32;
@@ -70,10 +71,13 @@ impl Document {
     pub fn parse(file: &Path, text: &str) -> Result<(Document, Vec<String>), SceneError> {
         let scanned = scan(file, text)?;
         let parsed = vrml97::Parser::new(&scanned.text, "").parse();
-        let mut scene =
-            parsed.map_err(|error| SceneError::new(file, Some(error.line), in_our_words(&error.message)))?;
+        let mut scene = parsed.map_err(|error| {
+            let message = with_words_cut(&in_our_words(&error.message));
+            SceneError::new(file, Some(error.line), message)
+        })?;
         let warnings = std::mem::take(&mut scene.warnings);
-        let warnings = warnings.iter().map(|warning| warning_in_our_words(warning)).collect();
+        let warnings =
+            warnings.iter().map(|warning| with_words_cut(&warning_in_our_words(warning))).collect();
         let marks = if scanned.nodes.len() == scene.nodes.len() { scanned.nodes } else { Vec::new() };
         let connected = connections(&scene);
         Ok((Document { file: file.to_owned(), scene, marks, connected }, warnings))
@@ -167,8 +171,8 @@ impl Document {
     /// The node as messages name it: its type and its name.
     pub fn describe(&self, node: Syntax) -> String {
         match self.name(node) {
-            Some(name) => format!("{} {name}", self.type_name(node)),
-            None => self.type_name(node),
+            Some(name) => format!("{} {}", quoted(&self.type_name(node)), quoted(name)),
+            None => quoted(&self.type_name(node)),
         }
     }
 

@@ -10,6 +10,7 @@ use super::library::{self, Library};
 use super::limits::{DEPTH_MAX, INLINE_DEPTH_MAX, NODES_MAX};
 use super::warnings::Warnings;
 use crate::error::SceneError;
+use crate::text::quoted;
 
 /// The fields through which nodes hold others that matter to collisions.
 const CHILD_FIELDS: [&str; 6] = ["children", "choice", "level", "proxy", "geometry", "coord"];
@@ -117,7 +118,7 @@ impl Expansion<'_> {
                 self.instance(node, document, proto, defaults)?;
             }
             None => {
-                let name = fragment.unwrap_or_default();
+                let name = quoted(&fragment.unwrap_or_default());
                 let file = document.file().display();
                 self.warn(node, format!("there is no PROTO {name} in {file}; passed over"));
             }

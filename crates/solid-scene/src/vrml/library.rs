@@ -8,6 +8,7 @@ use super::document::Document;
 use super::text;
 use super::warnings::Warnings;
 use crate::error::SceneError;
+use crate::text::quoted;
 
 /// Parsed files, each once.
 #[derive(Debug, Default)]
@@ -48,15 +49,16 @@ pub(super) fn locate(from: &Path, urls: &[String]) -> Result<Target, String> {
     let folder = from.parent().unwrap_or(Path::new(""));
     let mut reason = "it has no url".to_owned();
     for url in urls {
+        let called = quoted(url);
         match relative(url) {
             Some(target) => {
                 let file = folder.join(&target.file);
                 if file.is_file() {
                     return Ok(Target { file, ..target });
                 }
-                reason = format!("there is no file \"{url}\"");
+                reason = format!("there is no file \"{called}\"");
             }
-            None => reason = format!("\"{url}\" is not a relative path; only local files are read"),
+            None => reason = format!("\"{called}\" is not a relative path; only local files are read"),
         }
     }
     Err(reason)

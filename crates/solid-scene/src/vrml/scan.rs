@@ -13,6 +13,7 @@ use std::path::Path;
 
 use super::limits::*;
 use crate::error::SceneError;
+use crate::text::quoted;
 
 /// A text that is safe to parse.
 #[derive(Debug)]
@@ -321,7 +322,9 @@ impl<'a> Scanner<'a> {
     fn check_use(&mut self, word: &str) -> Result<(), SceneError> {
         match self.names.last().is_some_and(|names| names.contains(word)) {
             true => Ok(()),
-            false => self.fail(format!("USE {word}: expected the name of a DEF that stands before")),
+            false => {
+                self.fail(format!("USE {}: expected the name of a DEF that stands before", quoted(word)))
+            }
         }
     }
 

@@ -9,6 +9,7 @@ use super::route::Routes;
 use super::sensor::Sensor;
 use super::warnings::Warnings;
 use crate::error::SceneError;
+use crate::text::quoted;
 
 /// A signal, by its place in [`Signals`].
 pub(super) type SignalId = usize;
@@ -167,7 +168,7 @@ impl<'a> SignalBuilder<'a> {
             }
             _ => {
                 let plain = if type_name.is_empty() { "a node that is not known" } else { type_name };
-                warnings.add(format!("events {event} of {plain} are not followed"));
+                warnings.add(format!("events {} of {plain} are not followed", quoted(event)));
                 Ok(None)
             }
         }
