@@ -1,5 +1,7 @@
 //! The name that was perhaps meant.
 
+use crate::words::quoted;
+
 /// How much of a name is compared: enough for a slip of the pen, and a bound on the work for hostile names.
 const CHARACTERS_MAX: usize = 64;
 
@@ -11,7 +13,7 @@ pub fn closest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
 
 /// `; did you mean "ship"?`, or nothing.
 pub fn hint<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    closest(wrong, names).map(|name| format!("; did you mean {name:?}?")).unwrap_or_default()
+    closest(wrong, names).map(|name| format!("; did you mean {}?", quoted(name))).unwrap_or_default()
 }
 
 fn letters(name: &str) -> Vec<char> {

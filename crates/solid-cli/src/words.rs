@@ -46,6 +46,13 @@ pub fn printable(name: &str) -> String {
     name.chars().map(escape).collect()
 }
 
+/// A text from a file in quotes, escaped, as far as anybody would read it.
+pub fn quoted(text: &str) -> String {
+    const CHARS_MAX: usize = 80;
+    let shown: String = text.chars().take(CHARS_MAX).collect();
+    format!("{shown:?}{}", if shown.len() < text.len() { "..." } else { "" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -81,5 +88,12 @@ mod tests {
     fn control_characters_do_not_reach_the_terminal() {
         assert_eq!(printable("a\x1b[2Jb\n"), "a\\u{1b}[2Jb\\n");
         assert_eq!(printable("Würfel 1"), "Würfel 1");
+        assert_eq!(quoted("a\x1b[2Jb"), "\"a\\u{1b}[2Jb\"");
+    }
+
+    #[test]
+    fn long_texts_are_quoted_by_their_beginning() {
+        assert_eq!(quoted(&"ü".repeat(80)), format!("\"{}\"", "ü".repeat(80)));
+        assert_eq!(quoted(&"ü".repeat(81)), format!("\"{}\"...", "ü".repeat(80)));
     }
 }

@@ -8,6 +8,7 @@ use solid_scene::{Pose, Scene};
 use solid3d::Shape;
 
 use crate::rules::Bodies;
+use crate::words::quoted;
 
 /// The shape of each object: the scene's, or where it is so declared the solid that it bounds (thesis, section 3.1.2), and then a
 /// union of convex pieces (3.1.1). Objects that share a shape share what is made of it.
@@ -69,5 +70,5 @@ fn buffers(shape: &Shape) -> Option<(usize, usize)> {
 
 fn name(scene: &Scene, place: usize) -> String {
     let object = &scene.objects()[place];
-    format!("{}: object {:?}", scene.files()[object.file()].display(), object.name())
+    format!("{}: object {}", scene.files()[object.file()].display(), quoted(object.name()))
 }

@@ -180,8 +180,8 @@ impl<'a> Stage<'a> {
 
     /// In words, that an object can't be as it is wanted.
     fn refusal(&self, object: usize, time: f64, error: &solid3d::Error) -> anyhow::Error {
-        let (place, name) = (self.motion.place(object), self.scene.objects()[object].name());
-        anyhow!("{place}: object {name:?} at {} s: {error}", words::seconds(time))
+        let (place, name) = (self.motion.place(object), words::quoted(self.scene.objects()[object].name()));
+        anyhow!("{place}: object {name} at {} s: {error}", words::seconds(time))
     }
 }
 

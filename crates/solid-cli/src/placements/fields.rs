@@ -2,12 +2,14 @@
 
 use solid3d::glam::{DAffine3, DQuat, DVec3, DVec4};
 
+use crate::words::quoted;
+
 /// What is wrong with a field, without the place.
 pub type Result<T> = std::result::Result<T, String>;
 
 /// A frame's number.
 pub fn frame(text: &str) -> Result<u64> {
-    text.parse().map_err(|_| format!("frame is {text:?}; expected a whole number, at least 0"))
+    text.parse().map_err(|_| format!("frame is {}; expected a whole number, at least 0", quoted(text)))
 }
 
 /// The placement that the fields tx to qw, and perhaps sx to sz, say; `names` are their columns.
@@ -24,7 +26,7 @@ pub fn placement(texts: &[&str], names: &[&str]) -> Result<DAffine3> {
 fn number(text: &str, name: &str) -> Result<f64> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),
-        _ => Err(format!("{name} is {text:?}; expected a finite number")),
+        _ => Err(format!("{name} is {}; expected a finite number", quoted(text))),
     }
 }
 

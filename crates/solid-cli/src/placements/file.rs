@@ -8,6 +8,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::fields;
 use super::row::Row;
+use crate::words::quoted;
 use crate::{suggest, text};
 
 /// The columns; the last three may be missing.
@@ -80,7 +81,7 @@ fn header(record: &StringRecord) -> fields::Result<usize> {
         return Ok(count);
     }
     let found = record.iter().collect::<Vec<_>>().join(",");
-    Err(format!("the header is {found:?}; expected {}", expected_header()))
+    Err(format!("the header is {}; expected {}", quoted(&found), expected_header()))
 }
 
 fn expected_header() -> String {
@@ -114,8 +115,8 @@ impl<'a> RowReader<'a> {
     }
 
     fn object(&self, name: &str) -> fields::Result<usize> {
-        let unknown =
-            || format!("there is no object {name:?}{}", suggest::hint(name, self.names.iter().copied()));
+        let hint = || suggest::hint(name, self.names.iter().copied());
+        let unknown = || format!("there is no object {}{}", quoted(name), hint());
         self.places.get(name).copied().ok_or_else(unknown)
     }
 }
