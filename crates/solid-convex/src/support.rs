@@ -23,7 +23,7 @@ pub trait Support: Send + Sync {
         DVec3::ZERO
     }
 
-    /// A ball around the object and one in it, about its [`center`](Support::center): where they tell, no search is needed.
+    /// A ball around the object and one in it: where they tell, no search is needed.
     fn balls(&self) -> Option<Balls> {
         None
     }

@@ -15,15 +15,22 @@ use crate::simd::dispatch;
 use crate::similarity::{STRETCH_ERROR, rough_squares};
 use crate::{Polytope, Support};
 
-/// Balls about a point, by which a pair may be decided.
+/// A ball. Space: that of the object that it is told of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// The centre.
+    pub center: DVec3,
+    /// The radius.
+    pub radius: f64,
+}
+
+/// Balls by which a pair may be decided, the less is between them the more often.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balls {
-    /// The centre of both balls, the [`center`](Support::center) of the object.
-    pub center: DVec3,
-    /// The radius of a ball that the object contains; 0 for none.
-    pub inner: f64,
-    /// The radius of a ball that contains the object.
-    pub outer: f64,
+    /// One that the object contains; of radius 0 for none.
+    pub inner: Ball,
+    /// One that contains the object.
+    pub outer: Ball,
 }
 
 /// The least gap that is an answer, relative to the size of the data, which here is more than [`Difference`](crate::difference::Difference)
@@ -112,11 +119,11 @@ pub(super) struct Look {
     pub scales: [f64; 2],
     /// From the origin of the first to that of the second.
     pub offset: DVec3,
-    /// The square of the distance of the centres.
-    square: f64,
-    /// At this distance the balls in the polytopes overlap.
+    /// Of the balls in the polytopes: the square of the distance of their centres, and the distance at which they overlap.
+    inner: f64,
     near: f64,
-    /// At this distance the balls around the polytopes are apart.
+    /// Of the balls around the polytopes: the same, and the distance at which they are apart.
+    outer: f64,
     far: f64,
 }
 
@@ -130,19 +137,26 @@ impl Look {
         let squares = rough_squares(simd, [placement_a, placement_b])?;
         let scales = [squares[0].sqrt(), squares[1].sqrt()];
         let offset = placement_b.translation - placement_a.translation;
-        let (on_a, on_b) = (a.own_balls().center, b.own_balls().center);
-        let square = (placement_a.matrix3 * on_a - (placement_b.matrix3 * on_b + offset)).length_squared();
+        let square = {
+            #[inline(always)]
+            |on_a: DVec3, on_b: DVec3| {
+                (placement_a.matrix3 * on_a - (placement_b.matrix3 * on_b + offset)).length_squared()
+            }
+        };
+        let (of_a, of_b) = (a.own_balls(), b.own_balls());
+        let inner = square(of_a.inner.center, of_b.inner.center);
+        let outer = square(of_a.outer.center, of_b.outer.center);
         let ([inside_a, outside_a], [inside_b, outside_b]) = (a.sure_radii(), b.sure_radii());
         let near = inside_a * scales[0] + inside_b * scales[1];
         let far = outside_a * scales[0] + outside_b * scales[1];
-        Some(Look { scales, offset, square, near, far })
+        Some(Look { scales, offset, inner, near, outer, far })
     }
 
     #[inline(always)]
     pub fn glance(&self) -> Glance {
-        let Look { square, near, far, .. } = *self;
-        let meet = (near > 0.0) & (square < near * near);
-        let sure = PLAIN_SQUARES.contains(&(far * far)) & (meet | (square > far * far));
+        let Look { inner, near, outer, far, .. } = *self;
+        let meet = (near > 0.0) & (inner < near * near);
+        let sure = PLAIN_SQUARES.contains(&(far * far)) & (meet | (outer > far * far));
         if sure { Glance::Sure(meet) } else { Glance::Open }
     }
 
@@ -168,37 +182,60 @@ impl Look {
     /// How far apart the balls are that tell, or how deep in each other.
     #[inline(always)]
     pub fn room(&self, meet: bool) -> f64 {
-        let distance = self.square.sqrt();
-        if meet { self.near - distance } else { distance - self.far }
+        if meet { self.near - self.inner.sqrt() } else { self.outer.sqrt() - self.far }
     }
 }
 
 fn compare(a: &Balls, placement_a: &DAffine3, b: &Balls, placement_b: &DAffine3) -> Option<bool> {
-    let (linear_a, linear_b) = (&placement_a.matrix3, &placement_b.matrix3);
+    let linear = [&placement_a.matrix3, &placement_b.matrix3];
     let offset = placement_b.translation - placement_a.translation;
-    let v = linear_a * a.center - (linear_b * b.center + offset);
-    let (stretch_a, stretch_b) = (Stretch::of(linear_a), Stretch::of(linear_b));
+    let (stretch_a, stretch_b) = (Stretch::of(linear[0]), Stretch::of(linear[1]));
     let size = stretch_a.most * a.extent() + stretch_b.most * b.extent() + offset.abs().max_element();
-    let square = v.length_squared();
-    let [square_a, square_b] =
-        [linear_a, linear_b].map(|linear| linear.mul_transpose_vec3(v).length_squared());
-    let plain = |square| PLAIN_SQUARES.contains(&square);
-    if !(plain(square) & plain(square_a) & plain(square_b)) {
-        return None;
-    }
-    let (along_a, along_b) = (square_a.sqrt(), square_b.sqrt());
-    if square - (a.outer * along_a + b.outer * along_b) > GAP_MIN * size * v.abs().element_sum() {
+    if Line::of([a.outer, b.outer], linear, offset).is_some_and(|line| line.parts(GAP_MIN * size)) {
         return Some(false);
     }
+    let Line { along: [along_a, along_b], .. } = Line::of([a.inner, b.inner], linear, offset)?;
     let error = CENTER_ERROR * size;
     let (along_a, along_b) = (along_a + error * stretch_a.most, along_b + error * stretch_b.most);
     // Each reaches at least this far along v, times |v|, times the other's |L^T v|.
-    let reach_a = a.inner * stretch_a.least_squared(linear_a) * along_b;
-    let reach_b = b.inner * stretch_b.least_squared(linear_b) * along_a;
+    let reach_a = a.inner.radius * stretch_a.least_squared(linear[0]) * along_b;
+    let reach_b = b.inner.radius * stretch_b.least_squared(linear[1]) * along_a;
     (reach_a + reach_b > along_a * along_b * (1.0 + OVERLAP_ERROR)).then_some(true)
 }
 
+/// The line of the centres of two balls, each of which a linear map makes an ellipsoid of.
+struct Line {
+    /// From the second to the first.
+    v: DVec3,
+    /// The length of `L^T v` of each map.
+    along: [f64; 2],
+    radii: [f64; 2],
+}
+
+impl Line {
+    /// `None` where squares are not plain.
+    fn of([a, b]: [Ball; 2], linear: [&DMat3; 2], offset: DVec3) -> Option<Line> {
+        let v = *linear[0] * a.center - (*linear[1] * b.center + offset);
+        let squares = linear.map(|linear| linear.mul_transpose_vec3(v).length_squared());
+        let is_plain = [v.length_squared(), squares[0], squares[1]].iter().all(|s| PLAIN_SQUARES.contains(s));
+        is_plain.then(|| Line { v, along: squares.map(f64::sqrt), radii: [a.radius, b.radius] })
+    }
+
+    /// Whether the ellipsoids are apart along it by more than a gap.
+    fn parts(&self, gap: f64) -> bool {
+        let Line { v, along, radii } = self;
+        let reach = radii[0] * along[0] + radii[1] * along[1];
+        v.length_squared() - reach > gap * v.abs().element_sum()
+    }
+}
+
 impl Balls {
+    /// Both about the local origin, of these radii.
+    pub fn about_origin(inner: f64, outer: f64) -> Balls {
+        let [inner, outer] = [inner, outer].map(|radius| Ball { center: DVec3::ZERO, radius });
+        Balls { inner, outer }
+    }
+
     /// Radii by which two objects certainly overlap or are apart, under placements that nearly are similarities: the distance of the
     /// centres is less than the sum of the first, or more than that of the second.
     ///
@@ -206,12 +243,13 @@ impl Balls {
     /// most the root of three: eight times the least gap for each extent is more than both make of it.
     pub(crate) fn sure_radii(&self) -> [f64; 2] {
         let margin = 8.0 * GAP_MIN * self.extent();
-        [self.inner * (1.0 - 2.0 * STRETCH_ERROR) - margin, self.outer * (1.0 + 2.0 * STRETCH_ERROR) + margin]
+        let (inner, outer) = (self.inner.radius, self.outer.radius);
+        [inner * (1.0 - 2.0 * STRETCH_ERROR) - margin, outer * (1.0 + 2.0 * STRETCH_ERROR) + margin]
     }
 
     /// No coordinate of the object is larger.
     fn extent(&self) -> f64 {
-        self.outer + self.center.abs().max_element()
+        self.outer.radius + self.outer.center.abs().max_element()
     }
 }
 
@@ -269,16 +307,16 @@ mod tests {
     #[test]
     fn the_balls_are_around_and_in_the_object() {
         for object in objects() {
-            let Balls { center, inner, outer } = object.balls().unwrap();
-            assert!(inner > 0.1, "{inner}");
+            let Balls { inner, outer } = object.balls().unwrap();
+            assert!(inner.radius > 0.1, "{inner:?}");
             let (mut least, mut most) = (f64::INFINITY, 0.0f64);
             for k in 0..20_000 {
                 let direction = placement(k).translation.normalize();
-                let reach = (object.support(direction) - center).dot(direction);
-                assert!((inner * (1.0 - 1e-12)..=outer * (1.0 + 1e-12)).contains(&reach), "{reach}");
-                (least, most) = (least.min(reach), most.max(reach));
+                let reach = |ball: Ball| (object.support(direction) - ball.center).dot(direction);
+                (least, most) = (least.min(reach(inner)), most.max(reach(outer)));
             }
-            assert!(least < 1.1 * inner && most > 0.95 * outer, "{least} {inner}, {most} {outer}");
+            assert!((1.0 - 1e-12..1.1).contains(&(least / inner.radius)), "{least} {inner:?}");
+            assert!((0.95..1.0 + 1e-12).contains(&(most / outer.radius)), "{most} {outer:?}");
         }
     }
 
@@ -338,13 +376,15 @@ mod tests {
                 });
             if k % 13 == 0 {
                 // Centres at the distance at which the balls touch, up to a few roundings.
-                let radii =
-                    [a.own_balls().outer + b.own_balls().outer, a.own_balls().inner + b.own_balls().inner]
-                        [k as usize / 13 % 2];
+                let balls = [a, b].map(|object| {
+                    let Balls { inner, outer } = *object.own_balls();
+                    [inner, outer][k as usize / 13 % 2]
+                });
                 let error = [-1e-6, -1e-12, 0.0, 1e-12, 1e-6][k as usize / 26 % 5];
-                let way = placement(k + 3).translation.normalize() * (radii * (1.0 + error) * unit);
+                let length = (balls[0].radius + balls[1].radius) * (1.0 + error) * unit;
+                let way = placement(k + 3).translation.normalize() * length;
                 at_b.translation =
-                    at_a.transform_point3(a.own_balls().center) + way - at_b.matrix3 * b.own_balls().center;
+                    at_a.transform_point3(balls[0].center) + way - at_b.matrix3 * balls[1].center;
             } else if k % 11 == 0 {
                 (at_a.translation, at_b.translation) =
                     (at_a.translation + far * unit, at_b.translation + far * unit);

@@ -9,7 +9,7 @@
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::balls::{Balls, Look};
+use super::balls::{Ball, Balls, Look};
 use super::intersection::CACHED_GAP_MIN;
 use super::pairs::{Pairs, images};
 use crate::feature::VOLUME_ERROR;
@@ -268,7 +268,7 @@ struct Spread<'p> {
 impl<'p> Spread<'p> {
     fn of<S: Support + ?Sized>((object, at): (&S, &'p DAffine3)) -> Self {
         let (center, radius) = match object.balls() {
-            Some(balls) => (balls.center, balls.outer),
+            Some(Balls { outer, .. }) => (outer.center, outer.radius),
             None => (DVec3::ZERO, object.reach().length()),
         };
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = at.matrix3;
@@ -280,11 +280,11 @@ impl<'p> Spread<'p> {
     /// Under what nearly is a similarity of this scale.
     #[inline(always)]
     fn of_similar((object, at): (&Polytope, &'p DAffine3), scale: f64) -> Self {
-        let &Balls { center, outer, .. } = object.own_balls();
+        let Ball { center, radius } = object.own_balls().outer;
         Spread {
             at,
             center,
-            radius: outer,
+            radius,
             reach: object.farthest(),
             lengths: DVec3::splat(scale),
             volume: SIMILAR_VOLUME,

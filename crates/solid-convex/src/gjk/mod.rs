@@ -28,7 +28,7 @@ mod task;
 #[cfg(test)]
 mod tests;
 
-pub use balls::{Balls, Glance, glance, glance_by};
+pub use balls::{Ball, Balls, Glance, glance, glance_by};
 pub use cast::{CAST_ERROR, Impact, cast};
 pub use coherent::{Coherent, Memory};
 pub(crate) use descent::{End, Goal, descend};

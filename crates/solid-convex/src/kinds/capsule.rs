@@ -48,7 +48,7 @@ impl Support for Capsule {
     }
 
     fn balls(&self) -> Option<Balls> {
-        Some(Balls { center: DVec3::ZERO, inner: self.radius, outer: self.radius + self.half_height })
+        Some(Balls::about_origin(self.radius, self.radius + self.half_height))
     }
 
     fn core_radius(&self) -> f64 {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::gjk::Balls;
+use crate::gjk::{Ball, Balls};
 use crate::size::positive;
 use crate::support::rim;
 use crate::{SizeError, Support};
@@ -48,9 +48,13 @@ impl Support for Cone {
     }
 
     fn balls(&self) -> Option<Balls> {
-        let slant = self.radius.hypot(2.0 * self.half_height);
-        let outer = self.radius.hypot(self.half_height);
-        // Nearer to its side than to its base, always.
-        Some(Balls { center: DVec3::ZERO, inner: self.half_height * (self.radius / slant), outer })
+        let Cone { radius, half_height, .. } = *self;
+        // As far from the apex as from the rim; about the base, if that is wide.
+        let around = (-radius * (radius / (4.0 * half_height))).max(-half_height);
+        let outer = (half_height - around).max(radius.hypot(half_height + around));
+        // Of the triangle that is a cut along the axis, the circle that touches all three sides.
+        let inner = 2.0 * half_height * (radius / (radius + radius.hypot(2.0 * half_height)));
+        let on_axis = |y: f64, radius: f64| Ball { center: DVec3::new(0.0, y, 0.0), radius };
+        Some(Balls { inner: on_axis(inner - half_height, inner), outer: on_axis(around, outer) })
     }
 }

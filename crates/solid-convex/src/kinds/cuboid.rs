@@ -41,7 +41,7 @@ impl Support for Cuboid {
     }
 
     fn balls(&self) -> Option<Balls> {
-        Some(Balls { center: DVec3::ZERO, inner: self.half.min_element(), outer: self.half.length() })
+        Some(Balls::about_origin(self.half.min_element(), self.half.length()))
     }
 
     fn is_polytope(&self) -> bool {

@@ -43,6 +43,6 @@ impl Support for Cylinder {
 
     fn balls(&self) -> Option<Balls> {
         let (inner, outer) = (self.radius.min(self.half_height), self.radius.hypot(self.half_height));
-        Some(Balls { center: DVec3::ZERO, inner, outer })
+        Some(Balls::about_origin(inner, outer))
     }
 }

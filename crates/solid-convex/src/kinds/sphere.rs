@@ -45,7 +45,7 @@ impl Support for Sphere {
     }
 
     fn balls(&self) -> Option<Balls> {
-        Some(Balls { center: DVec3::ZERO, inner: self.radius, outer: self.radius })
+        Some(Balls::about_origin(self.radius, self.radius))
     }
 
     fn core_radius(&self) -> f64 {

@@ -1,5 +1,6 @@
 //! The convex hull of many points, laid out for speed.
 
+mod balls;
 mod direction_map;
 mod rows;
 
@@ -7,11 +8,11 @@ use fearless_simd::Simd;
 use glam::{DMat3, DVec3};
 
 use super::points::{mean, reach};
+use crate::Support;
 use crate::difference::Vertex;
-use crate::gjk::Balls;
+use crate::gjk::{Ball, Balls};
 use crate::simd::{self, dispatch};
 use crate::support::bounds_by_supports;
-use crate::{Support, unit_scale};
 use direction_map::DirectionMap;
 use rows::Rows;
 
@@ -42,6 +43,8 @@ pub struct Polytope {
     rows: Rows,
     map: Option<DirectionMap>,
     reach: DVec3,
+    /// The mean.
+    center: DVec3,
     /// How far the farthest point is from the local origin.
     farthest: f64,
     balls: Balls,
@@ -54,11 +57,10 @@ impl Polytope {
     pub fn new(points: Vec<DVec3>) -> Option<Self> {
         let rows = Rows::new(&points)?;
         let (reach, center) = (reach(points.iter().copied()), mean(points.iter().copied()));
-        let farthest_from = |center| points.iter().map(|&p| distance(p, center)).fold(0.0, f64::max);
-        let (outer, farthest) = (farthest_from(center), farthest_from(DVec3::ZERO));
+        let farthest = balls::farthest(&points, DVec3::ZERO);
         let map = (points.len() > SCAN_MAX).then(|| DirectionMap::new(&points, reach)).flatten();
-        let balls = Balls { center, inner: 0.0, outer };
-        Some(Polytope { points, rows, map, reach, farthest, balls, sure_radii: balls.sure_radii() })
+        let balls = Balls { inner: Ball { center, radius: 0.0 }, outer: balls::around(&points) };
+        Some(Polytope { points, rows, map, reach, center, farthest, balls, sure_radii: balls.sure_radii() })
     }
 
     /// The memory that it owns, in bytes.
@@ -85,13 +87,11 @@ impl Polytope {
     /// use glam::DVec3;
     /// let corner = Polytope::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
     /// let corner = corner.with_faces(&[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
-    /// let inner = corner.balls().unwrap().inner; // to the slanted face
-    /// assert!((inner - 0.25 / 3f64.sqrt()).abs() < 1e-12);
+    /// let radius = corner.balls().unwrap().inner.radius; // at most 1 / (3 + sqrt(3))
+    /// assert!((0.2..0.2114).contains(&radius));
     /// ```
     pub fn with_faces(mut self, faces: &[[u32; 3]]) -> Self {
-        let points = |face: &[u32; 3]| face.map(|i| self.points[i as usize]);
-        let heights = faces.iter().map(|face| height_over(points(face), self.balls.center));
-        self.balls.inner = if faces.is_empty() { 0.0 } else { heights.fold(f64::INFINITY, f64::min) };
+        self.balls.inner = balls::inside(&self.points, faces);
         self.sure_radii = self.balls.sure_radii();
         self
     }
@@ -234,7 +234,7 @@ impl Support for Polytope {
     }
 
     fn center(&self) -> DVec3 {
-        self.balls.center
+        self.center
     }
 
     fn balls(&self) -> Option<Balls> {
@@ -244,26 +244,6 @@ impl Support for Polytope {
     fn is_polytope(&self) -> bool {
         true
     }
-}
-
-/// The distance of two points. `hypot` neither overflows nor underflows.
-fn distance(p: DVec3, q: DVec3) -> f64 {
-    let DVec3 { x, y, z } = p - q;
-    x.hypot(y).hypot(z)
-}
-
-/// The distance of a point from the plane of a triangle, less its error; at least 0, also of slivers without a plane to speak of.
-fn height_over([p, q, r]: [DVec3; 3], point: DVec3) -> f64 {
-    /// The error of a normal is this much, relative to the lengths of the two edges: it turns the plane about the corner.
-    const NORMAL_ERROR: f64 = 16.0 * f64::EPSILON;
-    let scale = unit_scale(
-        [q - p, r - p, point - p].map(|edge| edge.abs().max_element()).into_iter().fold(0.0, f64::max),
-    );
-    let [q, r, to_point] = [q - p, r - p, point - p].map(|edge| edge * scale);
-    let normal = q.cross(r);
-    let error = NORMAL_ERROR * q.length() * r.length() * to_point.length();
-    let height = (normal.dot(to_point).abs() - error) / normal.length();
-    height.max(0.0) / scale
 }
 
 #[cfg(test)]
