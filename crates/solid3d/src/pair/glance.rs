@@ -1,4 +1,5 @@
-//! A glance at the image of a leaf: which of its triangles surely meet a ball or a box, or surely do not; of the rest nothing is said.
+//! A glance at the image of a leaf: which of its triangles surely meet a ball or a box, or surely do not; of the rest nothing is said. Of other
+//! convex shapes, which meet a ball in them, or no ball around them.
 //!
 //! Corners are placed in `f32` in a frame with the middle of the shape at its origin: that of a ball has lengths of the common frame; a
 //! box is the cube from -1 to 1 in its own. A triangle with a corner inside meets the shape, and one that is beyond it along some axis
@@ -20,8 +21,11 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 use glam::{DAffine3, DVec3};
+use solid_convex::Support;
+use solid_convex::gjk::Balls;
 use solid_convex::simd::part;
 
+use super::closed_form::Similarity;
 use super::direct::Direct;
 use super::row::Verdict;
 use crate::bounds::abs;
@@ -39,7 +43,7 @@ const TINY: f32 = f32::from_bits((127 - 63) << 23);
 /// A radius inside which squares of `f32` neither underflow nor matter.
 const RADIUS_MIN: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// A ball or a box, beside which triangles are held.
+/// A ball or a box, or a ball in a shape and one around it, beside which triangles are held.
 pub(super) struct Glance {
     body: Body,
     /// From tree coordinates to the frame of the body, by rows.
@@ -69,8 +73,16 @@ struct Placed<S: Simd> {
 }
 
 impl Glance {
-    /// For a shape whose triangles are placed by a map; a gap of `gap` is clear. `None` for what is neither a ball nor a box.
-    pub fn new(direct: &Direct, map: &DAffine3, gap: f64, normal: &Normal) -> Option<Glance> {
+    /// For a shape with its way to the common frame, whose triangles are placed by a map; a gap of `gap` is clear. `None` for a capsule, and for what
+    /// its placement leaves no ball.
+    pub fn new(
+        direct: &Direct,
+        shape: &dyn Support,
+        to_common: &DAffine3,
+        map: &DAffine3,
+        gap: f64,
+        normal: &Normal,
+    ) -> Option<Glance> {
         let (middle, body) = match direct {
             Direct::Round(round) => {
                 let body = Body { is_ball: true, inner: round.radius - gap, outer: round.radius + gap };
@@ -80,7 +92,17 @@ impl Glance {
                 let (inner, outer) = cube.clear();
                 (DVec3::ZERO, Body { is_ball: false, inner, outer })
             }
-            Direct::None => return None,
+            Direct::None => {
+                let Balls { inner, outer } = shape.balls()?;
+                let Similarity { stretch, .. } = Similarity::new(&to_common.matrix3)?;
+                let around = outer.radius + outer.center.distance(inner.center);
+                let body = Body {
+                    is_ball: true,
+                    inner: inner.radius * stretch - gap,
+                    outer: around * stretch + gap,
+                };
+                (to_common.transform_point3(inner.center), body)
+            }
         };
         let linear = map.matrix3 * normal.scale;
         let offset = map.transform_point3(normal.origin) - middle;
@@ -226,7 +248,7 @@ mod tests {
     use crate::pair::gaps::scenes::{triangles, turned};
     use rand::Rng;
     use solid_convex::simd::{alike, dispatch};
-    use solid_convex::{Cuboid, Sphere, Support, gjk};
+    use solid_convex::{Cone, Cuboid, Sphere, Support, gjk};
     use solid_oracle::generate::{in_cube, seeded};
 
     /// Law: what is said of a triangle is what GJK says, of balls and boxes that are far or meet, or nearly touch, under any maps; on
@@ -251,12 +273,14 @@ mod tests {
             let radius = if case % 2 == 0 { half } else { away.length() * near };
             let ball = Sphere::new(radius).expect("it has a size");
             let cuboid = Cuboid::new(2.0 * half * DVec3::new(1.0, 0.5, 0.7)).expect("it has a size");
-            let convex: &dyn Support = if case % 4 < 2 { &ball } else { &cuboid };
+            let cone = Cone::new(0.7 * radius, 2.0 * radius).expect("it has a size");
+            let convex: &dyn Support = [&ball as &dyn Support, &ball, &cuboid, &cone][case % 4];
             let at_convex = DAffine3::from_rotation_translation(turn.inverse(), target + away);
             let frame = Frame::new(&at_complex, complex.reach(), &at_convex, convex.reach());
             let direct = Direct::new(convex, &frame, CLEARLY_APART);
             let map = if let Direct::Cube(cube) = &direct { cube.map } else { frame.common[0] };
-            let Some(glance) = Glance::new(&direct, &map, CLEARLY_APART, complex.tree().normal()) else {
+            let (to_common, normal) = (&frame.common[1], complex.tree().normal());
+            let Some(glance) = Glance::new(&direct, convex, to_common, &map, CLEARLY_APART, normal) else {
                 continue; // far thinner than the rest is large
             };
             let images = complex.images().expect("it is a mesh");

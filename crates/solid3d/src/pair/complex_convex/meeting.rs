@@ -42,8 +42,9 @@ pub(super) fn primitives(
     let metric = frame.stretch_of_a().metric(&Stretch::NONE);
     let end = ControlFlow::Continue(());
     // Where all that meet are wanted, most leaves that are visited hold some.
+    let (to_common, normal) = (&frame.common[1], complex.0.tree().normal());
     let glance =
-        if wants_any { Glance::new(&direct, &map, CLEARLY_APART, complex.0.tree().normal()) } else { None };
+        wants_any.then(|| Glance::new(&direct, convex.0, to_common, &map, CLEARLY_APART, normal)).flatten();
     let glance = glance.as_ref().zip(complex.0.images());
     let mut meeting = Meeting {
         complex,
