@@ -32,7 +32,7 @@ pub(super) fn closest_primitive(
     let mut best = frame.beyond(bound);
     // Of a box the distance has no closed form here.
     let direct = Direct::round(convex.0, frame);
-    let shadow = Shadow::new(convex.0, frame, &direct, ROUNDINGS);
+    let shadow = Shadow::new(convex.0, frame, ROUNDINGS);
     let around = shadow.around(&direct);
     let from = [convex.0.center(); 2];
     let mut gaps = Gaps::new(convex.0, &direct, frame, complex.0.tree().normal());
@@ -101,7 +101,7 @@ impl NearLeaves for Approach<'_> {
             }
         }
         self.row.place(simd, self.complex.0, leaf.primitives, &self.frame.common[0]);
-        near &= self.row.nearer(simd, &self.shadow.bounds, *best * *best);
+        near &= self.row.nearer(simd, self.shadow.bounds(self.direct), *best * *best);
         if near == 0 {
             return;
         }

@@ -33,7 +33,7 @@ pub(super) fn primitives(
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
     row.iter_mut().for_each(Row::clear);
     let direct = Direct::new(convex.0, &frame, CLEARLY_APART);
-    let shadow = Shadow::new(convex.0, &frame, &direct, CLEARLY_APART);
+    let shadow = Shadow::new(convex.0, &frame, CLEARLY_APART);
     let map = match &direct {
         Direct::Cube(cube) => cube.map,
         _ => frame.common[0],
@@ -147,7 +147,7 @@ impl Meeting<'_> {
         row.place(simd, complex, leaf, &self.map);
         let bounds = match self.direct {
             Direct::Cube(cube) => &cube.bounds(),
-            _ => &self.shadow.bounds,
+            _ => self.shadow.bounds(self.direct),
         };
         let mut near = row.overlapping(simd, bounds);
         if near == 0 {

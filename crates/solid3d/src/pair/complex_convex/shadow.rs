@@ -5,7 +5,10 @@ use std::cell::OnceCell;
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::Support;
+use solid_convex::gjk::Balls;
+use solid_convex::similarity::SKEW_MAX;
 
+use super::super::closed_form::Similarity;
 use super::super::direct::Direct;
 use super::super::frame::Frame;
 use super::super::reach::convex_bounds;
@@ -13,12 +16,18 @@ use super::super::row::{Near, Row, exceed};
 use crate::bounds::Aabb;
 use crate::tree::Around;
 
+/// Where a ball in a shape is this part of one around it, or more, the latter alone says how far the shape is: boxes say little more, and take as long.
+const ROUND: f64 = 0.4;
+
 /// The convex shape in the common frame.
 pub(super) struct Shadow<'s> {
     shape: &'s dyn Support,
     frame: &'s Frame,
     map: DAffine3,
-    pub bounds: Aabb,
+    /// By which bounds are grown.
+    margin: f64,
+    /// A box around it, found when first asked for.
+    bounds: OnceCell<Aabb>,
     /// A box around it in the space of the complex one, found when first asked for.
     in_complex: OnceCell<Aabb>,
     /// What tells the primitives looked at last from the shape, pointing to them; at first none.
@@ -29,24 +38,32 @@ pub(super) struct Shadow<'s> {
 
 impl<'s> Shadow<'s> {
     /// With bounds grown by a margin.
-    pub fn new(shape: &'s dyn Support, frame: &'s Frame, direct: &Direct, margin: f64) -> Self {
-        let map = frame.common[1];
-        let bounds = match direct {
-            Direct::Round(round) => round.bounds(),
-            _ => {
-                let Aabb { min, max } = convex_bounds(shape, &map.matrix3);
-                Aabb::new(min + map.translation, max + map.translation)
-            }
-        };
+    pub fn new(shape: &'s dyn Support, frame: &'s Frame, margin: f64) -> Self {
         Shadow {
             shape,
             frame,
-            map,
-            bounds: bounds.inflated(margin),
+            map: frame.common[1],
+            margin,
+            bounds: OnceCell::new(),
             in_complex: OnceCell::new(),
             axis: DVec3::ZERO,
             greatest: 0.0,
         }
+    }
+
+    /// A box around the shape.
+    pub fn bounds(&self, direct: &Direct) -> &Aabb {
+        self.bounds.get_or_init(|| {
+            let bounds = match direct {
+                Direct::Round(round) => round.bounds(),
+                _ => {
+                    let (Aabb { min, max }, to) =
+                        (convex_bounds(self.shape, &self.map.matrix3), self.map.translation);
+                    Aabb::new(min + to, max + to)
+                }
+            };
+            bounds.inflated(self.margin)
+        })
     }
 
     /// A box around the shape in the space of the complex one.
@@ -57,21 +74,27 @@ impl<'s> Shadow<'s> {
     /// Where the shape is, in the space of the complex one.
     pub fn around(&self, direct: &Direct) -> Places {
         let frame = self.frame;
-        let in_complex = |point: DVec3| frame.b_to_a.transform_point3(point);
+        let within = |points: &[DVec3], radius: f64| {
+            let points = points.iter().map(|&point| frame.b_to_a.transform_point3(point));
+            Around { bounds: Aabb::of_points(points).inflated(frame.slack_in_a), radius }
+        };
         if let Direct::Round(round) = direct {
-            let bounds = Aabb::of_points(round.local_ends.map(in_complex));
-            let bounds = bounds.inflated(frame.slack_in_a);
-            return Places::One([Around { bounds, radius: round.radius }]);
+            return Places::One([within(&round.local_ends, round.radius)]);
+        }
+        if let Some((Balls { inner, outer }, at)) = self.shape.balls().zip(Similarity::new(&self.map.matrix3))
+        {
+            let radius = outer.radius * at.stretch * (1.0 + 2.0 * SKEW_MAX) + self.margin;
+            let ball = within(&[outer.center], radius);
+            if inner.radius >= ROUND * outer.radius {
+                return Places::One([ball]);
+            }
+            return Places::Two([Around { bounds: *self.in_complex(), radius: 0.0 }, ball]);
         }
         let center = self.shape.center();
-        let local = in_complex(center);
-        let bounds = Aabb::new(local, local).inflated(frame.slack_in_a);
-        let placed = self.map.transform_point3(center);
-        let furthest = (self.bounds.max - placed).max(placed - self.bounds.min);
-        Places::Two([
-            Around { bounds: *self.in_complex(), radius: 0.0 },
-            Around { bounds, radius: furthest.length() },
-        ])
+        let (placed, bounds) = (self.map.transform_point3(center), self.bounds(direct));
+        let furthest = (bounds.max - placed).max(placed - bounds.min);
+        let ball = within(&[center], furthest.length());
+        Places::Two([Around { bounds: *self.in_complex(), radius: 0.0 }, ball])
     }
 
     /// What told the primitives looked at last from the shape.
