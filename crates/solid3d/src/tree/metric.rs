@@ -48,7 +48,7 @@ impl PairMetric {
     }
 }
 
-/// Pays for the rounding of all weighing, about ten operations in `f32`, with sixteen times 2^-24.
+/// Pays for the rounding of all weighing, about ten operations in `f32` and the root of what they gave, with sixteen times 2^-24.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
 /// A metric in tree coordinates.
@@ -77,8 +77,8 @@ impl Folded {
     /// The lower bounds in the world of eight squared distances in units.
     #[inline(always)]
     pub fn world<S: Simd>(&self, simd: S, squared: f32x8<S>) -> [f64x4<S>; 2] {
-        let (low, high) = simd.widen_f32x8(squared);
-        let (unit, rounding) = (f64x4::splat(simd, self.unit), f64x4::splat(simd, 1.0 - ROUNDING));
-        [low.sqrt() * unit * rounding, high.sqrt() * unit * rounding]
+        let (low, high) = simd.widen_f32x8(squared.sqrt());
+        let unit = f64x4::splat(simd, self.unit * (1.0 - ROUNDING));
+        [low * unit, high * unit]
     }
 }

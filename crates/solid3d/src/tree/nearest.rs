@@ -1,7 +1,7 @@
 //! Branch and bound for one query.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x4, f64x8, mask64x4};
+use fearless_simd::{Simd, f32x8, f64x4, f64x8};
 use solid_convex::simd::{Level, dispatch};
 
 use super::lanes::{LANES, bits, distances_squared_to_box, lanes};
@@ -222,14 +222,20 @@ fn bound_lanes_on<S: Simd>(
     metric: &Folded,
     bounds: &mut [f64; WIDTH],
 ) {
-    let zero = f64x4::splat(simd, 0.0);
-    let mut all = [f64x4::splat(simd, f64::NEG_INFINITY); 2];
-    for (i, (query, radius)) in around.iter().enumerate() {
-        let is_last = zero.simd_ge(zero) & mask64x4::splat(simd, i + 1 == around.len());
-        let squared = distances_squared_to_box(simd, node, query, &metric.a);
-        for (bound, least) in all.iter_mut().zip(metric.world(simd, squared)) {
-            let least = least - f64x4::splat(simd, *radius);
-            let counts = (least.simd_gt(zero) | is_last) & least.simd_gt(*bound);
+    let least = {
+        #[inline(always)]
+        |(query, radius): &(PackedBox, f64)| {
+            let squared = distances_squared_to_box(simd, node, query, &metric.a);
+            let [low, high] = metric.world(simd, squared);
+            let radius = f64x4::splat(simd, *radius);
+            [low - radius, high - radius]
+        }
+    };
+    let Some((last, before)) = around.split_last() else { return };
+    let mut all = least(last);
+    for query in before {
+        for (bound, least) in all.iter_mut().zip(least(query)) {
+            let counts = least.simd_gt(f64x4::splat(simd, 0.0)) & least.simd_gt(*bound);
             *bound = counts.select(least, *bound);
         }
     }
