@@ -26,7 +26,7 @@ mod body;
 mod triangles;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x8};
+use fearless_simd::{Simd, f32x8, f64x8, mask32x8};
 use glam::{DMat3, DVec3};
 use solid_convex::Support;
 
@@ -39,7 +39,7 @@ use super::glance::{Points, dot};
 use super::reach::convex_bounds;
 use crate::bounds::Aabb;
 use crate::placement::row_norm;
-use crate::tree::{Boxes, HALF_STEP, Image, LEAF_SIZE, Normal, STEPS, bits};
+use crate::tree::{Boxes, HALF_STEP, Image, LEAF_SIZE, Normal, STEPS};
 
 /// 16u: see the module.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
@@ -71,8 +71,9 @@ pub(super) struct Gaps {
     slack: f64,
     /// All that is within the radius of the body belongs to the shape, in the common frame.
     radius: f64,
-    /// A length of one in tree coordinates is at least this in the common frame; and how much longer it is at most.
+    /// A length of one in tree coordinates is at least this in the common frame; its reciprocal; and how much longer it is at most.
     unit: f64,
+    per_unit: f64,
     stretch: f64,
     /// A point of the shape that is near to the nearest triangle so far.
     from: [f32; 3],
@@ -119,6 +120,7 @@ impl Gaps {
             slack,
             radius,
             unit,
+            per_unit: unit.recip(),
             stretch,
             from: [0.0; 3],
             axes: Axes::default(),
@@ -209,7 +211,7 @@ impl Gaps {
         if furthest > SIZE_MAX {
             return lanes;
         }
-        let limit = ((distance + self.radius) / self.unit + error) * (1.0 + ROUNDING);
+        let limit = ((distance + self.radius) * self.per_unit + error) * (1.0 + ROUNDING);
         let mut gap = self.axes.gap(
             simd,
             #[inline(always)]
@@ -241,10 +243,11 @@ impl Gaps {
             from = self.body.nearer(simd, &from, &way, &support);
         }
         let limit = if self.tells_by_points {
-            let nearest = nearest.to_array();
-            let sure = bits(lanes).map(|lane| f64::from(nearest[lane])).fold(f64::INFINITY, f64::min);
+            let infinity = f32x8::splat(simd, f32::INFINITY);
+            let counts = mask32x8::from_bitmask(simd, u64::from(lanes)) & nearest.simd_lt(infinity);
+            let sure = f64::from(counts.select(nearest, infinity).reduce_min());
             // What is no nearer than this, by lower bounds, is farther than that.
-            let beaten = (sure + error) * self.stretch + margin / self.unit + error;
+            let beaten = (sure + error) * self.stretch + margin * self.per_unit + error;
             limit.min(beaten * (1.0 + ROUNDING))
         } else {
             limit
