@@ -12,6 +12,9 @@ use crate::rays::vector;
 /// Frames per second when nothing else is asked for.
 pub const FPS_DEFAULT: f64 = 30.0;
 
+/// Pairs whose boxes overlap when nothing else is asked for.
+pub const PAIRS_MAX_DEFAULT: u64 = 2_000_000;
+
 const EXIT_STATUS: &str = "\
 Exit status:
   0  no collisions
@@ -187,6 +190,10 @@ pub struct CheckArgs {
     /// Find also what collides between two frames, and when first; see below (--help)
     #[arg(long)]
     pub continuous: bool,
+
+    /// Stop where the boxes of more pairs of objects overlap than this: each pair takes a kilobyte of memory or more
+    #[arg(long, value_name = "N", default_value_t = PAIRS_MAX_DEFAULT)]
+    pub max_pairs: u64,
 
     /// Write every frame and collision as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]

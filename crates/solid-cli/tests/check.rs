@@ -4,7 +4,7 @@
 
 mod harness;
 
-use harness::{Desk, HEADER};
+use harness::{BOX, Desk, HEADER};
 use serde_json::json;
 
 /// Two boxes, of which `b` comes from the right, enters `a` in frames 2 and 3, and leaves.
@@ -313,4 +313,30 @@ fn a_reader_that_leaves_is_no_error() {
         drop(child.stderr.take());
         assert!(child.wait().unwrap().code().is_some_and(|status| status < 2), "{arguments}");
     }
+}
+
+#[test]
+fn too_many_pairs_are_refused_before_they_take_all_memory() {
+    let desk = Desk::with_boxes().file("c.obj", BOX);
+    let check = "check a.obj b.obj c.obj --max-pairs";
+    desk.run(&format!("{check} 3")).assert_status(1);
+    desk.run(&format!("{check} 2")).assert_fails(&[
+        "at 0.000 s the boxes of more than 2 pairs of objects overlap",
+        "are objects in one place that should not be",
+        "--max-pairs allows more",
+    ]);
+    // In a later frame; by boxes that are grown for a clearance; on the way between two frames.
+    let apart: String =
+        (0..).zip(["b", "c"]).map(|(i, b)| format!("0,{b},{},0,0,0,0,0,1\n", 5 + 5 * i)).collect();
+    let met = format!("{HEADER}{apart}3,b,0,0,0,0,0,0,1\n3,c,0,0,0,0,0,0,1\n");
+    let desk = desk.file("met.csv", met).file("apart.csv", format!("{HEADER}{apart}"));
+    let run = desk.run(&format!("{check} 2 --placements met.csv --fps 10"));
+    run.assert_fails(&["at 0.300 s the boxes of more than 2 pairs"]);
+    desk.run(&format!("{check} 0 --placements apart.csv")).assert_status(0);
+    desk.run(&format!("{check} 0 --placements apart.csv --clearance 4")).assert_fails(&["more than 0 pairs"]);
+    let passing = format!("{HEADER}0,b,5,0,0,0,0,0,1\n0,c,90,0,0,0,0,0,1\n1,b,-5,0,0,0,0,0,1\n");
+    let desk = desk.file("passing.csv", passing);
+    desk.run(&format!("{check} 0 --placements passing.csv")).assert_status(0);
+    desk.run(&format!("{check} 0 --placements passing.csv --continuous"))
+        .assert_fails(&["more than 0 pairs"]);
 }

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod clock;
+mod crowd;
 mod files;
 mod motion;
 mod player;
@@ -25,6 +26,7 @@ use crate::rules::{self, Objects, Rules};
 use crate::table::Style;
 use crate::{Verdict, complain, progress, scene};
 use clock::{Clock, Times};
+use crowd::Crowd;
 use motion::Motion;
 use player::Player;
 use report::Report;
@@ -52,7 +54,9 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let shapes = progress::while_waiting("preparing the shapes", || bodies::shapes(&scene, &bodies))?;
     let tested = if args.continuous { solid3d::Motion::Swept } else { solid3d::Motion::Sampled };
     let mut stage = Stage::new(&scene, &shapes, motion, tested, timeline.time(0))?;
-    let has_clearance = set_rules(&rules, args, &scene, &mut stage)?;
+    let clearance = set_rules(&rules, args, &scene, &mut stage)?;
+    let has_clearance = clearance.is_some();
+    let crowd = Crowd::new(args.max_pairs, clearance.unwrap_or(0.0), tested);
     let tells_distances = has_clearance || rules.tell_depth(args.response.map(Response::from));
     let has_rays = !rays.is_empty();
     let columns =
@@ -60,7 +64,7 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let recorders = recorders(args, columns, &scene)?;
     clock.lap(&mut times.load);
 
-    let mut player = Player { scene: &scene, stage, has_clearance, rays, recorders, clock, times };
+    let mut player = Player { scene: &scene, stage, crowd, has_clearance, rays, recorders, clock, times };
     let findings = player.play(&timeline)?;
     let statistics = player.stage.statistics();
     let report =
@@ -94,8 +98,8 @@ fn names(scene: &Scene) -> Vec<&str> {
     scene.objects().iter().map(|object| object.name()).collect()
 }
 
-/// Brings responses and clearances into the world. Returns whether there is any clearance.
-fn set_rules(rules: &Rules, args: &CheckArgs, scene: &Scene, stage: &mut Stage) -> Result<bool> {
+/// Brings responses and clearances into the world. Returns the greatest clearance, if there is any.
+fn set_rules(rules: &Rules, args: &CheckArgs, scene: &Scene, stage: &mut Stage) -> Result<Option<f64>> {
     let exempt = root_paths::pairs(scene.objects());
     let names = names(scene);
     let (world, ids) = stage.world();

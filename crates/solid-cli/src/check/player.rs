@@ -4,6 +4,7 @@ use anyhow::Result;
 use solid_scene::Scene;
 
 use super::clock::{Clock, Times};
+use super::crowd::Crowd;
 use super::stage::Stage;
 use super::timeline::Timeline;
 use crate::progress::Progress;
@@ -14,6 +15,7 @@ use crate::record::{Frame, NearRecorder, PairRecorder, RayRecorder, Recorder, Su
 pub struct Player<'a> {
     pub scene: &'a Scene,
     pub stage: Stage<'a>,
+    pub crowd: Crowd,
     /// Whether some pair has a clearance.
     pub has_clearance: bool,
     /// What is cast in every frame.
@@ -46,7 +48,7 @@ impl Findings {
 impl Player<'_> {
     /// Plays all frames.
     pub fn play(&mut self, timeline: &Timeline) -> Result<Findings> {
-        let Player { scene, stage, has_clearance, rays, recorders, clock, times } = self;
+        let Player { scene, stage, crowd, has_clearance, rays, recorders, clock, times } = self;
         let near = has_clearance.then(NearRecorder::default);
         let of_rays = (!rays.is_empty()).then(RayRecorder::default);
         let mut findings = Findings { near, rays: of_rays, ..Findings::default() };
@@ -57,6 +59,7 @@ impl Player<'_> {
             let time = timeline.time(number);
             stage.show(number, time)?;
             clock.lap(&mut times.moving);
+            crowd.refuse(stage, time)?;
             if *has_clearance {
                 stage.near(&mut passes);
             }

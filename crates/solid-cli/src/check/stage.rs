@@ -4,8 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use anyhow::{Result, anyhow};
 use solid_scene::{ObjectPose, Pose, Scene};
-use solid3d::query::{ImpactOptions, Path, RayOptions};
-use solid3d::{Collision, Contact, Near, ObjectId, Shape, Statistics, When, World, WorldOptions};
+use solid3d::query::{self, ImpactOptions, Path, RayOptions};
+use solid3d::{Aabb, Collision, Contact, Near, ObjectId, Shape, Statistics, When, World, WorldOptions};
 
 use super::motion::Motion;
 use crate::rays::NamedRay;
@@ -66,6 +66,19 @@ impl<'a> Stage<'a> {
     /// The world and the ids of its objects, to set responses.
     pub fn world(&mut self) -> (&mut World, &[ObjectId]) {
         (&mut self.world, &self.ids)
+    }
+
+    /// How many objects there are.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// The boxes around them, in the scene's order.
+    pub fn bounds(&self) -> impl Iterator<Item = Aabb> {
+        let bounds = |id: ObjectId| query::bounds(self.world.shape(id)?, &self.world.placement(id)?);
+        self.ids
+            .iter()
+            .map(move |&id| bounds(id).expect("it is in the world, where only good placements are"))
     }
 
     /// Brings the world to a frame; they come in order.

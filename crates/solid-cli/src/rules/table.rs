@@ -64,27 +64,27 @@ pub fn apply(
     Ok(index.into_warnings())
 }
 
-/// Sets the clearances of a world; `default` overrides that of the rules. Returns whether there is any. Of the rules for a pair the last
-/// that has a clearance holds. [`apply`] warns of patterns that match nothing.
+/// Sets the clearances of a world; `default` overrides that of the rules. Returns the greatest, if there is any. Of the rules for a pair the
+/// last that has a clearance holds. [`apply`] warns of patterns that match nothing.
 pub fn set_clearances(
     rules: &Rules,
     default: Option<f64>,
     objects: &Objects,
     world: &mut World,
-) -> Result<bool> {
+) -> Result<Option<f64>> {
     let default = default.or(rules.clearance);
     world.set_clearance(default.unwrap_or(0.0))?;
     let mut index = NameIndex::new(objects.names);
-    let mut found = default.is_some();
+    let mut greatest = default;
     let mut count = PairCount::default();
     for rule in &rules.pairs {
         let Some(clearance) = rule.clearance else { continue };
-        found = true;
+        greatest = Some(greatest.map_or(clearance, |greatest| greatest.max(clearance)));
         for (a, b) in Paired::find(rule, &mut index).pairs(objects.ids, &mut count)? {
             world.set_pair_clearance(a, b, clearance)?;
         }
     }
-    Ok(found)
+    Ok(greatest)
 }
 
 fn is_universal(rule: &PairRule) -> bool {
