@@ -52,10 +52,10 @@ fn unevenness_matters_only_near_touching() {
                 v + noise * size * DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
             };
             let vertices: Vec<DVec3> = p.vertices().iter().map(|&v| shake(v)).collect();
-            Polygon::with_tolerance(vertices, 1e-5 * size).unwrap()
+            // What is so thin that its area is lost in the noise has no plane to speak of; shaken chains may cross themselves where they touched.
+            Polygon::with_tolerance(vertices, 1e-5 * size).and_then(Polygon::simple)
         });
-        // Shaken chains may cross themselves where they touched.
-        let (Ok(a), Ok(b)) = (a.simple(), b.simple()) else { continue };
+        let (Ok(a), Ok(b)) = (a, b) else { continue };
         let limit = 2.0 * (a.plane().deviation + b.plane().deviation);
         let counters = &mut Counters::default();
         let exact = intersect_triangulated(&a, &b);
