@@ -156,6 +156,9 @@ impl Tree {
                     // Empty lanes are infinitely far, or do no harm.
                     let mut of_lanes = [f64::INFINITY; WIDTH];
                     bounds(node, &mut of_lanes);
+                    if reaching(simd, &of_lanes, *best) == u32::MAX {
+                        continue;
+                    }
                     visitor.raise(simd, &Boxes(node), &mut of_lanes);
                     let near = !reaching(simd, &of_lanes, *best);
                     if near == 0 {
