@@ -8,11 +8,11 @@ use crate::gjk::Ball;
 use crate::unit_scale;
 
 /// Steps of a search for a centre, and how long each is beside the one before.
-const STEPS: usize = 32;
-const SHRINK: f64 = 0.85;
+const STEPS: usize = 24;
+const SHRINK: f64 = 0.8;
 
 /// The first step, beside the radius of the ball around the mean: all together are as long as that.
-const FIRST_STEP: f64 = 0.15;
+const FIRST_STEP: f64 = 0.2;
 
 /// A ball around points, of which there are some. Cost: O(n).
 pub(super) fn around(points: &[DVec3]) -> Ball {
