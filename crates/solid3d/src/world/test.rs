@@ -27,7 +27,7 @@ impl World {
     /// Pairs are examined when their response is not [`Response::Ignore`], their boxes overlap, and something about them changed
     /// since they last were: the cost follows what changed, but for the copy of the result. With the feature `rayon` on
     /// the threads of the current pool; the results are the same bits for any number of threads, with and without caching, and
-    /// for either broad phase.
+    /// for either broad phase. Memory: some 550 bytes for each pair whose boxes overlap, of which 160 are of the result.
     ///
     /// ```
     /// use solid3d::{Shape, World, glam::{DAffine3, DVec3}};
