@@ -17,6 +17,15 @@ pub fn shapes() -> Vec<Box<dyn Support>> {
     ]
 }
 
+/// The faces of an octahedron with corners on the axes x, y and z, on each the greater first.
+pub fn octahedron_faces() -> Vec<[u32; 3]> {
+    let face = |i: u32| {
+        let [x, y, z] = [i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2)];
+        if i.count_ones() % 2 == 0 { [x, y, z] } else { [x, z, y] }
+    };
+    (0..8).map(face).collect()
+}
+
 /// Placements spread over orientations and distances by a low-discrepancy sequence.
 pub fn placement(i: u32) -> DAffine3 {
     let part = |step: f64| (f64::from(i) * step).fract();

@@ -285,7 +285,7 @@ mod tests {
 
     use super::*;
     use crate::gjk::{intersection, intersects_closely};
-    use crate::testing::{placement, shapes};
+    use crate::testing::{octahedron_faces, placement, shapes};
     use crate::{Polytope, Sphere};
 
     /// A hull with its faces: an octahedron that was stretched, and moved off its origin.
@@ -294,8 +294,7 @@ mod tests {
             DVec3::new(0.3, 0.2, -0.1) + DVec3::AXES[axis] * sign * (1.0 + axis as f64)
         };
         let points = (0..6).map(|i| corner(i / 2, if i % 2 == 0 { 1.0 } else { -1.0 })).collect();
-        let faces: Vec<[u32; 3]> = (0..8).map(|i| [i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2)]).collect();
-        Polytope::new(points).unwrap().with_faces(&faces)
+        Polytope::new(points).unwrap().with_faces(&octahedron_faces())
     }
 
     fn objects() -> Vec<Box<dyn Support>> {

@@ -405,7 +405,7 @@ mod tests {
     use super::*;
     use crate::gjk::{Glance, Memory, intersects};
     use crate::simd::{Level, dispatch, levels};
-    use crate::testing::{placement, shapes};
+    use crate::testing::{octahedron_faces, placement, shapes};
     use crate::{Cuboid, Polytope};
 
     /// A motion: in a frame it moves and turns by this, in sizes of the objects.
@@ -522,7 +522,9 @@ mod tests {
         let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5;
         let faces = (0..6).flat_map(|k| {
             let (axis, side) = (k / 2, k % 2);
-            let at = |u: u32, v: u32| side << axis | u << ((axis + 1) % 3) | v << ((axis + 2) % 3);
+            // The lower face is seen from below.
+            let [u, v] = [[2, 1], [1, 2]][side as usize];
+            let at = |a: u32, b: u32| side << axis | a << ((axis + u) % 3) | b << ((axis + v) % 3);
             [[at(0, 0), at(1, 0), at(1, 1)], [at(0, 0), at(1, 1), at(0, 1)]]
         });
         let block =
@@ -582,36 +584,46 @@ mod tests {
         assert!(glanced > 500, "{glanced}");
     }
 
-    /// At the bound: balls that come near, straight or by a turn about a point far off, are told apart until just before they touch, and not after.
+    /// At the bound: balls that come near, or part, straight or by a turn about a point far off, are told until just before they touch, and not after.
     #[test]
     fn balls_run_out_just_before_they_touch() {
-        let rod = Polytope::new(vec![DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z]).unwrap();
-        let [_, reach] = rod.sure_radii();
-        for unit in [1e-9, 1.0, 1e9] {
-            let at = |x: f64| DAffine3 {
-                matrix3: DMat3::IDENTITY * unit,
-                translation: DVec3::new(x, 0.0, 0.0) * unit,
-            };
-            let mut memory = Memory::default();
-            let room = 10.0 - 2.0 * reach;
-            for level in levels() {
-                let (here, there) = (at(0.0), at(10.0));
-                memory.rest();
-                assert_eq!(
-                    seen(level, &mut memory, [(&rod, &here), (&rod, &there)]),
-                    (Glance::Sure(false), false)
-                );
-                // Of the four lengths that sum to the room each may be half of it alone; and all a quarter.
-                let half = 0.5 * room;
-                let turn = |x: f64, part: f64| {
-                    let change = DMat3::from_diagonal(DVec3::new(part / rod.farthest(), 0.0, 0.0)) * unit;
-                    DAffine3 { matrix3: at(x).matrix3 + change, ..at(x) }
+        let corners = vec![DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z];
+        let rod = Polytope::new(corners[..5].to_vec()).unwrap();
+        let block = Polytope::new(corners).unwrap().with_faces(&octahedron_faces());
+        let [_, around] = rod.sure_radii();
+        let [inside, _] = block.sure_radii();
+        for (object, distance, room, meet) in
+            [(&rod, 10.0, 10.0 - 2.0 * around, false), (&block, 0.5, 2.0 * inside - 0.5, true)]
+        {
+            let reach = object.farthest();
+            // Which way it goes on.
+            let sign = if meet { -1.0 } else { 1.0 };
+            for unit in [1e-9, 1.0, 1e9] {
+                let at = |x: f64| DAffine3 {
+                    matrix3: DMat3::IDENTITY * unit,
+                    translation: DVec3::new(x, 0.0, 0.0) * unit,
                 };
-                for (part, told) in [(0.9999, Some(false)), (1.0001, None)] {
-                    assert_eq!(memory.still(&here, &at(10.0 - half * part)), told);
-                    assert_eq!(memory.still(&at(half * part), &there), told);
-                    // The axes may change by half at most.
-                    assert_eq!(memory.still(&here, &turn(10.0, 0.5 * rod.farthest() * part)), told);
+                let mut memory = Memory::default();
+                for level in levels() {
+                    let (here, there) = (at(0.0), at(distance));
+                    memory.rest();
+                    assert_eq!(
+                        seen(level, &mut memory, [(object, &here), (object, &there)]),
+                        (Glance::Sure(meet), false)
+                    );
+                    // Of the four lengths that sum to the room each may be half of it alone; and all a quarter.
+                    let half = 0.5 * room;
+                    let turn = |x: f64, part: f64| {
+                        let change = DMat3::from_diagonal(DVec3::new(part / reach, 0.0, 0.0)) * unit;
+                        DAffine3 { matrix3: at(x).matrix3 + change, ..at(x) }
+                    };
+                    for (part, told) in [(0.9999, Some(meet)), (1.0001, None)] {
+                        assert_eq!(memory.still(&here, &at(distance - sign * half * part)), told);
+                        assert_eq!(memory.still(&at(sign * half * part), &there), told);
+                        // The axes may change by half at most.
+                        let change = half.min(0.5 * reach) * part;
+                        assert_eq!(memory.still(&here, &turn(distance, change)), told);
+                    }
                 }
             }
         }

@@ -28,11 +28,11 @@ pub(super) fn around(points: &[DVec3]) -> Ball {
     if found.radius < first.radius { found } else { first }
 }
 
-/// A ball in the hull of points, of which the triangles `faces` are the surface; of radius 0 where it is flat, or no face is known. Cost: O(n).
+/// A ball in the hull of points, of which the triangles `faces` are the surface, counter-clockwise seen from outside; of radius 0 where it is flat,
+/// or no face is known. Cost: O(n).
 pub(super) fn inside(points: &[DVec3], faces: &[[u32; 3]]) -> Ball {
     let center = mean(points.iter().copied());
-    let planes: Vec<Plane> =
-        faces.iter().map(|face| Plane::of(face.map(|i| points[i as usize]), center)).collect();
+    let planes: Vec<Plane> = faces.iter().map(|face| Plane::of(face.map(|i| points[i as usize]))).collect();
     let lowest = |point: DVec3| {
         planes.iter().fold((f64::INFINITY, DVec3::ZERO), |lowest, plane| {
             let height = plane.height(point);
@@ -89,17 +89,17 @@ struct Plane {
 }
 
 impl Plane {
-    /// That of a triangle, with a point on its inner side.
-    fn of([p, q, r]: [DVec3; 3], within: DVec3) -> Plane {
+    /// That of a triangle, counter-clockwise seen from outside. Which side is the inner one is not told by a point of the hull: the mean of
+    /// corners, as it is rounded, may be off what is flat.
+    fn of([p, q, r]: [DVec3; 3]) -> Plane {
         /// The error of a normal is this much, relative to the lengths of the two edges: it turns the plane about the corner.
         const NORMAL_ERROR: f64 = 16.0 * f64::EPSILON;
         let edges = [q - p, r - p];
         let scale = unit_scale(edges[0].abs().max_element().max(edges[1].abs().max_element()));
         let [q, r] = edges.map(|edge| edge * scale);
-        let normal = q.cross(r);
+        let normal = r.cross(q);
         let length = normal.length();
-        let inward = normal / length.copysign(normal.dot(within - p));
-        Plane { corner: p, inward, error: NORMAL_ERROR * q.length() * r.length() / length }
+        Plane { corner: p, inward: normal / length, error: NORMAL_ERROR * q.length() * r.length() / length }
     }
 
     /// How far a point is above it, at least. Below any point of a sliver without a plane to speak of.
@@ -117,12 +117,15 @@ mod tests {
 
     use super::*;
 
-    /// The corners of a box from 0 to some sizes, and its faces, of which each other is seen from inside.
+    /// The corners of a box from 0 to some sizes, and its faces.
     fn block(size: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let corners = (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * size);
         let faces = [0, 1, 2].into_iter().flat_map(|axis| {
             let [u, v] = [1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3)];
-            [0, 1 << axis].into_iter().flat_map(move |o| [[o, o + u, o + v], [o + u, o + v, o + u + v]])
+            // The lower face is seen from below.
+            [(0, v, u), (1 << axis, u, v)]
+                .into_iter()
+                .flat_map(|(o, u, v)| [[o, o + u, o + v], [o + u, o + u + v, o + v]])
         });
         (corners.collect(), faces.collect())
     }
@@ -159,7 +162,17 @@ mod tests {
             assert!(inside(&points, &faces).radius <= 0.5 * size.min_element(), "{size}");
             assert!((around(&points).radius - 0.5 * size.length()).abs() < 0.01, "{size}");
         }
-        let (points, _) = block(DVec3::ONE);
+        let (points, faces) = block(DVec3::ONE);
         assert_eq!(inside(&points, &[]).radius, 0.0);
+        assert!(inside(&points, &faces).radius > 0.49);
+        let turned: Vec<[u32; 3]> = faces.iter().map(|&[i, j, k]| [i, k, j]).collect();
+        assert_eq!(inside(&points, &turned).radius, 0.0);
+        // Triangles anywhere, whose mean is rounded to one side of them or the other.
+        let mut rng = seeded(32);
+        for _ in 0..1000 {
+            let far = 10f64.powi(rng.random_range(-3..6)) * in_cube(&mut rng);
+            let corners: Vec<DVec3> = (0..3).map(|_| far + in_cube(&mut rng)).collect();
+            assert_eq!(inside(&corners, &[[0, 1, 2], [0, 2, 1]]).radius, 0.0, "{corners:?}");
+        }
     }
 }

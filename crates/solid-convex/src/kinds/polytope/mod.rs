@@ -76,8 +76,8 @@ impl Polytope {
         self.points.capacity() * size_of::<DVec3>() + self.rows.bytes() + map
     }
 
-    /// The same, where the faces of the hull are known: the triangles `faces` of its points, which close it. Many pairs that are deep in
-    /// each other are then found without a search. Of faces that leave a hole, the answers may be wrong. Cost: O(n).
+    /// The same, where the faces of the hull are known: the triangles `faces` of its points, which close it, counter-clockwise seen from outside. Many
+    /// pairs that are deep in each other are then found without a search. Of faces that leave a hole, the answers may be wrong. Cost: O(n).
     ///
     /// # Panics
     /// If a face names a point that there is not.
