@@ -21,7 +21,7 @@ pub fn shapes() -> Vec<Box<dyn Support>> {
 pub fn octahedron_faces() -> Vec<[u32; 3]> {
     let face = |i: u32| {
         let [x, y, z] = [i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2)];
-        if i.count_ones() % 2 == 0 { [x, y, z] } else { [x, z, y] }
+        if i.count_ones().is_multiple_of(2) { [x, y, z] } else { [x, z, y] }
     };
     (0..8).map(face).collect()
 }
