@@ -13,7 +13,7 @@ use crate::rays::vector;
 pub const FPS_DEFAULT: f64 = 30.0;
 
 /// Pairs whose boxes overlap when nothing else is asked for.
-pub const PAIRS_MAX_DEFAULT: u64 = 2_000_000;
+const PAIRS_MAX_DEFAULT: u64 = 2_000_000;
 
 const EXIT_STATUS: &str = "\
 Exit status:

@@ -16,7 +16,7 @@ pub struct Crowd {
     /// By how much boxes are grown for clearances.
     margin: f64,
     tested: Motion,
-    /// The boxes of the previous frame.
+    /// The boxes of the previous frame, where the way from there is tested.
     before: Vec<Aabb>,
     /// Boxes of which no more pairs overlap than may: while each object is within its own, nothing is counted.
     room: Vec<Aabb>,
@@ -33,12 +33,11 @@ impl Crowd {
         if pairs_of(stage.len()) <= self.pairs_max {
             return Ok(());
         }
-        let now: Vec<Aabb> = stage.bounds().map(|bounds| bounds.inflated(self.margin)).collect();
-        let mut boxes = now.clone();
+        let mut boxes: Vec<Aabb> = stage.bounds().map(|bounds| bounds.inflated(self.margin)).collect();
         if self.tested == Motion::Swept {
-            boxes.iter_mut().zip(&self.before).for_each(|(bounds, before)| *bounds = bounds.union(before));
+            let before = std::mem::replace(&mut self.before, boxes.clone());
+            boxes.iter_mut().zip(&before).for_each(|(bounds, before)| *bounds = bounds.union(before));
         }
-        self.before = now;
         if !self.admits(boxes) {
             bail!(
                 "at {} s the boxes of more than {} pairs of objects overlap, each of which would take a kilobyte of memory or more: are \

@@ -3,7 +3,6 @@
 
 use glam::DVec3;
 
-use super::super::points::mean;
 use crate::gjk::Ball;
 use crate::unit_scale;
 
@@ -14,10 +13,10 @@ const SHRINK: f64 = 0.8;
 /// The first step, beside the radius of the ball around the mean: all together are as long as that.
 const FIRST_STEP: f64 = 0.2;
 
-/// A ball around points, of which there are some. Cost: O(n).
-pub(super) fn around(points: &[DVec3]) -> Ball {
+/// A ball around points, of which there are some, with their mean. Cost: O(n).
+pub(super) fn around(points: &[DVec3], mean: DVec3) -> Ball {
     let ball = |center| Ball { center, radius: farthest(points, center) };
-    let first = ball(mean(points.iter().copied()));
+    let first = ball(mean);
     let center = least(first, |center| {
         let way = points.iter().map(|&p| center - p).fold(DVec3::ZERO, |most, way| {
             if way.length_squared() > most.length_squared() { way } else { most }
@@ -28,10 +27,9 @@ pub(super) fn around(points: &[DVec3]) -> Ball {
     if found.radius < first.radius { found } else { first }
 }
 
-/// A ball in the hull of points, of which the triangles `faces` are the surface, counter-clockwise seen from outside; of radius 0 where it is flat,
-/// or no face is known. Cost: O(n).
-pub(super) fn inside(points: &[DVec3], faces: &[[u32; 3]]) -> Ball {
-    let center = mean(points.iter().copied());
+/// A ball in the hull of points, with their mean, of which the triangles `faces` are the surface, counter-clockwise seen from outside; of radius 0
+/// where it is flat, or no face is known. Cost: O(n).
+pub(super) fn inside(points: &[DVec3], mean: DVec3, faces: &[[u32; 3]]) -> Ball {
     let planes: Vec<Plane> = faces.iter().map(|face| Plane::of(face.map(|i| points[i as usize]))).collect();
     let lowest = |point: DVec3| {
         planes.iter().fold((f64::INFINITY, DVec3::ZERO), |lowest, plane| {
@@ -40,11 +38,11 @@ pub(super) fn inside(points: &[DVec3], faces: &[[u32; 3]]) -> Ball {
         })
     };
     let ball = |center| Ball { center, radius: lowest(center).0 };
-    let first = ball(center);
+    let first = ball(mean);
     if !(first.radius > 0.0 && first.radius.is_finite()) {
         return Ball { radius: 0.0, ..first };
     }
-    let wide = Ball { radius: farthest(points, center), ..first };
+    let wide = Ball { radius: farthest(points, mean), ..first };
     let found = ball(least(wide, |center| {
         let (height, inward) = lowest(center);
         (-height, -inward)
@@ -115,7 +113,16 @@ mod tests {
     use rand::Rng;
     use solid_oracle::generate::{in_cube, seeded};
 
+    use super::super::super::points::mean;
     use super::*;
+
+    fn around(points: &[DVec3]) -> Ball {
+        super::around(points, mean(points.iter().copied()))
+    }
+
+    fn inside(points: &[DVec3], faces: &[[u32; 3]]) -> Ball {
+        super::inside(points, mean(points.iter().copied()), faces)
+    }
 
     /// The corners of a box from 0 to some sizes, and its faces.
     fn block(size: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {

@@ -59,7 +59,7 @@ impl Polytope {
         let (reach, center) = (reach(points.iter().copied()), mean(points.iter().copied()));
         let farthest = balls::farthest(&points, DVec3::ZERO);
         let map = (points.len() > SCAN_MAX).then(|| DirectionMap::new(&points, reach)).flatten();
-        let balls = Balls { inner: Ball { center, radius: 0.0 }, outer: balls::around(&points) };
+        let balls = Balls { inner: Ball { center, radius: 0.0 }, outer: balls::around(&points, center) };
         Some(Polytope { points, rows, map, reach, center, farthest, balls, sure_radii: balls.sure_radii() })
     }
 
@@ -91,7 +91,7 @@ impl Polytope {
     /// assert!((0.2..0.2114).contains(&radius));
     /// ```
     pub fn with_faces(mut self, faces: &[[u32; 3]]) -> Self {
-        self.balls.inner = balls::inside(&self.points, faces);
+        self.balls.inner = balls::inside(&self.points, self.center, faces);
         self.sure_radii = self.balls.sure_radii();
         self
     }
