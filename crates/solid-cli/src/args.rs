@@ -192,7 +192,7 @@ pub struct CheckArgs {
     pub continuous: bool,
 
     /// Stop where the boxes of more pairs of objects overlap than this: each pair takes a kilobyte of memory or more
-    #[arg(long, value_name = "N", default_value_t = PAIRS_MAX_DEFAULT)]
+    #[arg(long, value_name = "N", default_value_t = PAIRS_MAX_DEFAULT, value_parser = pairs, allow_negative_numbers = true)]
     pub max_pairs: u64,
 
     /// Write every frame and collision as JSON; `-` is standard output
@@ -246,6 +246,10 @@ fn clearance(text: &str) -> Result<f64, String> {
     number(text, |x| (0.0..=MAGNITUDE_MAX).contains(&x), "a length from 0 to 1e100")
 }
 
+fn pairs(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
+}
+
 fn seconds(text: &str) -> Result<f64, String> {
     number(text, |x| x >= 0.0, "a finite number of seconds, at least 0")
 }
@@ -278,6 +282,10 @@ mod tests {
             assert!(seconds(text).is_err(), "{text}");
         }
         assert_eq!(seconds("0"), Ok(0.0));
+        for text in ["-1", "1e6", "0.5", "18446744073709551616"] {
+            assert!(pairs(text).is_err(), "{text}");
+        }
+        assert_eq!(pairs("0"), Ok(0));
         for text in ["-0.1", "nan", "inf", "1e101", "5cm"] {
             assert!(clearance(text).is_err(), "{text}");
         }
