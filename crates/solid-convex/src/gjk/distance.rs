@@ -17,7 +17,7 @@ pub struct Closest {
     /// Their distance; 0 when the objects intersect or touch. World units.
     pub distance: f64,
     /// The closest points; a common point when the distance is 0. Each is in its object, and they are as far apart as the distance, to
-    /// within [`TOUCHING_ERROR`] of the size of the data; of needles and plates thin to 10^-9, a hundred times that.
+    /// within [`TOUCHING_ERROR`] of the size of the data.
     pub points: Witness,
 }
 
@@ -307,40 +307,47 @@ where
         *place = *p;
         len += 1;
     }
-    Ok(Measured { closest: Closest::of(&descent, difference), v: descent.v, points, len })
+    let (closest, v) = Closest::of(&descent, difference);
+    Ok(Measured { closest, v, points, len })
 }
 
 impl Closest {
-    /// What a descent for the distance found.
-    pub(super) fn of<A, B>(descent: &Descent, difference: &Difference<A, B>) -> Closest
+    /// What a descent for the distance found, with the vector from the point of `B` to that of `A`, in the difference's unit.
+    pub(super) fn of<A, B>(descent: &Descent, difference: &Difference<A, B>) -> (Closest, DVec3)
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
         let points = Witness::of(&descent.simplex);
         match descent.end {
-            End::Separated => Closest {
-                distance: descent.v.length() / difference.scale(),
-                points: apart_by(descent.v, points, difference),
-            },
-            End::Undecided | End::Inside => Closest { distance: 0.0, points },
+            End::Separated => {
+                let (v, points) = apart_by(descent.v, points, difference);
+                (Closest { distance: v.length() / difference.scale(), points }, v)
+            }
+            End::Undecided | End::Inside => (Closest { distance: 0.0, points }, descent.v),
         }
     }
 }
 
-/// Points of two objects that are apart by `v`, the closest: those of the simplex, unless it only is on the plane of the closest point and
-/// does not reach it, as a sliver on what is round may be. Then they are common points, once `B` is moved by `v`.
-fn apart_by<A, B>(v: DVec3, of_simplex: Witness, difference: &Difference<A, B>) -> Witness
+/// Points of two objects that are apart by `v`, the closest, and the way between them: those of the simplex, unless it only is on the plane of
+/// the closest point and does not reach it, as a sliver on what is round may be. Then they are these or common points once `B` is moved by
+/// `v`, whichever are nearer to each other; and where they are as near as `v` says, in another direction, the way is theirs.
+fn apart_by<A, B>(v: DVec3, of_simplex: Witness, difference: &Difference<A, B>) -> (DVec3, Witness)
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let off = |points: &Witness| (difference.point(points.on_a, points.on_b).w - v).length_squared();
-    if off(&of_simplex) <= SUPPORT_ERROR * SUPPORT_ERROR {
-        return of_simplex;
+    let way = |points: &Witness| difference.point(points.on_a, points.on_b).w;
+    let mut found = (way(&of_simplex), of_simplex);
+    if (found.0 - v).length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
+        return (v, of_simplex);
     }
     let common = Witness::of(&descend_robustly(&difference.moved(v), Goal::Separation).simplex);
-    if off(&common) < off(&of_simplex) { common } else { of_simplex }
+    if way(&common).length_squared() < found.0.length_squared() {
+        found = (way(&common), common);
+    }
+    let (way, points) = found;
+    (if way.length() <= v.length() + SUPPORT_ERROR { way } else { v }, points)
 }
 
 /// The closest points of objects of which at least one is rounded, with the vector between those of their cores, by which they are found: it takes a
