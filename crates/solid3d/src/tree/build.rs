@@ -1,8 +1,7 @@
-//! The eight-wide build: the set with the greatest measure is split until there are eight.
+//! The build: sets are cut in two until they are leaves, and of the binary tree `collapse` makes eight-wide nodes.
 //!
 //! Of many primitives the upper splits are those of `clusters`: only what is below a few of these is gathered, and split while it is at hand.
-//! On several threads the sets of large nodes are built apart, and their nodes put together in the order that one thread would have made
-//! them in.
+//! The halves of large sets are cut apart, on several threads where there are some.
 
 use std::sync::Mutex;
 
@@ -11,23 +10,24 @@ use fearless_simd::Simd;
 use rayon::prelude::*;
 use solid_convex::simd::dispatch;
 
+use super::Tree;
 use super::clusters::{Clusters, JointIndex};
-use super::cost::{Measured, measure, sum};
-use super::node::{Child, LEAF_SIZE, Node, PRIMITIVES_MAX, WIDTH};
+use super::collapse::Binary;
+use super::cost::{Measured, sum};
+use super::node::{Node, PRIMITIVES_MAX};
 use super::normal::{COORDINATE_MAX, Normal};
 use super::packed::PackedBox;
 use super::split::{Item, Set, Spare};
-use super::{Place, Tree};
 use crate::Aabb;
+use crate::threads::both;
 use glam::DVec3;
 
-/// From this depth on, sets are split evenly: a heuristic that peels off one primitive at a time ends here.
-/// A torus of a million triangles has depth 7, the worst set of boxes in the tests 11.
-const HEURISTIC_DEPTH_MAX: u32 = 16;
+/// From this depth of the binary tree on, sets are split evenly: a heuristic that peels off one primitive at a time ends here.
+const HEURISTIC_DEPTH_MAX: u32 = 48;
 
-/// No tree is deeper, in nodes: below depth 16, where the heuristic ends, each level halves the number of
-/// primitives thrice, up to a leaf, and 8^10 > 2^28.
-pub const DEPTH_MAX: u32 = HEURISTIC_DEPTH_MAX + 10;
+/// No tree is deeper, in nodes, since none has more than one at each depth of the binary tree: below that at which the heuristic ends, each
+/// level halves the number of primitives, up to a leaf, and 8 * 2^26 > 2^28.
+pub const DEPTH_MAX: u32 = HEURISTIC_DEPTH_MAX + 26;
 
 impl Tree {
     /// Builds a tree over primitives `0..boxes.len()`, `O(n log n)`.
@@ -73,7 +73,8 @@ impl Tree {
             #[inline(always)]
             |i| normal.pack(&box_of(i)),
         );
-        let (mut nodes, order) = builder.build(count);
+        let (binary, order) = builder.build(count);
+        let mut nodes = binary.nodes();
         nodes.shrink_to_fit();
         let measured = Measured { bounds, sum: sum(&nodes) };
         let root = nodes[0].union();
@@ -110,7 +111,7 @@ fn bounds_of(count: usize, box_of: &(impl Fn(u32) -> Aabb + Sync)) -> Aabb {
     };
     let count = count as u32;
     #[cfg(feature = "rayon")]
-    let sum = if crate::threads::share(count as usize, PARALLEL_MIN) {
+    let sum = if crate::threads::share(count as usize, MANY) {
         /// Primitives of which the box is found in one piece.
         const PART: u32 = 1 << 12;
         let parts = (0..count.div_ceil(PART)).into_par_iter();
@@ -136,15 +137,8 @@ pub(super) fn proper(bounds: &Aabb) -> &Aabb {
     bounds
 }
 
-/// Sets of at least so many primitives are worth another thread.
-#[cfg(feature = "rayon")]
-const PARALLEL_MIN: usize = 1 << 13;
-
-/// Fewer than a node has below it, on average: some 23 of a torus.
-const PRIMITIVES_PER_NODE: usize = 20;
-
-/// Joints of fewer primitives are gathered, which are then at hand for what is below: some 300 kB.
-const GATHERED_MAX: usize = 1 << 13;
+/// Sets of at least so many primitives are worth another thread. Fewer are gathered before they are cut, some 300 kB, which are then at hand.
+pub(super) const MANY: usize = 1 << 13;
 
 /// A set that may be a joint of clusters.
 #[derive(Clone, Copy)]
@@ -153,15 +147,7 @@ struct Part {
     joint: Option<JointIndex>,
 }
 
-/// A node to be made.
-struct Task {
-    part: Part,
-    /// Where the node will hang.
-    place: Place,
-    depth: u32,
-}
-
-/// Makes nodes of primitives of which `pack` gives the boxes.
+/// Makes a binary tree of primitives of which `pack` gives the boxes.
 struct Builder<F> {
     clusters: Clusters,
     pack: F,
@@ -177,9 +163,6 @@ struct Room {
     spare: Spare,
 }
 
-/// The parts of a node, and how many they are.
-type Eight = ([Part; WIDTH], usize);
-
 impl<F: Fn(u32) -> PackedBox + Sync> Builder<F> {
     /// For primitives `0..count`, in a box `root`.
     fn new(count: usize, heuristic_depth: u32, root: &PackedBox, pack: F) -> Self {
@@ -191,35 +174,31 @@ impl<F: Fn(u32) -> PackedBox + Sync> Builder<F> {
         }
     }
 
-    /// The nodes of all, and the order of the primitives.
-    fn build(&self, count: usize) -> (Vec<Node>, Vec<u32>) {
+    /// The binary tree of all, and the order of the primitives.
+    fn build(&self, count: usize) -> (Binary, Vec<u32>) {
         let (joint, set) = self.clusters.root();
-        let (mut nodes, mut order) = (Vec::new(), vec![0; count]);
-        self.joint(&mut nodes, &mut order, &Part { set, joint: Some(joint) }, 0);
-        (nodes, order)
+        let mut order = vec![0; count];
+        let tree = self.joint(&mut order, &Part { set, joint: Some(joint) }, 0);
+        (tree, order)
     }
 
-    /// Adds the nodes of a joint, and gives its primitives their order. It goes as deep as there are large sets: [`DEPTH_MAX`] bounds it.
-    fn joint(&self, nodes: &mut Vec<Node>, order: &mut [u32], part: &Part, depth: u32) {
-        if part.set.len >= GATHERED_MAX
-            && let Some(parts) = self.eight(part, depth, |part| self.below(part, depth))
+    /// The tree of a joint, whose primitives it gives their order. It goes as deep as there are large sets: [`DEPTH_MAX`] bounds it.
+    fn joint(&self, order: &mut [u32], part: &Part, depth: u32) -> Binary {
+        if part.set.len >= MANY
+            && let Some(halves) = self.below(part, depth)
         {
-            let below = |nodes: &mut Vec<Node>, order: &mut [u32], part: &Part| {
-                self.joint(nodes, order, part, depth + 1);
-            };
-            return share_out(nodes, order, parts, below);
+            return apart(order, part, halves, |order, part| self.joint(order, part, depth + 1));
         }
         let rooms = || self.rooms.lock().expect("nobody panics who holds it");
         let mut room = rooms().pop().unwrap_or_default();
         let Room { items, spare } = &mut room;
         let items = self.gather(&part.set, items);
-        if is_inner(part) || depth == 0 {
-            self.subtree(nodes, items, part, depth, spare);
-        }
+        let tree = self.gathered(items, part, depth, spare);
         for (to, item) in order.iter_mut().zip(items) {
             *to = item.index;
         }
         rooms().push(room);
+        tree
     }
 
     /// The items of a joint's set.
@@ -241,97 +220,28 @@ impl<F: Fn(u32) -> PackedBox + Sync> Builder<F> {
         items
     }
 
-    /// Adds the nodes of a set, of which these are the items.
-    fn subtree(&self, nodes: &mut Vec<Node>, items: &mut [Item], part: &Part, depth: u32, spare: &mut Spare) {
-        #[cfg(feature = "rayon")]
-        if crate::threads::share(items.len(), PARALLEL_MIN) {
-            let parts = dispatch!(simd => self.eight_of(simd, part, items, part.set.start, depth, spare));
-            let below = |nodes: &mut Vec<Node>, items: &mut [Item], part: &Part| {
-                if is_inner(part) {
-                    self.subtree(nodes, items, part, depth + 1, &mut Spare::default());
-                }
-            };
-            return share_out(nodes, items, parts, below);
+    /// The tree of a set, of which these are the items; as deep as the one before.
+    fn gathered(&self, items: &mut [Item], part: &Part, depth: u32, spare: &mut Spare) -> Binary {
+        if items.len() >= MANY {
+            let halves = dispatch!(simd => self.split(simd, part, items, depth, spare));
+            return apart(items, part, halves, |items, part| {
+                self.gathered(items, part, depth + 1, &mut Spare::default())
+            });
         }
-        nodes.reserve(items.len() / PRIMITIVES_PER_NODE);
-        dispatch!(simd => self.subtree_on_one(simd, nodes, items, part, depth, spare))
-    }
-
-    /// Depth first, each node after its parent.
-    #[inline(always)]
-    fn subtree_on_one<S: Simd>(
-        &self,
-        simd: S,
-        nodes: &mut Vec<Node>,
-        items: &mut [Item],
-        part: &Part,
-        depth: u32,
-        spare: &mut Spare,
-    ) {
         let base = part.set.start;
-        let mut tasks = vec![Task { part: *part, place: Place::ROOT, depth }];
-        while let Some(task) = tasks.pop() {
-            let index = nodes.len();
-            if let Some((parent, lane)) = task.place.split() {
-                nodes[parent].child[lane] = Child::inner(index);
-            }
-            let (parts, count) = self.eight_of(simd, &task.part, items, base, task.depth, spare);
-            nodes.push(node_of(&parts[..count]));
-            for (lane, part) in parts[..count].iter().enumerate().rev().filter(|(_, part)| is_inner(part)) {
-                tasks.push(Task { part: *part, place: Place::lane(index, lane), depth: task.depth + 1 });
-            }
-        }
-    }
-
-    /// Splits a set into up to eight; `items` begin at `base` in the array of all.
-    #[inline(always)]
-    fn eight_of<S: Simd>(
-        &self,
-        simd: S,
-        part: &Part,
-        items: &mut [Item],
-        base: usize,
-        depth: u32,
-        spare: &mut Spare,
-    ) -> Eight {
-        let parts = self.eight(
-            part,
-            depth,
+        dispatch!(simd => Binary::cut(
+            *part,
             #[inline(always)]
-            |part| {
-                let items = &mut items[part.set.start - base..][..part.set.len];
-                Some(self.split(simd, part, items, depth, spare))
+            |part| part.set,
+            #[inline(always)]
+            |part, below| {
+                self.split(simd, part, &mut items[part.set.start - base..][..part.set.len], depth + below, spare)
             },
-        );
-        parts.expect("each is split")
+        ))
     }
 
     fn evenly(&self, depth: u32) -> bool {
         depth >= self.heuristic_depth
-    }
-
-    /// Splits a set into up to eight; nothing where one is not split that should be.
-    #[inline(always)]
-    fn eight(
-        &self,
-        part: &Part,
-        depth: u32,
-        mut split: impl FnMut(&Part) -> Option<[Part; 2]>,
-    ) -> Option<Eight> {
-        // Sets of one measure, as of identical boxes, are split by number.
-        let key =
-            |part: &Part| (if self.evenly(depth) { 0.0 } else { measure(&part.set.bounds) }, part.set.len);
-        let mut parts = [*part; WIDTH];
-        let mut count = 1;
-        while count < WIDTH {
-            let large = (0..count).filter(|&i| is_inner(&parts[i]));
-            let Some(i) = large.reduce(|a, b| if key(&parts[b]) > key(&parts[a]) { b } else { a }) else {
-                break;
-            };
-            [parts[i], parts[count]] = split(&parts[i])?;
-            count += 1;
-        }
-        Some((parts, count))
     }
 
     #[inline(always)]
@@ -363,73 +273,18 @@ impl<F: Fn(u32) -> PackedBox + Sync> Builder<F> {
     }
 }
 
-/// Adds the node of some parts, and what `below` adds for each of them, given those of `items` that are its own: the node has them all. With
-/// the feature `rayon` on the threads of the current pool, if there are many.
-fn share_out<T: Send>(
-    nodes: &mut Vec<Node>,
+/// The tree of a set from those of its halves, which `below` makes, given those of `items` that are theirs: on two threads, where there are.
+fn apart<T: Send>(
     items: &mut [T],
-    (parts, count): Eight,
-    below: impl Fn(&mut Vec<Node>, &mut [T], &Part) + Sync,
-) {
-    #[cfg(feature = "rayon")]
-    let share = crate::threads::share(items.len(), PARALLEL_MIN);
-    let mut lanes: Vec<usize> = (0..count).collect();
-    lanes.sort_unstable_by_key(|&lane| parts[lane].set.start);
-    let mut shares: [&mut [T]; WIDTH] = Default::default();
-    let mut rest = items;
-    for lane in lanes {
-        (shares[lane], rest) = rest.split_at_mut(parts[lane].set.len);
-    }
-    #[cfg(feature = "rayon")]
-    if share {
-        assert!(nodes.is_empty(), "what is above a node that is shared was shared too");
-        let subtree = |(part, items): (&Part, &mut &mut [T])| {
-            let mut nodes = Vec::new();
-            below(&mut nodes, items, part);
-            nodes
-        };
-        let subtrees: Vec<Vec<Node>> = parts[..count].par_iter().zip(&mut shares).map(subtree).collect();
-        let (mut node, mut index) = (node_of(&parts[..count]), 1);
-        for (lane, subtree) in subtrees.iter().enumerate().filter(|(_, nodes)| !nodes.is_empty()) {
-            node.child[lane] = Child::inner(index);
-            index += subtree.len();
-        }
-        nodes.reserve_exact(index);
-        nodes.push(node);
-        for subtree in subtrees {
-            let first = nodes.len();
-            nodes.extend(subtree.into_iter().map(|mut node| {
-                node.child = node.child.map(|child| child.after(first));
-                node
-            }));
-        }
-        return;
-    }
-    let index = nodes.len();
-    nodes.push(node_of(&parts[..count]));
-    for (lane, items) in shares[..count].iter_mut().enumerate() {
-        if is_inner(&parts[lane]) {
-            nodes[index].child[lane] = Child::inner(nodes.len());
-        }
-        below(nodes, items, &parts[lane]);
-    }
-}
-
-/// Whether a set is too large for a leaf.
-fn is_inner(part: &Part) -> bool {
-    part.set.len > LEAF_SIZE
-}
-
-/// The node of some sets, with its leaves.
-fn node_of(parts: &[Part]) -> Node {
-    let mut node = Node::EMPTY;
-    for (lane, Part { set, .. }) in parts.iter().enumerate() {
-        node.set_lane(lane, &set.bounds);
-        if set.len <= LEAF_SIZE {
-            node.child[lane] = Child::leaf(set.start..set.start + set.len);
-        }
-    }
-    node
+    part: &Part,
+    halves: [Part; 2],
+    below: impl Fn(&mut [T], &Part) -> Binary + Sync,
+) -> Binary {
+    let (of_first, of_second) = items.split_at_mut(halves[0].set.len);
+    let (mut first, mut second) = (None, None);
+    both(true, || first = Some(below(of_first, &halves[0])), || second = Some(below(of_second, &halves[1])));
+    let [first, second] = [first, second].map(|tree| tree.expect("both were made"));
+    Binary::join(&part.set, [first, second])
 }
 
 const _: () = assert!(size_of::<Node>() == 224);

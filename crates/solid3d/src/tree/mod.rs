@@ -15,7 +15,8 @@
 //! | `packed` | one box of `f32` |
 //! | `normal` | tree coordinates and the outward rounding |
 //! | `node` | the eight-wide node and its child words |
-//! | `split`, `clusters`, `build` | binned surface-area heuristic, first on cells of a grid, and the eight-wide build |
+//! | `split`, `clusters`, `build` | a binary tree by the binned surface-area heuristic, first on cells of a grid |
+//! | `collapse` | which of its sets become nodes |
 //! | `refit`, `leaf_points`, `cost` | boxes anew in the same topology, what they are around, and when that no longer pays |
 //! | `leaf_images` | the triangles of each leaf, coarsely, side by side: what is looked at before they are |
 //! | `validate` | the invariants |
@@ -44,6 +45,7 @@ mod broods;
 mod build;
 mod cast_pairs;
 mod clusters;
+mod collapse;
 mod cost;
 mod crossing;
 mod eights;
