@@ -32,7 +32,7 @@ pub(super) struct Branch {
     bounds: PackedBox,
     start: u32,
     len: u32,
-    /// The first of its halves, which the second follows; 0 where they are none of the same array.
+    /// The first of its halves, which the second follows; 0 for a leaf, and where they stand apart.
     below: u32,
     costs: Costs,
 }
@@ -89,7 +89,7 @@ fn least([first, second]: [&Costs; 2], lanes: usize) -> (f32, usize) {
 }
 
 impl Binary {
-    /// Cuts a set until all are leaves: `halves` cuts one in two. Depth first.
+    /// Cuts a set until all are leaves: `halve` cuts one in two, so deep below the first.
     #[inline(always)]
     pub fn cut<P: Copy>(
         root: P,
@@ -156,6 +156,7 @@ impl<'t> At<'t> {
         lanes
     }
 
+    /// The nodes of this set, depth first.
     fn nodes(self) -> Vec<Node> {
         #[cfg(feature = "rayon")]
         if crate::threads::share(self.branch().len as usize, MANY) {
