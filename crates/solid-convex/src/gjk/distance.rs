@@ -338,15 +338,17 @@ where
     B: Support + ?Sized,
 {
     let way = |points: &Witness| difference.point(points.on_a, points.on_b).w;
-    let mut found = (way(&of_simplex), of_simplex);
-    if (found.0 - v).length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
+    let way_of_simplex = way(&of_simplex);
+    if (way_of_simplex - v).length_squared() <= SUPPORT_ERROR * SUPPORT_ERROR {
         return (v, of_simplex);
     }
     let common = Witness::of(&descend_robustly(&difference.moved(v), Goal::Separation).simplex);
-    if way(&common).length_squared() < found.0.length_squared() {
-        found = (way(&common), common);
-    }
-    let (way, points) = found;
+    let way_of_common = way(&common);
+    let (way, points) = if way_of_common.length_squared() < way_of_simplex.length_squared() {
+        (way_of_common, common)
+    } else {
+        (way_of_simplex, of_simplex)
+    };
     (if way.length() <= v.length() + SUPPORT_ERROR { way } else { v }, points)
 }
 

@@ -99,8 +99,8 @@ fn where_the_heuristic_ends_the_split_is_even() {
         for heuristic_depth in [0, 1] {
             let tree = Tree::build_with(&boxes, heuristic_depth);
             tree.validate(&boxes);
-            // No deeper than the binary tree: 20,000 < 8 * 2^12.
-            assert!(tree.depth() <= heuristic_depth + 12, "{name}: depth {}", tree.depth());
+            // Nodes are chosen to cost the least, not to be shallow: they are 4 to 8 deep, where the binary tree is 12.
+            assert!(tree.depth() <= heuristic_depth + 8, "{name}: depth {}", tree.depth());
         }
     }
 }
