@@ -9,7 +9,8 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 use solid_convex::{Closest, Penetration, Support, Witness, gjk, unit_scale};
 
-use super::depth::{Deepest, of_common};
+use super::deepest::Deepest;
+use super::depth::of_common;
 use super::table::{PlacedConvex, axis, closest, closest_within, penetration};
 use super::{Placed, Scratch, meeting_primitives};
 use crate::shape::Class;
@@ -38,7 +39,10 @@ pub(crate) fn approach(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scra
         }
         Some((nearest, _)) if nearest.distance == 0.0 && !solid => {
             let mut deepest = Deepest::default();
-            pairs.iter().for_each(|&pair| deepest.take(pair, with_primitives(before, pair, of_common)));
+            for &pair in &pairs {
+                let found = with_primitives(before, pair, of_common);
+                deepest.take(pair, found.depth, found);
+            }
             deep(deepest.found().expect("there is a pair"))
         }
         _ => as_they_are(before, scratch),
@@ -119,7 +123,7 @@ fn is_solid(placed: &Placed) -> bool {
 }
 
 /// Calls a function with a primitive of each shape; a convex shape is its only one.
-fn with_primitives<T>(
+pub(super) fn with_primitives<T>(
     [a, b]: [Placed; 2],
     [i, j]: [u32; 2],
     ask: impl FnOnce(PlacedConvex, PlacedConvex) -> T,

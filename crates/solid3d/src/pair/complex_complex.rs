@@ -10,7 +10,7 @@ use solid_convex::{Closest, Witness, gjk};
 use super::containment::{PlacedSolid, part_inside};
 use super::crossing_point::{crossing_point, weighted};
 use super::frame::Frame;
-use super::leaf_pair::{LeafTest, transposed};
+use super::leaf_pair::{LeafTest, MeetingLeaves, transposed};
 use super::row::{CONFIRMED, Near, Rows, distances, exceed};
 use super::scratch::PlacedPrimitive;
 use super::table::PlacedComplex;
@@ -18,23 +18,23 @@ use super::triangle_triangle::Triangle;
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
 use crate::shape::Complex;
-use crate::tree::{Facing, LEAF_SIZE, LeafPairs, NearLeafPairs, bits, nearest_pairs_on, pairs_on};
+use crate::tree::{Facing, LeafPairs, NearLeafPairs, bits, nearest_pairs_on, pairs_on};
 
 /// Whether they intersect: as [`intersection`] says.
 pub(super) fn intersects(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> bool {
-    let mut found = |_, _| ControlFlow::Break(());
-    meeting_pairs_in(&frame(a, b), a, b, true, scratch, &mut found).is_break()
+    let mut found = |_: &MeetingLeaves| ControlFlow::Break(());
+    meeting_leaves(&frame(a, b), a, b, true, scratch, &mut found).is_break()
         || contained(a, b, scratch).is_some()
 }
 
 pub(super) fn intersection(a: PlacedComplex, b: PlacedComplex, scratch: &mut Scratch) -> Relation {
     let mut first = None;
-    let mut found = |i, j| {
-        first = Some((i, j));
+    let mut found = |leaves: &MeetingLeaves| {
+        first = leaves.pairs().next();
         ControlFlow::Break(())
     };
     let frame = frame(a, b);
-    let _ = meeting_pairs_in(&frame, a, b, true, scratch, &mut found);
+    let _ = meeting_leaves(&frame, a, b, true, scratch, &mut found);
     match first {
         Some((i, j)) => Relation::Common(common_point(a, i, b, j, &frame.common)),
         None => contained(a, b, scratch).map_or(Relation::Separated { axis: None }, Relation::Common),
@@ -49,16 +49,18 @@ pub(super) fn meeting_pairs(
     scratch: &mut Scratch,
     found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    meeting_pairs_in(&frame(a, b), a, b, false, scratch, found)
+    let mut found = |leaves: &MeetingLeaves| leaves.pairs().try_for_each(|(i, j)| found(i, j));
+    meeting_leaves(&frame(a, b), a, b, false, scratch, &mut found)
 }
 
-fn meeting_pairs_in(
+/// The same by pairs of leaves in which some meet. `wants_first`: the first pair of primitives is all that is wanted of each.
+pub(super) fn meeting_leaves(
     frame: &Frame,
     a: PlacedComplex,
     b: PlacedComplex,
     wants_first: bool,
     scratch: &mut Scratch,
-    found: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
+    found: &mut dyn FnMut(&MeetingLeaves) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     let (relative, common) = (dispatch!(_simd => frame.relative()), &frame.common);
@@ -76,7 +78,7 @@ struct Meeting<'s> {
     wants_first: bool,
     rows: &'s mut [Rows; 2],
     primitive_tests: &'s mut u64,
-    found: &'s mut dyn FnMut(u32, u32) -> ControlFlow<()>,
+    found: &'s mut dyn FnMut(&MeetingLeaves) -> ControlFlow<()>,
 }
 
 impl LeafPairs<()> for Meeting<'_> {
@@ -114,12 +116,10 @@ impl LeafPairs<()> for Meeting<'_> {
             LeafTest { a: self.a, b: self.b, swapped: swapped != turned, wants_first: self.wants_first };
         let meeting = test.meeting(simd, tested, against, self.primitive_tests);
         let meeting = if turned { transposed(meeting) } else { meeting };
-        for place in bits(meeting) {
-            let (one, other) = (ones.primitive(place / LEAF_SIZE), others.primitive(place % LEAF_SIZE));
-            let (one, other) = if swapped { (other, one) } else { (one, other) };
-            (self.found)(one, other)?;
+        if meeting == 0 {
+            return ControlFlow::Continue(());
         }
-        ControlFlow::Continue(())
+        (self.found)(&MeetingLeaves { ones, others, swapped, meeting })
     }
 }
 
@@ -259,7 +259,7 @@ impl NearLeafPairs for Approach<'_> {
     }
 }
 
-fn frame(a: PlacedComplex, b: PlacedComplex) -> Frame {
+pub(super) fn frame(a: PlacedComplex, b: PlacedComplex) -> Frame {
     dispatch!(_simd => Frame::new(a.1, a.0.reach(), b.1, b.0.reach()))
 }
 

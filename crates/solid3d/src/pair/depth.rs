@@ -4,11 +4,10 @@
 //! touching is well defined. A surface has no inside to leave; the answer is that for the deepest pair of primitives. A
 //! solid mesh counts as its convex hull, which is the same body when it is convex, and contains it when it is not.
 
-use std::ops::ControlFlow;
-
 use glam::DVec3;
 use solid_convex::{Outcome, Penetration, epa, gjk};
 
+use super::deepest::{deepest_pair, deepest_primitive};
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Mirror, Relation, Scratch, complex_complex, complex_convex};
 
@@ -28,12 +27,7 @@ pub(super) fn complex_convex(
             Relation::Common(_) => Some(of_common((&a.0.hull(), a.1), b)),
         };
     }
-    let mut deepest = Deepest::default();
-    let _ = complex_convex::meeting_primitives(a, b, scratch, &mut |i, _| {
-        deepest.take([i, 0], of_common((&a.0.primitive_hull(i), a.1), b));
-        ControlFlow::Continue(())
-    });
-    deepest.found()
+    deepest_primitive(a, b, scratch)
 }
 
 pub(super) fn complex_complex(
@@ -41,49 +35,22 @@ pub(super) fn complex_complex(
     b: PlacedComplex,
     scratch: &mut Scratch,
 ) -> Option<Penetration> {
-    let solid = a.0.is_solid() || b.0.is_solid();
-    if solid && matches!(complex_complex::intersection(a, b, scratch), Relation::Separated { .. }) {
+    let (hull_a, hull_b) = (a.0.hull(), b.0.hull());
+    if !a.0.is_solid() && !b.0.is_solid() {
+        return deepest_pair(a, b, scratch)
+            .map(|[i, j]| of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1)));
+    }
+    if matches!(complex_complex::intersection(a, b, scratch), Relation::Separated { .. }) {
         return None;
     }
-    let (hull_a, hull_b) = (a.0.hull(), b.0.hull());
-    let mut deepest = Deepest::default();
-    let _ = match (a.0.is_solid(), b.0.is_solid()) {
-        (true, true) => ControlFlow::Continue(()),
-        (true, false) => complex_convex::meeting_primitives(b, (&hull_a, a.1), scratch, &mut |j, _| {
-            deepest.take([0, j], of_common((&hull_a, a.1), (&b.0.primitive_hull(j), b.1)));
-            ControlFlow::Continue(())
-        }),
-        (false, true) => complex_convex::meeting_primitives(a, (&hull_b, b.1), scratch, &mut |i, _| {
-            deepest.take([i, 0], of_common((&a.0.primitive_hull(i), a.1), (&hull_b, b.1)));
-            ControlFlow::Continue(())
-        }),
-        (false, false) => complex_complex::meeting_pairs(a, b, scratch, &mut |i, j| {
-            deepest.take([i, j], of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1)));
-            ControlFlow::Continue(())
-        }),
+    let (solid_a, solid_b) = ((&hull_a as _, a.1), (&hull_b as _, b.1));
+    let deepest = match (a.0.is_solid(), b.0.is_solid()) {
+        (true, false) => deepest_primitive(b, solid_a, scratch).mirrored(),
+        (false, true) => deepest_primitive(a, solid_b, scratch),
+        _ => None,
     };
     // Also when rounding keeps the hull of a solid apart from what it meets.
-    deepest.found().or_else(|| solid.then(|| of_common((&hull_a, a.1), (&hull_b, b.1))))
-}
-
-/// The deepest of several pairs of primitives.
-#[derive(Default)]
-pub(super) struct Deepest(Option<([u32; 2], Penetration)>);
-
-impl Deepest {
-    /// Takes a pair into account. Of equals, that of the least numbers is kept: not the first, for trees may have any order.
-    pub fn take(&mut self, pair: [u32; 2], found: Penetration) {
-        let keeps = self.0.is_some_and(|(other, deepest)| {
-            deepest.depth > found.depth || (deepest.depth == found.depth && other < pair)
-        });
-        if !keeps {
-            self.0 = Some((pair, found));
-        }
-    }
-
-    pub fn found(self) -> Option<Penetration> {
-        self.0.map(|(_, found)| found)
-    }
+    deepest.or_else(|| Some(of_common(solid_a, solid_b)))
 }
 
 /// The penetration of two convex objects, placed as these are, that are known to have a point in common. Where exact signs say so and GJK

@@ -71,6 +71,35 @@ impl LeafTest<'_> {
     }
 }
 
+/// The pairs of primitives of two leaves that meet, one at least.
+pub(super) struct MeetingLeaves<'r> {
+    pub ones: &'r Row,
+    pub others: &'r Row,
+    /// Whether the ones are those of the second shape.
+    pub swapped: bool,
+    /// Which of the ones meet which of the others: eight bits for each of the ones, one for each of the others.
+    pub meeting: u64,
+}
+
+impl<'r> MeetingLeaves<'r> {
+    /// The pairs, the primitive of the first shape first, in the order of the ones.
+    pub fn pairs(&self) -> impl Iterator<Item = (u32, u32)> {
+        bits(self.meeting).map(|place| {
+            let one = self.ones.primitive(place / LEAF_SIZE);
+            let other = self.others.primitive(place % LEAF_SIZE);
+            if self.swapped { (other, one) } else { (one, other) }
+        })
+    }
+
+    /// The leaves of the first shape and the second, and which of the first meet which of the second.
+    pub fn by_first(&self) -> ([&'r Row; 2], u64) {
+        match self.swapped {
+            true => ([self.others, self.ones], transposed(self.meeting)),
+            false => ([self.ones, self.others], self.meeting),
+        }
+    }
+}
+
 /// The next of the ones whose box overlaps those of some of the others, and of which.
 #[inline(always)]
 fn next_near<S: Simd>(

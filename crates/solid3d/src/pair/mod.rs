@@ -19,6 +19,7 @@ mod convex_convex;
 mod crossing;
 mod crossing_point;
 mod curve;
+mod deepest;
 mod depth;
 mod direct;
 mod fixed_box;

@@ -101,7 +101,7 @@ fn contained(
 }
 
 #[inline(always)] // made where it stays: it is large
-fn frame(complex: PlacedComplex, convex: PlacedConvex) -> Frame {
+pub(super) fn frame(complex: PlacedComplex, convex: PlacedConvex) -> Frame {
     Frame::new(complex.1, complex.0.reach(), convex.1, convex.0.reach())
 }
 

@@ -5,9 +5,11 @@
 //! | `verdict` | the lanes that meet a triangle, and that do not, certainly |
 //! | `rows` | the rows placed lately |
 //! | `distance` | the distances of a triangle, a segment or a point, and eight, each with a lower bound |
+//! | `depth` | how deep a triangle and eight are in each other, each with a lower bound |
 //! | `unit_box` | the lanes that meet a box, and that do not, certainly |
 //! | `vector` | points in vectors as wide as the level has |
 
+mod depth;
 mod distance;
 mod rows;
 mod unit_box;
@@ -18,6 +20,7 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::{DAffine3, DVec3};
 
+pub(super) use depth::depths;
 pub(super) use distance::{CONFIRMED, Near, distances, distances_of_core};
 pub(crate) use rows::Rows;
 pub(super) use unit_box::{Cube, stretch_max};
