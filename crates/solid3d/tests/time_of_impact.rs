@@ -296,6 +296,35 @@ fn no_contact_of_deforming_meshes_is_missed() {
     assert_rate("deforming meshes", hits, cases);
 }
 
+/// Law: two meshes meet when the first two of their triangles do.
+#[test]
+fn meshes_meet_when_the_first_of_their_triangles_do() {
+    let seed = 2012;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (mut hits, mut worst, cases) = (0, 0.0f64, 60);
+    for case in 0..cases {
+        let soups = [torus(8, 6, 0.3), random_mesh(&mut rng, 30)];
+        let [a, b] = soups.each_ref().map(|soup| soup.shape());
+        let [way_a, way_b] = passing(&mut rng, 1.0);
+        let options = ImpactOptions { path: [Path::Turning, Path::Straight][case % 2], ..OPTIONS };
+        let Some(found) = impact(&a, &way_a, &b, &way_b, &options) else { continue };
+        let [of_a, of_b] = soups.each_ref().map(|soup| {
+            let hull = |p: &Vec<u32>| p.iter().map(|&i| soup.vertices[i as usize]).collect::<Vec<_>>();
+            let hulls = soup.primitives.iter().map(|p| Shape::convex_hull(&hull(p)).unwrap());
+            hulls.collect::<Vec<_>>()
+        });
+        let pairs = of_a.iter().flat_map(|x| of_b.iter().map(move |y| (x, y)));
+        let times = pairs.filter_map(|(x, y)| Some(impact(x, &way_a, y, &way_b, &options)?.time));
+        let first = times.fold(f64::INFINITY, f64::min);
+        worst = worst.max((found.time - first).abs());
+        hits += 1;
+    }
+    println!("times differ by up to {worst:e}");
+    assert!(worst < 1e-6, "what grazes may be told by a gap");
+    assert_rate("meshes on their way", hits, cases);
+}
+
 /// Law: vertices far from the local origin, as in coordinates of the earth, change the time by no more than their rounding does.
 #[test]
 fn far_from_local_origins_the_time_is_the_same() {

@@ -1,4 +1,4 @@
-//! Branch and bound for two trees, one of which moves.
+//! Branch and bound for two trees that move.
 
 use glam::DVec3;
 
@@ -35,20 +35,42 @@ pub fn cast_pairs(
     motion: DVec3,
     until: &mut f64,
     traversal: &mut Traversal,
-    mut visit: impl FnMut(&[u32], &[u32], &mut f64),
+    visit: impl FnMut(&[u32], &[u32], &mut f64),
 ) {
-    let duel = Duel::one_by_one(a, b, relative);
-    let box_a = |place: Place| a.normal.unpack(&a.box_at(place));
-    let moving_b = |place: Place| {
-        let bounds: Aabb = b.normal.unpack(&b.box_at(place)).transformed(&relative.b_to_a);
+    let still_a = |bounds: &Aabb| *bounds;
+    let moving_b = |bounds: &Aabb| {
+        let bounds = bounds.transformed(&relative.b_to_a);
         let half_extents = bounds.half_extents() * (1.0 + 4.0 * f64::EPSILON) + relative.slack_in_a;
         TreeRay { origin: bounds.center(), direction: motion, half_extents }
     };
+    let least = |still: &Aabb, moving: &TreeRay| moving.reaches(still);
+    first_pairs([a, b], relative, still_a, moving_b, least, until, traversal, visit);
+}
+
+/// The same for boxes of both trees on any way, given those at rest in their local spaces. `least` is a lower bound of the time at which two meet,
+/// `None` where they do not; `relative` says how large those of one tree are beside those of the other, the larger being opened first.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "a walk over two trees, by three functions, with what is found on the way"
+)]
+pub(crate) fn first_pairs<A, B>(
+    [a, b]: [&Tree; 2],
+    relative: &Relative,
+    moving_a: impl Fn(&Aabb) -> A,
+    moving_b: impl Fn(&Aabb) -> B,
+    least: impl Fn(&A, &B) -> Option<f64>,
+    until: &mut f64,
+    traversal: &mut Traversal,
+    mut visit: impl FnMut(&[u32], &[u32], &mut f64),
+) {
+    let duel = Duel::one_by_one(a, b, relative);
+    let box_a = |place: Place| moving_a(&a.normal.unpack(&a.box_at(place)));
+    let box_b = |place: Place| moving_b(&b.normal.unpack(&b.box_at(place)));
     let Traversal { counters, near_pairs: stack, .. } = traversal;
     stack.clear();
     stack.push((0.0, duel.roots()));
-    while let Some((least, pair)) = stack.pop() {
-        if least >= *until {
+    while let Some((first, pair)) = stack.pop() {
+        if first >= *until {
             continue;
         }
         let from = stack.len();
@@ -59,23 +81,23 @@ pub fn cast_pairs(
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                let moving = moving_b(pair.b);
+                let of_b = box_b(pair.b);
                 for lane in used(&a.nodes[node].child) {
                     let place = Place::lane(node, lane);
-                    if let Some(least) = moving.reaches(&box_a(place)) {
+                    if let Some(first) = least(&box_a(place), &of_b) {
                         let pair = Pair { a: place, extent_a: extent(&a.box_at(place)), ..pair };
-                        push_unless_far((least, pair), *until, stack, from);
+                        push_unless_far((first, pair), *until, stack, from);
                     }
                 }
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                let still = box_a(pair.a);
+                let of_a = box_a(pair.a);
                 for lane in used(&b.nodes[node].child) {
                     let place = Place::lane(node, lane);
-                    if let Some(least) = moving_b(place).reaches(&still) {
+                    if let Some(first) = least(&of_a, &box_b(place)) {
                         let pair = Pair { b: place, extent_b: extent(&b.box_at(place)), ..pair };
-                        push_unless_far((least, pair), *until, stack, from);
+                        push_unless_far((first, pair), *until, stack, from);
                     }
                 }
             }

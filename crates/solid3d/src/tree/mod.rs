@@ -79,6 +79,7 @@ mod tests;
 
 pub use build::DEPTH_MAX;
 pub use cast_pairs::cast_pairs;
+pub(crate) use cast_pairs::first_pairs;
 pub use cost::DEGRADED_RATIO;
 pub(crate) use facing::Facing;
 pub(crate) use lanes::bits;

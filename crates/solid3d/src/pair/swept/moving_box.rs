@@ -9,15 +9,30 @@ pub(super) struct MovingBox {
 }
 
 impl MovingBox {
+    /// A box that does not move.
+    pub fn still(bounds: Aabb) -> MovingBox {
+        MovingBox { from: bounds, to: bounds }
+    }
+
     /// The box around the whole way.
     pub fn bounds(&self) -> Aabb {
         self.from.union(&self.to)
     }
 
-    /// Whether it touches a box that stands still at some time, up to rounding: along each axis it does so in an interval of
-    /// time, and these have a time in common. Measured with two meshes of 80,000 triangles that pass each other by, a radius
-    /// in a frame along a diagonal: 10 ms; with the box around the way alone 5.7 s, for 5.4 million tests of primitives.
+    /// The same grown to all sides.
+    pub fn inflated(&self, by: f64) -> MovingBox {
+        MovingBox { from: self.from.inflated(by), to: self.to.inflated(by) }
+    }
+
+    /// Whether it touches a box that stands still at some time, up to rounding. Measured with two meshes of 80,000 triangles that pass each
+    /// other by, a radius in a frame along a diagonal: 10 ms; with the box around the way alone 5.7 s, for 5.4 million tests of primitives.
     pub fn meets(&self, still: &Aabb) -> bool {
+        self.touches(&MovingBox::still(*still)).is_some()
+    }
+
+    /// From when on, of a way that takes the time 1, it touches another that moves, up to rounding: along each axis it does so in an interval
+    /// of time, and these have a time in common, or none.
+    pub fn touches(&self, other: &MovingBox) -> Option<f64> {
         let (mut first, mut last) = (0.0f64, 1.0f64);
         let mut while_positive = |at_start: f64, at_end: f64| {
             let crossing = || at_start / (at_start - at_end);
@@ -29,12 +44,12 @@ impl MovingBox {
             }
         };
         for axis in 0..3 {
-            let below = |moving: &Aabb| still.max[axis] - moving.min[axis];
-            let above = |moving: &Aabb| moving.max[axis] - still.min[axis];
-            while_positive(below(&self.from), below(&self.to));
-            while_positive(above(&self.from), above(&self.to));
+            let below = |of: fn(&MovingBox) -> &Aabb| of(other).max[axis] - of(self).min[axis];
+            let above = |of: fn(&MovingBox) -> &Aabb| of(self).max[axis] - of(other).min[axis];
+            while_positive(below(|moving| &moving.from), below(|moving| &moving.to));
+            while_positive(above(|moving| &moving.from), above(|moving| &moving.to));
         }
-        first <= last
+        (first <= last).then_some(first)
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) struct TreeSpace<'a> {
     /// Contains `c0 - c1` for every point.
     backward: Aabb,
     /// Bounds the error of a box in this space, and that of comparing it.
-    slack: f64,
+    pub slack: f64,
 }
 
 impl<'a> TreeSpace<'a> {
@@ -80,6 +80,17 @@ impl<'a> TreeSpace<'a> {
         self.query(local(other.from), local(other.to))
     }
 
+    /// Where parts of a complex shape, the one of this space or the other, are in this space at both ends of its way. They meet others of the other
+    /// shape only where their boxes, one of them grown by the slack, touch at some time.
+    pub fn parts_of<'m>(&self, moving: &'m MovingComplex) -> Parts<'m> {
+        let ends = [moving.from, moving.to];
+        Parts {
+            shapes: ends.map(|(shape, _)| shape),
+            maps: ends.map(|(_, at)| self.map_from(at)),
+            deformation: moving.deformation,
+        }
+    }
+
     fn query(&self, was: Aabb, is: Aabb) -> MovingBox {
         MovingBox { from: less(&was, &self.backward).inflated(self.slack), to: is.inflated(self.slack) }
     }
@@ -89,6 +100,32 @@ impl<'a> TreeSpace<'a> {
             matrix3: self.to_local * at.matrix3,
             translation: self.to_local * (at.translation - self.origin),
         }
+    }
+}
+
+/// Parts of a moving complex shape in some space.
+pub(super) struct Parts<'a> {
+    /// As it was and as it is, and how that is placed.
+    shapes: [&'a Complex; 2],
+    maps: [DAffine3; 2],
+    deformation: Aabb,
+}
+
+impl Parts<'_> {
+    /// The way of what is in a box, given where that is now in the local space.
+    pub fn within(&self, bounds: &Aabb) -> MovingBox {
+        let was = less(bounds, &self.deformation);
+        MovingBox { from: was.transformed(&self.maps[0]), to: bounds.transformed(&self.maps[1]) }
+    }
+
+    /// The way of a primitive.
+    pub fn primitive(&self, primitive: u32) -> MovingBox {
+        let [from, to] = [0, 1].map(|end| {
+            let vertices = self.shapes[end].vertices();
+            let place = |&i: &u32| self.maps[end].transform_point3(vertices[i as usize]);
+            Aabb::of_points(self.shapes[end].primitive(primitive).iter().map(place))
+        });
+        MovingBox { from, to }
     }
 }
 
