@@ -7,6 +7,7 @@ use solid_convex::IndexedPoints;
 
 use super::parts::parts;
 use super::solid::Solid;
+use super::soup_hull::SoupHull;
 use super::topology::Topology;
 use super::validate;
 use crate::bounds::Aabb;
@@ -237,7 +238,12 @@ impl Complex {
     }
 
     /// The convex hull of all primitives; vertices that none of them names have no part in it.
-    pub fn hull(&self) -> IndexedPoints<'_> {
+    pub fn hull(&self) -> SoupHull<'_> {
+        SoupHull::new(self, self.corners())
+    }
+
+    /// The corners of all primitives, one after the other.
+    pub(super) fn corners(&self) -> IndexedPoints<'_> {
         IndexedPoints::new(&self.vertices, self.primitives.indices())
             .expect("a primitive has a vertex, and its indices were checked")
     }

@@ -10,6 +10,7 @@ mod parts;
 mod radius;
 mod simple;
 mod solid;
+mod soup_hull;
 mod surface;
 mod topology;
 mod validate;

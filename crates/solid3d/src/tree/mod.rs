@@ -50,6 +50,7 @@ mod cost;
 mod crossing;
 mod eights;
 mod facing;
+mod furthest;
 mod insertion;
 mod lanes;
 mod leaf_images;
