@@ -45,7 +45,8 @@ impl Default for ImpactOptions {
 /// some 1e-6 of their size, take so many.
 ///
 /// Cost: for convex shapes that meet head on some five times [`distance`](super::distance()), for those that stay clear of each other
-/// little more than once; for meshes that of each pair of primitives whose boxes meet on the way.
+/// little more than once; for meshes that of each pair of primitives whose boxes meet on the
+/// way, before the first that meets does.
 ///
 /// ```
 /// use solid3d::{Shape, query::{self, ImpactOptions}, glam::{DAffine3, DVec3}};

@@ -47,8 +47,9 @@ pub struct Penetration {
 /// translations in very many directions at once, as coaxial cones and cylinders do: then within 1e-3, and 5e-2 for concentric ellipsoids
 /// that are the same in all of them.
 ///
-/// Cost: some hundred nanoseconds for two boxes, some microseconds for other convex shapes, less with a [`PairCache`](super::PairCache); for others, that for each pair of primitives that intersect; for a solid
-/// follows the number of its triangles.
+/// Cost: some hundred nanoseconds for two boxes, some microseconds for other convex shapes, less with a [`PairCache`](super::PairCache); for two
+/// meshes little more than that of [`intersecting_primitives`](super::intersecting_primitives), as only a few pairs that may be the deepest
+/// are asked; for a solid O(n) once, and a walk through its tree for each of its support points.
 ///
 /// ```
 /// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};

@@ -26,7 +26,8 @@
 //! | `beam`, `order` | pairs of leaves that are likely near to each other, for a first distance |
 //! | `eights` | the eight boxes of a node against the eight of another, across such a map |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
-//! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for a tree that moves; nearest first |
+//! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for two trees that move; nearest first |
+//! | `furthest` | what is furthest along a direction |
 //! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
 //! | `slabs`, `patch` | how flat what hangs in each lane is; the lane's box cut by that |
 //! | `parting`, `facing` | by that, for tree against tree: what is apart though boxes overlap; better bounds on distances |
@@ -37,7 +38,7 @@
 //! 2. No overlapping pair is lost, whatever the affine map, the sizes and the distance from the origin; none nearer than the
 //!    reported distance either.
 //! 3. A build of boxes scaled by a power of two gives the same bits; so does a refit of unchanged boxes.
-//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but the upper nodes of a build and the search for slabs.
+//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but the upper nodes of a build, the search for slabs and that for what is furthest.
 //! 5. Every order is a function of the input alone, not of the number of threads.
 
 mod beam;

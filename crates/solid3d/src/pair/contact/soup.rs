@@ -15,8 +15,9 @@ use glam::{DAffine3, DVec3};
 use solid_convex::Support;
 use solid_convex::simd::level;
 
-use super::super::row::{Rows, verdict};
+use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
 use super::super::table::PlacedConvex;
+use super::super::triangle_triangle::Triangle;
 use super::super::{Scratch, complex_convex, table, triangle_triangle};
 use super::{Meeting, Pair, Part, Patch, Touch, face, facing, plane_of};
 use crate::shape::{Body, Complex};
@@ -55,13 +56,14 @@ pub(super) fn soup_body(
     let [map_soup, map_body] =
         if mirrored { [pair.frame.common[1], pair.frame.common[0]] } else { pair.frame.common };
     let body = face::Placed::new(kind, map_body);
-    let other = Other { support: *support, map: map_body };
+    let other = Other { support: *support, map: map_body, corners: &[] };
     let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
     let patch = |primitive: u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
         let placed = face::Placed::new(&primitive_body, map_soup);
-        let side = Side { complex, primitive, body: placed, other };
+        let corners = placed_corners(complex, primitive, &map_soup);
+        let side = Side { complex, primitive, body: placed, corners: &corners, other };
         let primitives = if mirrored { [0, primitive] } else { [primitive, 0] };
         let over = |normal: DVec3| match mirrored {
             true => pair.over(&body, &side.body, normal, false),
@@ -151,7 +153,11 @@ impl LeafPairs<()> for NearPairs<'_> {
             *self.primitive_tests += u64::from(near.count_ones());
             let triangles = if in_a.triangles() >> i & 1 == 1 { near & in_b.triangles() } else { 0 };
             let sure = verdict(simd, (in_a, i), in_b, triangles);
-            let apart = if self.margin == 0.0 { sure.apart } else { 0 };
+            let apart = if self.margin == 0.0 {
+                sure.apart
+            } else {
+                beyond(simd, self.margin, &in_a.triangle(i), in_b, triangles & !sure.meet)
+            };
             for j in bits(near & !apart) {
                 // Of triangles it is decided exactly, as everywhere.
                 let known = triangles >> j & 1 == 1;
@@ -168,6 +174,16 @@ impl LeafPairs<()> for NearPairs<'_> {
         }
         ControlFlow::Continue(())
     }
+}
+
+/// Of triangles in some lanes, those that are further from a triangle than a margin, certainly.
+#[inline(always)]
+fn beyond<S: Simd>(simd: S, margin: f64, x: &Triangle, row: &Row, lanes: u32) -> u32 {
+    if lanes == 0 {
+        return 0;
+    }
+    let Near { least, .. } = distances(simd, x, row, lanes);
+    exceed(simd, &least, margin * (1.0 + CONFIRMED) + CONFIRMED) & lanes
 }
 
 /// The contacts of two soups.
@@ -190,10 +206,11 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let meeting = pair.meeting(&hull_a, &hull_b, must)?;
         let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
         let (placed_a, placed_b) = (face::Placed::new(&body_a, map_a), face::Placed::new(&body_b, map_b));
-        let (other_a, other_b) =
-            (Other { support: &hull_a, map: map_a }, Other { support: &hull_b, map: map_b });
-        let of_a = Side { complex: a, primitive: i, body: placed_a, other: other_b };
-        let of_b = Side { complex: b, primitive: j, body: placed_b, other: other_a };
+        let (corners_a, corners_b) = (placed_corners(a, i, &map_a), placed_corners(b, j, &map_b));
+        let other_a = Other { support: &hull_a, map: map_a, corners: &corners_a };
+        let other_b = Other { support: &hull_b, map: map_b, corners: &corners_b };
+        let of_a = Side { complex: a, primitive: i, body: placed_a, corners: &corners_a, other: other_b };
+        let of_b = Side { complex: b, primitive: j, body: placed_b, corners: &corners_b, other: other_a };
         let (on_a, on_b) = (of_a.corrected(-meeting.normal), of_b.corrected(meeting.normal));
         let (normal, touches) = match (on_a, on_b) {
             (_, Corrected::Replaced(normal)) => (normal, pair.over(&of_a.body, &of_b.body, normal, false)),
@@ -261,6 +278,8 @@ impl Meeting {
 struct Other<'a> {
     support: &'a dyn Support,
     map: DAffine3,
+    /// Of a primitive, where its corners are; none of others.
+    corners: &'a [DVec3],
 }
 
 impl Other<'_> {
@@ -270,9 +289,23 @@ impl Other<'_> {
 
     /// How far it reaches along a direction.
     fn greatest(&self, direction: DVec3) -> f64 {
+        if !self.corners.is_empty() {
+            return highest(self.corners, direction);
+        }
         let furthest = self.support.support(self.map.matrix3.transpose() * direction);
         direction.dot(self.map.transform_point3(furthest))
     }
+}
+
+/// The corners of a primitive where it is placed.
+fn placed_corners(complex: &Complex, primitive: u32, map: &DAffine3) -> Vec<DVec3> {
+    let place = |&vertex: &u32| map.transform_point3(complex.vertices()[vertex as usize]);
+    complex.primitive(primitive).iter().map(place).collect()
+}
+
+/// How far points reach along a direction.
+fn highest(points: &[DVec3], direction: DVec3) -> f64 {
+    points.iter().map(|point| direction.dot(*point)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// A primitive of a soup, and what it is in contact with.
@@ -280,6 +313,8 @@ struct Side<'a> {
     complex: &'a Complex,
     primitive: u32,
     body: face::Placed<'a>,
+    /// Space: common.
+    corners: &'a [DVec3],
     other: Other<'a>,
 }
 
@@ -318,7 +353,7 @@ impl Side<'_> {
         } else if cosine.abs() > SIDE_COSINE {
             cosine
         } else {
-            normal.dot(self.other.center() - self.corner(0))
+            normal.dot(self.other.center() - self.corners[0])
         };
         let own = normal * side.signum();
         self.shorter_around(own).map_or(Corrected::Replaced(own), Corrected::Adopted)
@@ -337,8 +372,13 @@ impl Side<'_> {
         let topology = self.complex.topology();
         let orientation = self.orientation();
         let (mut least, mut best) = (self.depth(own) - LEVEL, None);
-        for &corner in self.complex.primitive(self.primitive) {
+        let corners = self.complex.primitive(self.primitive);
+        for (i, &corner) in corners.iter().enumerate() {
             for &neighbour in topology.around(corner) {
+                let is_at = |corner: &u32| topology.around(*corner).binary_search(&neighbour).is_ok();
+                if corners[..i].iter().any(is_at) {
+                    continue;
+                }
                 let Some(normal) = self.plane_of(neighbour) else { continue };
                 if normal.dot(own).abs() > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL {
                     continue;
@@ -356,15 +396,7 @@ impl Side<'_> {
 
     /// How far the other reaches back behind what of the primitive is furthest along a normal.
     fn depth(&self, out: DVec3) -> f64 {
-        let count = self.complex.primitive(self.primitive).len();
-        let heights = (0..count).map(|i| out.dot(self.corner(i)));
-        heights.fold(f64::NEG_INFINITY, f64::max) + self.other.greatest(-out)
-    }
-
-    /// A corner of the primitive. Space: common.
-    fn corner(&self, corner: usize) -> DVec3 {
-        let vertex = self.complex.primitive(self.primitive)[corner];
-        self.body.map.transform_point3(self.complex.vertices()[vertex as usize])
+        highest(self.corners, out) + self.other.greatest(-out)
     }
 
     /// The normal of the primitive when it is a triangle, by its order.

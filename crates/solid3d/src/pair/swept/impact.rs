@@ -1,7 +1,7 @@
 //! When two shapes on their way first meet.
 //!
-//! Convex shapes by conservative advancement ([`advance`](super::advance)). Complex shapes by the boxes of their trees on the way, as
-//! in the other files of this module, and then pair of primitives by pair of primitives, each up to the earliest contact so far.
+//! Convex shapes by conservative advancement ([`advance`](super::advance)). Complex shapes by the boxes of their trees on the way,
+//! those first that touch first, and then pair of primitives by pair of primitives, each up to the earliest contact so far.
 //! The boxes know straight ways alone: a turn is cut into pieces, and boxes grow by what an arc is off its chord.
 
 use glam::{DAffine3, DMat3, DVec3};
