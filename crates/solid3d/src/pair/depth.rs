@@ -35,7 +35,6 @@ pub(super) fn complex_complex(
     b: PlacedComplex,
     scratch: &mut Scratch,
 ) -> Option<Penetration> {
-    let (hull_a, hull_b) = (a.0.hull(), b.0.hull());
     if !a.0.is_solid() && !b.0.is_solid() {
         return deepest_pair(a, b, scratch)
             .map(|[i, j]| of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1)));
@@ -43,6 +42,7 @@ pub(super) fn complex_complex(
     if matches!(complex_complex::intersection(a, b, scratch), Relation::Separated { .. }) {
         return None;
     }
+    let (hull_a, hull_b) = (a.0.hull(), b.0.hull());
     let (solid_a, solid_b) = ((&hull_a as _, a.1), (&hull_b as _, b.1));
     let deepest = match (a.0.is_solid(), b.0.is_solid()) {
         (true, false) => deepest_primitive(b, solid_a, scratch).mirrored(),

@@ -8,7 +8,7 @@
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 
-use super::vector::{Vector, Wide, cross, dot, minus, one, splat_triangle, steps_with, store};
+use super::vector::{Vector, Wide, cross, dot, minus, one, splat, splat_triangle, steps_with, store};
 use super::{Lanes, Row};
 use crate::pair::triangle_triangle::Triangle;
 
@@ -17,7 +17,7 @@ use crate::pair::triangle_triangle::Triangle;
 pub(crate) struct Depths {
     /// The depth is at most this, up to rounding.
     pub most: Lanes,
-    /// It is at least this, where more than some bound that was given.
+    /// It is at least this; where [`most`](Self::most) is below the bound that was given, nothing need be true of it.
     pub least: Lanes,
 }
 
@@ -45,14 +45,13 @@ pub(crate) fn depths<S: Simd>(simd: S, x: &Triangle, row: &Row, lanes: u32, boun
 fn depths_on<S: Simd>(simd: S, x: &Triangle, row: &Row, lanes: u32, bound: f64) -> Depths {
     let mut depths = Depths { most: [0.0; 8], least: [0.0; 8] };
     // Around a corner, so that what is small beside the frame loses no digits.
-    let around = x[0];
-    let x = splat_triangle(simd, &x.map(|corner| corner - around));
+    let around = splat(simd, x[0]);
+    let x = splat_triangle(simd, &x.map(|corner| corner - x[0]));
     let of_x = Edges::new(&x);
     let infinite = one(simd, f64::INFINITY);
     for from in steps_with::<S>(lanes) {
-        let around = splat_triangle(simd, &[around; 3]);
         let y = row.corners(simd, from);
-        let y = [minus(y[0], around[0]), minus(y[1], around[1]), minus(y[2], around[2])];
+        let y = [minus(y[0], around), minus(y[1], around), minus(y[2], around)];
         let of_y = Edges::new(&y);
         let reach = of_x.longest.sqrt() + of_y.longest.sqrt();
         let mut bounds = Bounds { x, y, reach, most: infinite, least: infinite };
