@@ -42,6 +42,12 @@ pub fn in_cube(rng: &mut StdRng) -> DVec3 {
     DVec3::from_array(core::array::from_fn(|_| rng.random_range(-1.0..=1.0)))
 }
 
+/// The triangles of a square grid of `side` times `side` vertices, row by row.
+pub fn grid(side: u32) -> Vec<[u32; 3]> {
+    let corners = (0..side * (side - 1)).filter(|i| i % side + 1 < side);
+    corners.flat_map(|i| [[i, i + 1, i + side], [i + 1, i + side + 1, i + side]]).collect()
+}
+
 /// A number whose logarithm is uniform.
 pub fn log_uniform(rng: &mut StdRng, low: f64, high: f64) -> f64 {
     rng.random_range(low.ln()..=high.ln()).exp()

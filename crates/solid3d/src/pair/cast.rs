@@ -123,9 +123,9 @@ fn complex_complex(
         &mut END.clone(),
         traversal,
         |leaf_a, leaf_b, until| {
-            let to_a = |i: &u32| relative.b_to_a.transform_point3(b.vertices()[*i as usize]);
+            let to_a = |point| relative.b_to_a.transform_point3(point);
             for &of_b in leaf_b {
-                let moving = moving(&Aabb::of_points(b.primitive(of_b).iter().map(to_a)));
+                let moving = moving(&Aabb::of_points(b.points_of(of_b).map(to_a)));
                 for &of_a in leaf_a {
                     let arrives = moving.reaches(&a.primitive_bounds(of_a));
                     if arrives.is_some_and(|t| t < earliest.until) {

@@ -267,8 +267,7 @@ pub(super) fn frame(a: PlacedComplex, b: PlacedComplex) -> Frame {
 pub(super) fn place(complex: &Complex, leaf: &[u32], map: &DAffine3, placed: &mut Vec<PlacedPrimitive>) {
     placed.clear();
     placed.extend(leaf.iter().map(|&primitive| {
-        let vertex = |&index: &u32| map.transform_point3(complex.vertices()[index as usize]);
-        let bounds = Aabb::of_points(complex.primitive(primitive).iter().map(vertex));
+        let bounds = Aabb::of_points(complex.points_of(primitive).map(|point| map.transform_point3(point)));
         PlacedPrimitive { primitive, bounds }
     }));
 }

@@ -106,8 +106,8 @@ pub(super) fn deepest_primitive(
     let Frame { common: [from_complex, from_convex], scale, .. } = complex_convex::frame(complex, convex);
     let (mut axes, mut deepest) = (Axes::default(), Deepest::default());
     let mut look = |i: u32, _| {
-        let corner = |&vertex: &u32| from_complex.transform_point3(complex.0.vertices()[vertex as usize]);
-        let most = axes.least_overlap(|| complex.0.primitive(i).iter().map(corner));
+        let place = |point| from_complex.transform_point3(point);
+        let most = axes.least_overlap(|| complex.0.points_of(i).map(place));
         // So much may EPA be off, at most: what it says of the others would change nothing.
         if most >= deepest.depth() * (1.0 - 4.0 * DEPTH_TOLERANCE) - CONFIRMED {
             let found = of_common((&complex.0.primitive_hull(i), complex.1), convex);
@@ -162,7 +162,7 @@ mod tests {
     use glam::{DAffine3, DQuat};
     use rand::Rng;
     use rand::rngs::StdRng;
-    use solid_oracle::generate::seeded;
+    use solid_oracle::generate::{grid, seeded};
 
     /// A surface with waves, or a flat one, of which many triangles are equally deep.
     fn terrain(rng: &mut StdRng, side: u32, is_flat: bool) -> Shape {
@@ -172,9 +172,7 @@ mod tests {
             let wave = if is_flat { 0.0 } else { (x * 0.7 + phase).sin() * (y * 0.9).cos() };
             DVec3::new(x, y, wave) / f64::from(side) * 2.0 - DVec3::new(1.0, 1.0, 0.0)
         };
-        let quads = (0..side * (side - 1)).filter(|i| i % side + 1 < side);
-        let triangles = quads.flat_map(|i| [[i, i + 1, i + side], [i + 1, i + side + 1, i + side]]);
-        Shape::mesh((0..side * side).map(point).collect::<Vec<_>>(), triangles.collect::<Vec<_>>()).unwrap()
+        Shape::mesh((0..side * side).map(point).collect::<Vec<_>>(), grid(side)).unwrap()
     }
 
     fn placement(rng: &mut StdRng) -> DAffine3 {

@@ -42,15 +42,13 @@ pub(super) fn complex_complex(
     if matches!(complex_complex::intersection(a, b, scratch), Relation::Separated { .. }) {
         return None;
     }
-    let (hull_a, hull_b) = (a.0.hull(), b.0.hull());
-    let (solid_a, solid_b) = ((&hull_a as _, a.1), (&hull_b as _, b.1));
     let deepest = match (a.0.is_solid(), b.0.is_solid()) {
-        (true, false) => deepest_primitive(b, solid_a, scratch).mirrored(),
-        (false, true) => deepest_primitive(a, solid_b, scratch),
+        (true, false) => deepest_primitive(b, (&a.0.hull(), a.1), scratch).mirrored(),
+        (false, true) => deepest_primitive(a, (&b.0.hull(), b.1), scratch),
         _ => None,
     };
     // Also when rounding keeps the hull of a solid apart from what it meets.
-    deepest.or_else(|| Some(of_common(solid_a, solid_b)))
+    deepest.or_else(|| Some(of_common((&a.0.hull(), a.1), (&b.0.hull(), b.1))))
 }
 
 /// The penetration of two convex objects, placed as these are, that are known to have a point in common. Where exact signs say so and GJK

@@ -226,6 +226,12 @@ impl Complex {
         self.primitives.get(primitive)
     }
 
+    /// The points whose hull the primitive is.
+    #[inline(always)]
+    pub fn points_of(&self, primitive: u32) -> impl Iterator<Item = DVec3> + Clone + '_ {
+        self.primitive(primitive).iter().map(|&i| self.vertices[i as usize])
+    }
+
     /// The primitive as a convex object.
     pub fn primitive_hull(&self, primitive: u32) -> IndexedPoints<'_> {
         IndexedPoints::new(&self.vertices, self.primitive(primitive))

@@ -55,7 +55,7 @@ impl Support for SoupHull<'_> {
 mod tests {
     use super::*;
     use rand::Rng;
-    use solid_oracle::generate::seeded;
+    use solid_oracle::generate::{grid, seeded};
 
     /// Law: support points, reach and centre are, bit by bit, those of all vertices; of many that are as far, too, and after a deformation. Few
     /// leaves are looked at.
@@ -73,8 +73,7 @@ mod tests {
                 })
                 .collect();
             vertices.push(DVec3::splat(1e9));
-            let quads = (0..side * (side - 1)).filter(|i| i % side + 1 < side);
-            let mut triangles: Vec<[u32; 3]> = quads.map(|i| [i, i + 1, i + side]).collect();
+            let mut triangles: Vec<[u32; 3]> = grid(side).into_iter().step_by(2).collect();
             let turn = rng.random_range(0..triangles.len());
             triangles.rotate_left(turn);
             let mut soup = Complex::mesh(vertices.clone(), triangles).unwrap();

@@ -299,8 +299,7 @@ impl Other<'_> {
 
 /// The corners of a primitive where it is placed.
 fn placed_corners(complex: &Complex, primitive: u32, map: &DAffine3) -> Vec<DVec3> {
-    let place = |&vertex: &u32| map.transform_point3(complex.vertices()[vertex as usize]);
-    complex.primitive(primitive).iter().map(place).collect()
+    complex.points_of(primitive).map(|point| map.transform_point3(point)).collect()
 }
 
 /// How far points reach along a direction.

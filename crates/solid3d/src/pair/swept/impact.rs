@@ -282,6 +282,7 @@ mod tests {
     use super::*;
     use crate::ComplexShapeBuilder;
     use crate::bounds::Aabb;
+    use solid_oracle::generate::grid;
 
     /// Law: what is met later costs little. Two surfaces of 7,000 triangles, of which each passes over all of the other.
     #[test]
@@ -291,10 +292,7 @@ mod tests {
             let (x, y) = (f64::from(i % SIDE), f64::from(i / SIDE));
             DVec3::new(x, y, 3.0 * (0.3 * x).sin() * (0.2 * y).cos()) / f64::from(SIDE)
         };
-        let quads = (0..SIDE * (SIDE - 1)).filter(|i| i % SIDE + 1 < SIDE);
-        let triangles: Vec<[u32; 3]> =
-            quads.flat_map(|i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]]).collect();
-        let mesh = Shape::mesh((0..SIDE * SIDE).map(point).collect::<Vec<_>>(), triangles).unwrap();
+        let mesh = Shape::mesh((0..SIDE * SIDE).map(point).collect::<Vec<_>>(), grid(SIDE)).unwrap();
         let ball = Shape::sphere(0.05).unwrap();
         let polygon = ComplexShapeBuilder::new([DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1]);
         let triangle = polygon.triangle([0, 1, 2]).build().unwrap();

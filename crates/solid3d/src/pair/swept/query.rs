@@ -121,9 +121,8 @@ impl Parts<'_> {
     /// The way of a primitive.
     pub fn primitive(&self, primitive: u32) -> MovingBox {
         let [from, to] = [0, 1].map(|end| {
-            let vertices = self.shapes[end].vertices();
-            let place = |&i: &u32| self.maps[end].transform_point3(vertices[i as usize]);
-            Aabb::of_points(self.shapes[end].primitive(primitive).iter().map(place))
+            let points = self.shapes[end].points_of(primitive);
+            Aabb::of_points(points.map(|point| self.maps[end].transform_point3(point)))
         });
         MovingBox { from, to }
     }

@@ -8,6 +8,7 @@ use crate::tree::{DEPTH_MAX, LeafPoints, Tree};
 use glam::DVec3;
 use proptest::prelude::*;
 use solid_convex::simd::levels;
+use solid_oracle::generate::grid;
 
 fn checked(boxes: &[Aabb]) -> Tree {
     let tree = Tree::build(boxes);
@@ -137,9 +138,7 @@ fn cloth(side: u32, time: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let at = |i: u32| DVec3::new(f64::from(i % side), f64::from(i / side), 0.0);
     let wave = |p: DVec3| p + DVec3::new(0.0, 0.3 * time, (0.1 * p.x * p.y + time).sin());
     let vertices = (0..side * side).map(|i| wave(at(i))).collect();
-    let corners = (0..side * (side - 1)).filter(|i| i % side + 1 < side);
-    let triangles = corners.flat_map(|i| [[i, i + 1, i + side], [i + 1, i + side + 1, i + side]]).collect();
-    (vertices, triangles)
+    (vertices, grid(side))
 }
 
 /// Law: a refit from points gives the bits of one from boxes, on every level of instructions and any number of threads.
