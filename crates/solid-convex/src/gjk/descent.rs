@@ -20,7 +20,14 @@ pub(crate) enum Goal {
         /// The relative error.
         tolerance: f64,
     },
-    /// The same, or as soon as the distance is known to be more than a bound.
+    /// As soon as what of the distance is beyond some radii is known to this relative error, or to be next to nothing.
+    Gap {
+        /// The relative error.
+        tolerance: f64,
+        /// What of the distance is no gap, in the difference's unit of length.
+        radii: f64,
+    },
+    /// The same as for the distance, or as soon as that is known to be more than a bound.
     DistanceWithin {
         /// The relative error.
         tolerance: f64,
@@ -106,7 +113,21 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    descend_within(difference, goal, ITERATIONS_MAX)
+    descend_within(difference, goal, &[], ITERATIONS_MAX)
+}
+
+/// Runs the robust descent from up to three points of the difference, unless the origin is on their hull.
+#[cold]
+pub(super) fn descend_robustly_from<A, B>(
+    difference: &Difference<A, B>,
+    goal: Goal,
+    points: &[SupportPoint],
+) -> Descent
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    descend_within(difference, goal, points, ITERATIONS_MAX)
 }
 
 /// Runs a descent of at most so many iterations. One that has to stop is undecided, whatever the objects do: it claims
@@ -114,6 +135,7 @@ where
 pub(super) fn descend_within<A, B>(
     difference: &Difference<A, B>,
     goal: Goal,
+    points: &[SupportPoint],
     iterations_max: usize,
 ) -> Descent
 where
@@ -122,7 +144,8 @@ where
 {
     // v: the point of conv(W) closest to the origin; w: a support point of A - B against v; W: `simplex`;
     // mu: the greatest lower bound of the distance so far, along `axis`.
-    let (mut simplex, mut v) = (Simplex::new(), difference.initial_direction());
+    let (mut simplex, mut v) =
+        begun(points).unwrap_or_else(|| (Simplex::new(), difference.initial_direction()));
     let (mut mu, mut axis) = (0.0, v);
     let mut refinements = 0;
     for _ in 0..iterations_max {
@@ -187,6 +210,18 @@ where
     Descent { end, v, axis, simplex, beyond: false }
 }
 
+/// A simplex of points of the difference, and its point closest to the origin; `None` where that is the origin, nearly.
+fn begun(points: &[SupportPoint]) -> Option<(Simplex, DVec3)> {
+    if points.is_empty() {
+        return None;
+    }
+    let mut simplex = Simplex::of(points);
+    match simplex.reduce() {
+        Reduced::Closest(v) if v.length_squared() > SUPPORT_ERROR * SUPPORT_ERROR => Some((simplex, v)),
+        Reduced::Closest(_) | Reduced::ContainsOrigin => None,
+    }
+}
+
 impl Goal {
     /// Whether the support point `p` against `v` ends the search; keeps the lower bound of the distance.
     fn reached(self, v: DVec3, p: &SupportPoint, mu: &mut f64, v_in_difference: bool) -> bool {
@@ -199,7 +234,7 @@ impl Goal {
         };
         match self {
             Goal::Separation => certifies(v, p.w),
-            Goal::Distance { .. } => near_enough(),
+            Goal::Distance { .. } | Goal::Gap { .. } => near_enough(),
             Goal::DistanceWithin { .. } => near_enough() || self.is_exceeded(*mu),
         }
     }
@@ -210,6 +245,9 @@ impl Goal {
             Goal::Separation => true,
             Goal::Distance { tolerance } | Goal::DistanceWithin { tolerance, .. } => {
                 length - mu <= tolerance * length
+            }
+            Goal::Gap { tolerance, radii } => {
+                length - mu <= (tolerance * (length - radii)).max(SUPPORT_ERROR)
             }
         }
     }

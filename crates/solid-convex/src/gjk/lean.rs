@@ -247,6 +247,12 @@ impl Search<'_> {
                 return Sure::Beyond;
             }
             Goal::Distance { tolerance } | Goal::DistanceWithin { tolerance, .. } => tolerance,
+            Goal::Gap { .. } => {
+                let length = square.sqrt();
+                let (distance, mu) = (length / divisor, vw / length);
+                let near = len > 0 && self.goal.is_within_tolerance(distance, mu);
+                return if near { Sure::Near(mu) } else { Sure::Nothing };
+            }
         };
         if len > 0 && square - vw * divisor <= tolerance * square {
             Sure::Near(vw / square.sqrt())

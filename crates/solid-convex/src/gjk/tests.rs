@@ -435,11 +435,11 @@ fn the_iteration_limit_is_undecided() {
     let near = DAffine3::from_translation(DVec3::new(1.3, 2.0, 0.1)) * DAffine3::from_rotation_z(1.0);
     let difference = Difference::new(&ball, &egg, &ball, &near);
     let needed = (0..=ITERATIONS_MAX).find(|&limit| {
-        descend_within(&difference, Goal::Distance { tolerance: 1e-12 }, limit).end != End::Undecided
+        descend_within(&difference, Goal::Distance { tolerance: 1e-12 }, &[], limit).end != End::Undecided
     });
     let needed = needed.expect("it ends in time");
     assert!(needed > 2, "{needed}");
-    assert_eq!(descend_within(&difference, Goal::Separation, 1).end, End::Undecided);
+    assert_eq!(descend_within(&difference, Goal::Separation, &[], 1).end, End::Undecided);
 }
 
 /// A support mapping that is none: it must not hang nor crash whoever asks it.

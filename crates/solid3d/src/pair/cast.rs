@@ -20,20 +20,34 @@ const END: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 /// When `a`, moving by `motion` relative to `b` in a unit of time, first meets it in that time; at time 0 without a normal.
 pub(crate) fn cast(a: Placed, motion: DVec3, b: Placed, scratch: &mut Scratch) -> Option<Impact> {
-    if let Relation::Common(points) = intersection(a, b, scratch) {
-        return Some(Impact { time: 0.0, normal: None, points });
-    }
-    if motion == DVec3::ZERO {
-        return None;
-    }
     let (at_a, at_b) = (a.placement, b.placement);
+    if motion != DVec3::ZERO
+        && let (Class::Convex(on_a), Class::Convex(on_b)) = (a.shape.class(), b.shape.class())
+    {
+        // What is apart at the start is so by the first step of the cast.
+        let impact = gjk::cast(on_a, at_a, motion, on_b, at_b, 1.0)?;
+        let start = if impact.normal.is_none() { at_start(a, b, scratch) } else { None };
+        return start.or(Some(impact));
+    }
+    let start = at_start(a, b, scratch);
+    if start.is_some() || motion == DVec3::ZERO {
+        return start;
+    }
     match (a.shape.class(), b.shape.class()) {
-        (Class::Convex(a), Class::Convex(b)) => gjk::cast(a, at_a, motion, b, at_b, 1.0),
+        (Class::Convex(_), Class::Convex(_)) => unreachable!("convex shapes were answered"),
         (Class::Complex(a), Class::Convex(b)) => complex_convex((a, at_a), motion, (b, at_b), scratch),
         (Class::Convex(a), Class::Complex(b)) => {
             complex_convex((b, at_b), -motion, (a, at_a), scratch).map(mirrored)
         }
         (Class::Complex(a), Class::Complex(b)) => complex_complex((a, at_a), motion, (b, at_b), scratch),
+    }
+}
+
+/// The impact of what intersects at the start.
+fn at_start(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<Impact> {
+    match intersection(a, b, scratch) {
+        Relation::Common(points) => Some(Impact { time: 0.0, normal: None, points }),
+        Relation::Separated { .. } => None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! A point and a placed shape.
 
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 use glam::{DAffine3, DVec3};
 
@@ -22,7 +23,7 @@ use crate::shape::{Shape, ShapeKind};
 /// ```
 pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<bool> {
     let (point, at) = as_shape(point)?;
-    intersects(shape, placement, &point, &at)
+    intersects(shape, placement, point, &at)
 }
 
 /// The point of a placed shape that is closest to a point, and their distance: of solids 0 inside, where the point itself is the
@@ -37,7 +38,7 @@ pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Resu
 /// ```
 pub fn closest_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<ClosestPoint> {
     let (point, at) = as_shape(point)?;
-    let Distance { distance, point_on_a, .. } = distance(shape, placement, &point, &at)?;
+    let Distance { distance, point_on_a, .. } = distance(shape, placement, point, &at)?;
     Ok(ClosestPoint { point: point_on_a, distance })
 }
 
@@ -91,8 +92,12 @@ fn half_solid_angle(corners: [DVec3; 3]) -> f64 {
     a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }
 
+/// The origin as a shape.
+static ORIGIN: LazyLock<Shape> =
+    LazyLock::new(|| Shape::convex_hull(&[DVec3::ZERO]).expect("a point has a hull"));
+
 /// A point as a shape, which is placed.
-pub(super) fn as_shape(point: DVec3) -> Result<(Shape, DAffine3)> {
+pub(super) fn as_shape(point: DVec3) -> Result<(&'static Shape, DAffine3)> {
     bounded("point", point)?;
-    Ok((Shape::convex_hull(&[DVec3::ZERO])?, DAffine3::from_translation(point)))
+    Ok((&ORIGIN, DAffine3::from_translation(point)))
 }

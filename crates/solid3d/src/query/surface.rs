@@ -59,7 +59,7 @@ pub struct SignedDistance {
 pub fn signed_distance(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<SignedDistance> {
     let shape = placed(shape, placement)?;
     let (point, at) = as_shape(point)?;
-    let point = Placed { shape: &point, placement: &at };
+    let point = Placed { shape: point, placement: &at };
     let pair::SurfacePoint { distance, point, normal } =
         Scratch::with(|scratch| pair::surface_point(shape, point, scratch));
     Ok(SignedDistance { distance, point, normal })
