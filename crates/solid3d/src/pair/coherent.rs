@@ -41,5 +41,6 @@ pub(crate) fn penetration_again(
     scratch: &mut Scratch,
 ) -> Option<Penetration> {
     let Some(((on_a, _), (on_b, _))) = convex(a, b) else { return penetration(a, b, scratch) };
-    memory.penetration(on_a, a.placement, on_b, b.placement)
+    let of_simple = closed_form::penetration(a, b);
+    of_simple.or_else(|| memory.penetration(on_a, a.placement, on_b, b.placement))
 }

@@ -60,7 +60,9 @@ pub(crate) fn intersects_by_class(a: Placed, b: Placed, scratch: &mut Scratch) -
 /// What [`intersects`] says of convex shapes, for which no working memory is needed; `None` for others.
 pub(crate) fn convex_intersects(a: Placed, b: Placed) -> Option<bool> {
     let (on_a, on_b) = convex(a, b)?;
-    Some(convex_convex::intersects(on_a, on_b))
+    let polytopes = a.shape.polytope().is_some() & b.shape.polytope().is_some();
+    let of_ball = if polytopes { None } else { closed_form::ball_intersects(a, b) };
+    Some(of_ball.unwrap_or_else(|| convex_convex::intersects(on_a, on_b)))
 }
 
 /// What [`closest_within`] says of convex shapes, for which no working memory is needed; `None` for others.
@@ -185,6 +187,10 @@ fn axis_of_hulls(
 
 /// How deep they are in each other.
 pub(crate) fn penetration(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<Penetration> {
+    if let found @ Some(_) = closed_form::penetration(a, b) {
+        scratch.primitive_tests += 1;
+        return found;
+    }
     const ROW: Row<Option<Penetration>> = Row {
         convex_convex: depth::convex_convex,
         complex_convex: depth::complex_convex,

@@ -55,7 +55,8 @@ pub fn contacts(
     options: &ContactOptions,
 ) -> Result<Vec<Manifold>> {
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
-    Ok(pair::contacts(a, b, options.checked()?, &mut Scratch::default()))
+    let options = options.checked()?;
+    Ok(Scratch::with(|scratch| pair::contacts(a, b, options, scratch)))
 }
 
 impl ContactOptions {

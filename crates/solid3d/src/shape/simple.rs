@@ -42,6 +42,18 @@ impl Shape {
     }
 }
 
+impl Shape {
+    /// The radius of a ball, or of a point at the local origin, which is 0; `None` for other shapes.
+    #[inline]
+    pub(crate) fn ball_radius(&self) -> Option<f64> {
+        match &self.geometry {
+            Geometry::Sphere(sphere) => Some(sphere.radius()),
+            Geometry::Polytope(hull) if *hull.points() == [DVec3::ZERO] => Some(0.0),
+            _ => None,
+        }
+    }
+}
+
 impl Simple {
     /// The radius of a ball around the local origin that contains the shape.
     #[inline(always)]

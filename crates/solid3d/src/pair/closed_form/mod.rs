@@ -1,9 +1,10 @@
-//! Pairs that need no search: balls, capsules and boxes that their placements leave what they are.
+//! Pairs that need no search: balls, capsules and boxes that their placements leave what they are; and balls and points beside cones and cylinders.
 //!
 //! A closed form speaks only where it is sure: the placements must be rotations with a uniform scale, up to
 //! [`SKEW_MAX`](solid_convex::similarity::SKEW_MAX), and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
 //! ([`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR)). So both say the same, and GJK decides the rest.
 
+mod ball;
 mod boxes;
 mod point;
 mod quick;
@@ -16,10 +17,11 @@ use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::gjk::Glance;
 use solid_convex::simd::dispatch;
-use solid_convex::{Closest, unit_scale};
+use solid_convex::{Closest, Penetration, unit_scale};
 
 use super::{Mirror, Placed, Relation};
 use crate::shape::Simple;
+use ball::BallAndBody;
 use boxes::PlacedBox;
 pub(super) use point::surface_point;
 use round::{Cores, PlacedRound};
@@ -67,8 +69,33 @@ pub(super) fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
     }
 }
 
+/// Something of a ball, or a point, and a body; of a body and a ball mirrored. `None` for other shapes, and where GJK has to say.
+#[inline]
+fn of_ball<T: Mirror>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) -> Option<T>) -> Option<T> {
+    if a.shape.ball_radius().is_some() {
+        what(&BallAndBody::new(a, b)?)
+    } else {
+        what(&BallAndBody::new(b, a)?).mirrored()
+    }
+}
+
+/// Whether a ball, or a point, and a body intersect; `None` for other shapes, and where GJK has to say.
+pub(super) fn ball_intersects(a: Placed, b: Placed) -> Option<bool> {
+    of_ball(a, b, BallAndBody::intersects)
+}
+
+/// How deep shapes are in each other that are known to intersect; `None` where EPA has to say.
+pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
+    of_ball(a, b, BallAndBody::penetration)
+}
+
 /// Whether they intersect, with the evidence; `None` where GJK has to say.
 pub(super) fn intersection(a: Placed, b: Placed) -> Option<Relation> {
+    of_simple(a, b).or_else(|| of_ball(a, b, BallAndBody::relation))
+}
+
+/// The same of simple shapes.
+fn of_simple(a: Placed, b: Placed) -> Option<Relation> {
     match Pair::new(a, b)? {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).relation(),
         Pair::RoundBox(a, b) => Cores::of_round_and_box(&a, &b)?.relation(),
@@ -83,7 +110,8 @@ pub(super) fn intersection(a: Placed, b: Placed) -> Option<Relation> {
 
 /// The closest points; `None` where GJK has to find them.
 pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
-    quickly_closest(a, b).or_else(|| closest_in_unit(a, b))
+    let of_simple = quickly_closest(a, b).or_else(|| closest_in_unit(a, b));
+    of_simple.or_else(|| of_ball(a, b, BallAndBody::closest))
 }
 
 /// What [`closest`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.

@@ -18,23 +18,66 @@ struct Foot<V> {
     normal: V,
 }
 
+/// A point as a body sees it that its placement leaves what it is.
+pub(super) struct Seen {
+    /// Where the surface is nearest, in the body's own directions and the unit of the pair.
+    foot: Foot<DVec3>,
+    /// The point, in the same.
+    point: DVec3,
+    at: Similarity,
+    /// World lengths times this are lengths in the unit of the pair, in which the size of the data is in [1, 2).
+    pub scale: f64,
+}
+
+impl Seen {
+    /// `None` for other shapes than a ball, box, cone, cylinder or capsule, and for placements that are not a rotation with a uniform scale.
+    /// `radius` is that of a ball around the point, which belongs to the size of the data. World units.
+    pub fn new(body: Placed, point: DVec3, radius: f64) -> Option<Seen> {
+        if matches!(body.shape.kind(), ShapeKind::ConvexHull) {
+            return None; // before its facets are made
+        }
+        let DAffine3 { matrix3, translation } = body.placement;
+        let body = body.shape.body()?;
+        let extent = extent(&body)?;
+        let at = Similarity::new(matrix3)?;
+        let offset = point - *translation;
+        // In a unit of length near the size of the data, so that squares neither overflow nor underflow.
+        let scale = unit_scale(extent * at.stretch + radius + offset.abs().element_sum());
+        let point = DVec3::from(at.units().map(|axis| axis.dot(offset * scale)));
+        let foot = of_body(&body, at.stretch * scale, point)?;
+        Some(Seen { foot, point, at, scale })
+    }
+
+    /// How far the point is from the surface, negative inside. In the unit of the pair.
+    pub fn distance(&self) -> f64 {
+        self.foot.distance
+    }
+
+    /// The outward normal of the surface, where it is nearest. Space: world.
+    pub fn normal(&self) -> DVec3 {
+        self.at.units().into_iter().zip(self.foot.normal.to_array()).map(|(axis, n)| axis * n).sum()
+    }
+
+    /// The nearest point of the surface. Space: the body's own.
+    pub fn on_surface(&self) -> DVec3 {
+        self.local(self.point - self.foot.normal * self.foot.distance)
+    }
+
+    /// The point. Space: the body's own.
+    pub fn point(&self) -> DVec3 {
+        self.local(self.point)
+    }
+
+    fn local(&self, p: DVec3) -> DVec3 {
+        p / self.scale / self.at.stretch
+    }
+}
+
 /// The point of the surface of a ball, box, cone, cylinder or capsule nearest to a point of the world; `None` for other shapes,
 /// and for placements that are not a rotation with a uniform scale.
 pub(in crate::pair) fn surface_point(shape: Placed, point: DVec3) -> Option<SurfacePoint> {
-    if matches!(shape.shape.kind(), ShapeKind::ConvexHull) {
-        return None; // before its facets are made
-    }
-    let body = shape.shape.body()?;
-    let DAffine3 { matrix3, translation } = shape.placement;
-    let at = Similarity::new(matrix3)?;
-    let offset = point - *translation;
-    // In a unit of length near the size of the data, so that squares neither overflow nor underflow.
-    let scale = unit_scale(extent(&body)? * at.stretch + offset.abs().element_sum());
-    let units = at.units();
-    let p = DVec3::from(units.map(|axis| axis.dot(offset * scale)));
-    let foot = of_body(&body, at.stretch * scale, p)?;
-    let normal: DVec3 = units.into_iter().zip(foot.normal.to_array()).map(|(axis, n)| axis * n).sum();
-    let distance = foot.distance / scale;
+    let seen = Seen::new(shape, point, 0.0)?;
+    let (distance, normal) = (seen.distance() / seen.scale, seen.normal());
     Some(SurfacePoint { distance, point: point - normal * distance, normal })
 }
 

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use solid_convex::simd::levels;
-use solid_convex::{Outcome, Support, gjk};
+use solid_convex::{Outcome, Support, Witness, epa, gjk};
 
 use super::*;
 use crate::Shape;
@@ -88,6 +88,69 @@ fn closed_forms_say_what_gjk_says() {
         }
     }
     assert!((30..=70).contains(&(100 * all_hits / all_decided)), "{all_hits} of {all_decided}");
+}
+
+/// Balls of all sizes, and points, beside all bodies, in either order.
+#[test]
+fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let point = || Shape::convex_hull(&[DVec3::ZERO]).unwrap();
+    let balls = [point(), Shape::sphere(0.05).unwrap(), Shape::sphere(0.7).unwrap()];
+    let [sphere, capsule, block] = kinds();
+    let bodies = [sphere, capsule, block, Shape::cylinder(0.5, 1.4).unwrap(), Shape::cone(0.6, 1.4).unwrap()];
+    let (mut hits, mut decided, mut inside) = (0, 0, 0);
+    for case in 0..15_000 {
+        let [mut at_a, at_b] = placements(&mut rng);
+        at_a.translation = at_b.translation + (at_a.translation - at_b.translation) * 0.8;
+        let (ball, body) = (&balls[case % 3], &bodies[case / 3 % 5]);
+        let placed = [Placed { shape: ball, placement: &at_a }, Placed { shape: body, placement: &at_b }];
+        let [a, b] = if case % 2 == 0 { placed } else { [placed[1], placed[0]] };
+        let context = format!("seed {SEED}, case {case}: {at_a}, {at_b}");
+        let (of_a, of_b) = ((support(a.shape), a.placement), (support(b.shape), b.placement));
+        let outcome = gjk::intersection(of_a.0, of_a.1, of_b.0, of_b.1);
+        let Some(hit) = ball_intersects(a, b) else { continue };
+        (decided, hits) = (decided + 1, hits + usize::from(hit));
+        assert_eq!(hit, outcome.witness().is_some(), "{context}");
+        let in_world = |points: Witness| {
+            for (shape, point) in [(a.shape, points.on_a), (b.shape, points.on_b)] {
+                let dot = solid_convex::Points::new(std::slice::from_ref(&point)).unwrap();
+                let here = DAffine3::IDENTITY;
+                let out = gjk::closest_points(support(shape), &here, &dot, &here).distance;
+                assert!(out < 1e-12, "{context}: {out:e} outside");
+            }
+            [a.placement.transform_point3(points.on_a), b.placement.transform_point3(points.on_b)]
+        };
+        match of_ball(a, b, BallAndBody::relation).unwrap() {
+            Relation::Separated { axis } => {
+                assert!(gjk::separates(&axis.unwrap(), of_a.0, of_a.1, of_b.0, of_b.1), "{context}");
+            }
+            Relation::Common(points) => {
+                let [x, y] = in_world(points);
+                assert!(x.distance(y) < 1e-12, "{context}: {points:?}");
+            }
+        }
+        let found = of_ball(a, b, BallAndBody::closest).unwrap();
+        let slow = gjk::closest_points(of_a.0, of_a.1, of_b.0, of_b.1);
+        assert!((found.distance - slow.distance).abs() < 1e-11, "{context}: {found:?}, {slow:?}");
+        let [x, y] = in_world(found.points);
+        assert!((x.distance(y) - found.distance).abs() < 1e-11, "{context}: {found:?}");
+        let found = penetration(a, b);
+        assert_eq!(found.is_some(), hit, "{context}");
+        if let Some(found) = found {
+            let slow = epa::penetration(of_a.0, of_a.1, of_b.0, of_b.1).unwrap();
+            let error = 1e-11 + 1e-3 * slow.depth * f64::from(u8::from(slow.upper - slow.lower > 1e-6));
+            assert!(
+                (slow.lower - 1e-11..=slow.upper + error).contains(&found.depth),
+                "{context}: {found:?}, {slow:?}"
+            );
+            let [x, y] = in_world(found.points);
+            assert!((x + found.direction * found.depth).distance(y) < 1e-11, "{context}: {found:?}");
+            assert!((found.direction.length() - 1.0).abs() < 1e-13, "{context}: {found:?}");
+            inside += usize::from(found.depth > 0.7);
+        }
+    }
+    assert!(decided > 14_000 && inside > 500, "{decided} decided, {inside} deep");
+    assert!((30..=70).contains(&(100 * hits / decided)), "{hits} of {decided} hit");
 }
 
 /// A common point is in either shape as told in its own space, however much smaller than the other that is.

@@ -15,12 +15,12 @@ mod region;
 mod soup;
 
 use glam::{DAffine3, DVec2, DVec3};
-use solid_convex::{Support, epa, gjk};
+use solid_convex::{Penetration, Support, epa, gjk};
 
 use super::depth::of_common;
 use super::frame::Frame;
 use super::reach::reach;
-use super::{Placed, Relation, Scratch, table, world_bounds};
+use super::{Placed, Relation, Scratch, closed_form, table, world_bounds};
 use crate::shape::{Body, Class, Complex};
 use clip::{Origin, clip};
 use face::{Face, triangle_normal};
@@ -234,13 +234,25 @@ impl Pair<'_> {
         }
     }
 
-    /// How two convex bodies lie to each other; `None` when they are further apart than the margin. `must` says that they are known
+    /// How the shapes lie to each other, of which these are the bodies; `None` when they are further apart than the margin.
+    fn meeting_of_bodies(&self, a: &dyn Support, b: &dyn Support) -> Option<Meeting> {
+        let of_any = || epa::penetration(a, self.a.placement, b, self.b.placement);
+        self.meeting_by(closed_form::penetration(self.a, self.b).or_else(of_any), a, b)
+    }
+
+    /// How two primitives lie to each other; `None` when they are further apart than the margin. `must` says that they are known
     /// to have a common point.
     fn meeting(&self, a: &dyn Support, b: &dyn Support, must: bool) -> Option<Meeting> {
         let (at_a, at_b) = (self.a.placement, self.b.placement);
-        let [from_a, from_b] = &self.frame.common;
         let found =
             if must { Some(of_common((a, at_a), (b, at_b))) } else { epa::penetration(a, at_a, b, at_b) };
+        self.meeting_by(found, a, b)
+    }
+
+    /// The same by how deep they are in each other, if they are.
+    fn meeting_by(&self, found: Option<Penetration>, a: &dyn Support, b: &dyn Support) -> Option<Meeting> {
+        let (at_a, at_b) = (self.a.placement, self.b.placement);
+        let [from_a, from_b] = &self.frame.common;
         if let Some(found) = found {
             let on_a = from_a.transform_point3(found.points.on_a);
             let on_b = from_b.transform_point3(found.points.on_b);

@@ -35,7 +35,7 @@ const SAME_NORMAL: f64 = 1e-6;
 /// The contacts of two bodies.
 pub(super) fn body_body(pair: &Pair, a: &Part, b: &Part) -> Vec<Patch> {
     let (Part::Body(kind_a, of_a), Part::Body(kind_b, of_b)) = (a, b) else { return Vec::new() };
-    let Some(meeting) = pair.meeting(*of_a, *of_b, false) else { return Vec::new() };
+    let Some(meeting) = pair.meeting_of_bodies(*of_a, *of_b) else { return Vec::new() };
     let [map_a, map_b] = pair.frame.common;
     let (placed_a, placed_b) = (face::Placed::new(kind_a, map_a), face::Placed::new(kind_b, map_b));
     let touches = pair.touches(&placed_a, &placed_b, &meeting);

@@ -1,0 +1,81 @@
+//! A ball, or a point, and a body that their placements leave what they are: all by how far the centre is from the surface of the body.
+
+use glam::DVec3;
+use solid_convex::{Closest, Penetration, Witness};
+
+use super::point::Seen;
+use super::round::DISTANCE_ERROR;
+use super::similarity::Similarity;
+use super::{Gap, Relation};
+use crate::pair::Placed;
+
+/// A ball and a body.
+pub(super) struct BallAndBody {
+    /// The centre.
+    seen: Seen,
+    /// World units.
+    radius: f64,
+    ball: Similarity,
+}
+
+impl BallAndBody {
+    /// `None` for other shapes, and for placements that are not a rotation with a uniform scale.
+    pub fn new(ball: Placed, body: Placed) -> Option<BallAndBody> {
+        let radius = ball.shape.ball_radius()?;
+        let at = Similarity::new(&ball.placement.matrix3)?;
+        let radius = radius * at.stretch;
+        Some(BallAndBody { seen: Seen::new(body, ball.placement.translation, radius)?, radius, ball: at })
+    }
+
+    /// In the unit of the pair.
+    fn gap(&self) -> f64 {
+        self.seen.distance() - self.radius * self.seen.scale
+    }
+
+    /// Whether they intersect; `None` where GJK has to say.
+    pub fn intersects(&self) -> Option<bool> {
+        Gap { least: self.gap(), greatest: self.gap() }.intersects()
+    }
+
+    /// Whether they intersect, with the evidence.
+    pub fn relation(&self) -> Option<Relation> {
+        Some(match self.intersects()? {
+            true => Relation::Common(self.common_point()),
+            false => Relation::Separated { axis: Some(self.seen.normal()) },
+        })
+    }
+
+    /// The closest points.
+    pub fn closest(&self) -> Option<Closest> {
+        Some(match self.intersects()? {
+            true => Closest { distance: 0.0, points: self.common_point() },
+            false => Closest { distance: self.gap() / self.seen.scale, points: self.facing(self.radius) },
+        })
+    }
+
+    /// How deep they are in each other, where they intersect.
+    pub fn penetration(&self) -> Option<Penetration> {
+        if !self.intersects()? {
+            return None;
+        }
+        let (depth, error) = (-self.gap() / self.seen.scale, DISTANCE_ERROR / self.seen.scale);
+        let points = self.facing(self.radius);
+        let (lower, upper) = (depth - error, depth + error);
+        Some(Penetration { depth, lower, upper, direction: self.seen.normal(), points })
+    }
+
+    /// The centre where it is in the body, else the point of the body that is nearest to it.
+    fn common_point(&self) -> Witness {
+        let distance = self.seen.distance();
+        if distance > 0.0 {
+            self.facing(distance / self.seen.scale)
+        } else {
+            Witness { on_a: DVec3::ZERO, on_b: self.seen.point() }
+        }
+    }
+
+    /// The point of the body that is nearest to the centre, and the point so far from the centre towards it.
+    fn facing(&self, way: f64) -> Witness {
+        Witness { on_a: self.ball.local(self.seen.normal() * -way), on_b: self.seen.on_surface() }
+    }
+}
