@@ -10,7 +10,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::descent::{End, Goal, descend_robustly_from};
+use super::descent::{End, Goal, descend_after};
 use super::lean::{Lean, Search, Sure};
 use super::pairs::Pair;
 use super::task::{self, Task};
@@ -239,7 +239,7 @@ impl Clip<'_> {
         B: Support + ?Sized,
     {
         let scale = difference.scale();
-        let descent = descend_robustly_from(difference, self.goal(scale), self.lean.points());
+        let descent = descend_after(difference, self.goal(scale), self.lean);
         self.known.keep(descent.simplex.points());
         let v = descent.axis.normalize_or_zero();
         let mu = v.dot(difference.support_against(v).w);

@@ -116,17 +116,15 @@ where
     descend_within(difference, goal, &[], ITERATIONS_MAX)
 }
 
-/// Runs the robust descent from up to three points of the difference, unless the origin is on their hull.
+/// Runs the robust descent where a lean one was not sure. Of what is curved it goes on from there, since that is most of the way; of polytopes it begins
+/// anew, for what a lean descent cannot tell of them is a sliver.
 #[cold]
-pub(super) fn descend_robustly_from<A, B>(
-    difference: &Difference<A, B>,
-    goal: Goal,
-    points: &[SupportPoint],
-) -> Descent
+pub(super) fn descend_after<A, B>(difference: &Difference<A, B>, goal: Goal, lean: &Lean) -> Descent
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
+    let points = if difference.is_polytope() { &[] } else { lean.points() };
     descend_within(difference, goal, points, ITERATIONS_MAX)
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::descent::{Descent, End, Goal, descend_robustly};
+use super::descent::{Descent, End, Goal, descend_after, descend_robustly};
 use super::lean::{Lean, Search, Sure};
 use super::pairs::Pair;
 use super::task::{self, Task};
@@ -24,6 +24,9 @@ pub struct Closest {
 /// The relative error of a distance, as far as the rounding error of positions allows: polytopes reach it in their last
 /// iteration anyway, and for quadrics each digit costs some four iterations.
 pub(crate) const DISTANCE_TOLERANCE: f64 = 1e-12;
+
+/// A distance that may not be one for all questions, in the difference's unit.
+const NEARLY_TOUCHING: f64 = 4.0 * TOUCHING_ERROR;
 
 /// The closest points of two placed convex objects, and their distance. Algorithm 4.1 of the thesis.
 ///
@@ -249,13 +252,24 @@ where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
+    if a.as_polytope().is_none() || b.as_polytope().is_none() {
+        let (difference, mut lean) = (Difference::new(a, placement_a, b, placement_b), Lean::default());
+        let task = Measure { bound, warm: &[] };
+        return match task.run_in(&mut lean, &difference) {
+            Answer::Beyond(axis) => Err(axis),
+            Answer::Closest(closest, v) => Ok((closest, v)),
+            Answer::Unknown => {
+                measure_robustly(&difference, task, &lean).map(|found| (found.closest, found.v))
+            }
+        };
+    }
     match task::run(a, placement_a, b, placement_b, MeasureAnew { bound }) {
         Answer::Beyond(axis) => Err(axis),
         Answer::Closest(closest, v) => Ok((closest, v)),
         Answer::Unknown => {
+            let difference = Difference::new(a, placement_a, b, placement_b);
             let task = Measure { bound, warm: &[] };
-            let found = measure_robustly(&Difference::new(a, placement_a, b, placement_b), task)?;
-            Ok((found.closest, found.v))
+            measure_robustly(&difference, task, &Lean::default()).map(|found| (found.closest, found.v))
         }
     }
 }
@@ -288,17 +302,28 @@ where
         (Answer::Closest(closest, v), lean) => {
             Ok(Measured { closest, v, points: lean.points, len: lean.points().len() })
         }
-        (Answer::Unknown, _) => measure_robustly(&Difference::new(a, placement_a, b, placement_b), task),
+        (Answer::Unknown, lean) => {
+            measure_robustly(&Difference::new(a, placement_a, b, placement_b), task, &lean)
+        }
     }
 }
 
 #[cold]
-fn measure_robustly<A, B>(difference: &Difference<A, B>, task: Measure) -> Result<Measured, DVec3>
+fn measure_robustly<A, B>(
+    difference: &Difference<A, B>,
+    task: Measure,
+    lean: &Lean,
+) -> Result<Measured, DVec3>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
-    let descent = descend_robustly(difference, task.goal(difference.scale()));
+    let goal = task.goal(difference.scale());
+    let mut descent = descend_after(difference, goal, lean);
+    if !difference.is_polytope() && descent.v.length_squared() <= NEARLY_TOUCHING * NEARLY_TOUCHING {
+        // What touches is to do so for all questions: they begin from nothing.
+        descent = descend_robustly(difference, goal);
+    }
     if descent.beyond {
         return Err(descent.axis);
     }

@@ -72,10 +72,9 @@ pub(super) fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
 /// Something of a ball, or a point, and a body; of a body and a ball mirrored. `None` for other shapes, and where GJK has to say.
 #[inline]
 fn of_ball<T: Mirror>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) -> Option<T>) -> Option<T> {
-    if a.shape.ball_radius().is_some() {
-        what(&BallAndBody::new(a, b)?)
-    } else {
-        what(&BallAndBody::new(b, a)?).mirrored()
+    match BallAndBody::new(a, b) {
+        Some(pair) => what(&pair),
+        None => what(&BallAndBody::new(b, a)?).mirrored(),
     }
 }
 

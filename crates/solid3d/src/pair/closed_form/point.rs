@@ -16,6 +16,8 @@ struct Foot<V> {
     distance: f64,
     /// Outward, of length one.
     normal: V,
+    /// Where it is.
+    at: V,
 }
 
 /// A point as a body sees it that its placement leaves what it is.
@@ -60,7 +62,7 @@ impl Seen {
 
     /// The nearest point of the surface. Space: the body's own.
     pub fn on_surface(&self) -> DVec3 {
-        self.local(self.point - self.foot.normal * self.foot.distance)
+        self.local(self.foot.at)
     }
 
     /// The point. Space: the body's own.
@@ -111,24 +113,27 @@ fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
 fn of_capsule(radius: f64, half_height: f64, p: DVec3) -> Foot<DVec3> {
     let core = DVec3::Y * p.y.clamp(-half_height, half_height);
     let (length, normal) = polar(p - core, DVec3::X);
-    Foot { distance: length - radius, normal }
+    Foot { distance: length - radius, normal, at: core + normal * radius }
 }
 
 fn of_box(half: DVec3, p: DVec3) -> Foot<DVec3> {
     let beyond = p.abs() - half;
     if beyond.max_element() > 0.0 {
         let (distance, normal) = polar(beyond.max(DVec3::ZERO), DVec3::X);
-        return Foot { distance, normal: normal.copysign(p) };
+        return Foot { distance, normal: normal.copysign(p), at: p.clamp(-half, half) };
     }
     let axis = beyond.max_position();
-    Foot { distance: beyond[axis], normal: DVec3::AXES[axis] * 1f64.copysign(p[axis]) }
+    let mut at = p;
+    at[axis] = half[axis].copysign(p[axis]);
+    Foot { distance: beyond[axis], normal: DVec3::AXES[axis] * 1f64.copysign(p[axis]), at }
 }
 
 /// Of a body that turns about the axis y, by what its profile is nearest to.
 fn turned(p: DVec3, profile: impl Fn(DVec2) -> Foot<DVec2>) -> Foot<DVec3> {
     let (radius, outward) = polar(DVec3::new(p.x, 0.0, p.z), DVec3::X);
-    let Foot { distance, normal } = profile(DVec2::new(radius, p.y));
-    Foot { distance, normal: outward * normal.x + DVec3::Y * normal.y }
+    let Foot { distance, normal, at } = profile(DVec2::new(radius, p.y));
+    let turned = |q: DVec2| outward * q.x + DVec3::Y * q.y;
+    Foot { distance, normal: turned(normal), at: turned(at) }
 }
 
 /// The profile of a cylinder: symmetric, up to the corner `half`.
@@ -137,11 +142,11 @@ fn of_rectangle(half: DVec2, p: DVec2) -> Foot<DVec2> {
     let up = 1f64.copysign(p.y);
     if beyond.x > 0.0 && beyond.y > 0.0 {
         let (distance, normal) = polar(DVec3::new(beyond.x, beyond.y * up, 0.0), DVec3::X);
-        Foot { distance, normal: normal.truncate() }
+        Foot { distance, normal: normal.truncate(), at: DVec2::new(half.x, half.y * up) }
     } else if beyond.x >= beyond.y {
-        Foot { distance: beyond.x, normal: DVec2::X }
+        Foot { distance: beyond.x, normal: DVec2::X, at: DVec2::new(half.x, p.y) }
     } else {
-        Foot { distance: beyond.y, normal: DVec2::Y * up }
+        Foot { distance: beyond.y, normal: DVec2::Y * up, at: DVec2::new(p.x, half.y * up) }
     }
 }
 
@@ -157,13 +162,13 @@ fn of_cone(radius: f64, half_height: f64, p: DVec2) -> Foot<DVec2> {
     let over_side = beyond_side > 0.0 && (0.0..=length).contains(&down);
     let under_base = below > 0.0 && p.x <= radius;
     if over_side || (inside && beyond_side >= below) {
-        Foot { distance: beyond_side, normal: side }
+        Foot { distance: beyond_side, normal: side, at: p - side * beyond_side }
     } else if under_base || inside {
-        Foot { distance: below, normal: DVec2::NEG_Y }
+        Foot { distance: below, normal: DVec2::NEG_Y, at: DVec2::new(p.x, -half_height) }
     } else {
         let corner = if down < 0.0 { apex } else { rim };
         let (distance, normal) = polar((p - corner).extend(0.0), DVec3::X);
-        Foot { distance, normal: normal.truncate() }
+        Foot { distance, normal: normal.truncate(), at: corner }
     }
 }
 
