@@ -30,7 +30,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::feature::SLIVER_SINE_SQUARED;
-use crate::gjk::{End, Goal, descend};
+use crate::gjk::{End, Goal, TOUCHING_ERROR, descend, intersects};
 use crate::rounded::Core;
 use crate::simplex::{Reduced, Simplex};
 use crate::{Support, Witness};
@@ -52,6 +52,9 @@ const EXPANSIONS_MAX: usize = 4 * VERTICES_MAX;
 
 /// The error of the height of a support point along a unit vector, whose coordinates sum to less than 2.
 const HEIGHT_ERROR: f64 = 2.0 * SUPPORT_ERROR;
+
+/// A gap or a depth beyond which no question takes objects to touch, in the unit of the difference.
+const BEYOND_TOUCHING: f64 = 4.0 * TOUCHING_ERROR;
 
 /// Bounds that are further apart than the tolerance of the search, times this, are so because planes of faces were lost in rounding, or because
 /// [`VERTICES_MAX`] ended it.
@@ -103,11 +106,16 @@ where
     if let found @ Some(_) = zonotope::penetration(&difference) {
         return found;
     }
-    let descent = descend(&difference, Goal::Separation);
-    if descent.end == End::Separated {
-        return None;
+    let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
+    if core_a.radius() > 0.0 || core_b.radius() > 0.0 {
+        let found = rounded::penetration(&core_a, placement_a, &core_b, placement_b, BEYOND_TOUCHING)?;
+        // Of what touches GJK has the word.
+        let surely = found.lower * difference.scale() > BEYOND_TOUCHING;
+        return (surely || intersects(a, placement_a, b, placement_b)).then_some(found);
     }
-    Some(search(&difference, a, placement_a, b, placement_b, &descent.simplex))
+    let descent = descend(&difference, Goal::Separation);
+    (descent.end != End::Separated)
+        .then(|| deepen(&difference, &descent.simplex).penetration(difference.scale(), 0.0))
 }
 
 /// The same for objects that are known to intersect or touch, with a simplex of their difference that shows it.
@@ -123,28 +131,15 @@ where
     B: Support + ?Sized,
 {
     let difference = Difference::new(a, placement_a, b, placement_b);
-    zonotope::penetration(&difference)
-        .unwrap_or_else(|| search(&difference, a, placement_a, b, placement_b, simplex))
-}
-
-/// The depth of objects without a closed form.
-fn search<A, B>(
-    difference: &Difference<A, B>,
-    a: &A,
-    placement_a: &DAffine3,
-    b: &B,
-    placement_b: &DAffine3,
-    simplex: &Simplex,
-) -> Penetration
-where
-    A: Support + ?Sized,
-    B: Support + ?Sized,
-{
+    if let Some(found) = zonotope::penetration(&difference) {
+        return found;
+    }
     let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
     if core_a.radius() > 0.0 || core_b.radius() > 0.0 {
-        return rounded::penetration(&core_a, placement_a, &core_b, placement_b);
+        let found = rounded::penetration(&core_a, placement_a, &core_b, placement_b, f64::INFINITY);
+        return found.expect("no distance is beyond all bounds");
     }
-    deepen(difference, simplex).penetration(difference.scale(), 0.0)
+    deepen(&difference, simplex).penetration(difference.scale(), 0.0)
 }
 
 /// The depth of the origin in a difference, from the simplex around it that a descent ended with.

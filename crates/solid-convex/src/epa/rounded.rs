@@ -9,28 +9,33 @@ use crate::rounded::Core;
 use crate::{Support, Witness};
 
 /// How deep two objects are in each other, of which at least one has a core with a radius: by the distance of the cores, or by their
-/// depth.
+/// depth. `None` when they are certainly further apart than the bound, in the unit of the difference.
 pub(super) fn penetration<A, B>(
     a: &Core<A>,
     placement_a: &DAffine3,
     b: &Core<B>,
     placement_b: &DAffine3,
-) -> Penetration
+    bound: f64,
+) -> Option<Penetration>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
 {
     let difference = Difference::new(a, placement_a, b, placement_b);
-    let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
+    let radius = (a.radius() + b.radius()) * difference.scale();
+    let goal = Goal::DistanceWithin { tolerance: DISTANCE_TOLERANCE, bound: radius + bound };
+    let descent = descend(&difference, goal);
+    if descent.beyond {
+        return None;
+    }
     let nearest = match descent.end {
         End::Separated => apart(&difference, descent.v, Witness::of(&descent.simplex)),
         End::Undecided | End::Inside => deepen(&difference, &descent.simplex),
     };
-    let radius = (a.radius() + b.radius()) * difference.scale();
     let mut found = nearest.penetration(difference.scale(), radius);
     found.points.on_a -= a.to_surface(placement_a, found.direction);
     found.points.on_b += b.to_surface(placement_b, found.direction);
-    found
+    Some(found)
 }
 
 /// Of cores that are apart, `v` is the difference of their closest points.

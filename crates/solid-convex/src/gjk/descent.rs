@@ -15,11 +15,6 @@ use crate::simplex::{Reduced, Simplex};
 pub(crate) enum Goal {
     /// As soon as an axis is known to separate the objects.
     Separation,
-    /// As soon as the distance is known to this relative error.
-    Distance {
-        /// The relative error.
-        tolerance: f64,
-    },
     /// As soon as what of the distance is beyond some radii is known to this relative error, or to be next to nothing.
     Gap {
         /// The relative error.
@@ -27,7 +22,7 @@ pub(crate) enum Goal {
         /// What of the distance is no gap, in the difference's unit of length.
         radii: f64,
     },
-    /// The same as for the distance, or as soon as that is known to be more than a bound.
+    /// As soon as the distance is known to a relative error, or to be more than a bound.
     DistanceWithin {
         /// The relative error.
         tolerance: f64,
@@ -232,7 +227,7 @@ impl Goal {
         };
         match self {
             Goal::Separation => certifies(v, p.w),
-            Goal::Distance { .. } | Goal::Gap { .. } => near_enough(),
+            Goal::Gap { .. } => near_enough(),
             Goal::DistanceWithin { .. } => near_enough() || self.is_exceeded(*mu),
         }
     }
@@ -241,9 +236,7 @@ impl Goal {
     pub(super) fn is_within_tolerance(self, length: f64, mu: f64) -> bool {
         match self {
             Goal::Separation => true,
-            Goal::Distance { tolerance } | Goal::DistanceWithin { tolerance, .. } => {
-                length - mu <= tolerance * length
-            }
+            Goal::DistanceWithin { tolerance, .. } => length - mu <= tolerance * length,
             Goal::Gap { tolerance, radii } => {
                 length - mu <= (tolerance * (length - radii)).max(SUPPORT_ERROR)
             }

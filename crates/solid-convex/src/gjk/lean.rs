@@ -246,7 +246,7 @@ impl Search<'_> {
             {
                 return Sure::Beyond;
             }
-            Goal::Distance { tolerance } | Goal::DistanceWithin { tolerance, .. } => tolerance,
+            Goal::DistanceWithin { tolerance, .. } => tolerance,
             Goal::Gap { .. } => {
                 let length = square.sqrt();
                 let (distance, mu) = (length / divisor, vw / length);

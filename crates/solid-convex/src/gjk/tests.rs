@@ -285,7 +285,10 @@ fn distances_of_round_objects_are_those_of_their_surfaces() {
             let scale = [DVec3::ONE, DVec3::splat(0.7), DVec3::new(1.0, 0.6, 1.2)][scale as usize];
             let (at, at_other) = (turned * DAffine3::from_scale(scale), placement(5 * k + 1));
             let difference = Difference::new(round, &at, &**other, &at_other);
-            let descent = descend(&difference, Goal::Distance { tolerance: DISTANCE_TOLERANCE });
+            let descent = descend(
+                &difference,
+                Goal::DistanceWithin { tolerance: DISTANCE_TOLERANCE, bound: f64::INFINITY },
+            );
             let (slow, _) = Closest::of(&descent, &difference);
             let found = closest_points(round, &at, &**other, &at_other);
             assert!((found.distance - slow.distance).abs() < 1e-11, "{i} {k}: {found:?}, {slow:?}");
@@ -334,7 +337,10 @@ fn the_lean_descent_says_what_the_robust_one_says() {
                     at_b.translation += way * (1.0 - 1e-9 * f64::from(k % 2));
                 }
                 let difference = Difference::new(&**a, &at_a, &**b, &at_b);
-                for goal in [Goal::Separation, Goal::Distance { tolerance: DISTANCE_TOLERANCE }] {
+                for goal in [
+                    Goal::Separation,
+                    Goal::DistanceWithin { tolerance: DISTANCE_TOLERANCE, bound: f64::INFINITY },
+                ] {
                     let search = Search { goal, warm: &[] };
                     let [scalar, wide] = simd::levels().map(|level| task::run_on(level, &difference, search));
                     assert_eq!((scalar.sure, scalar.v), (wide.sure, wide.v), "{i} {j} {k}");
@@ -435,7 +441,13 @@ fn the_iteration_limit_is_undecided() {
     let near = DAffine3::from_translation(DVec3::new(1.3, 2.0, 0.1)) * DAffine3::from_rotation_z(1.0);
     let difference = Difference::new(&ball, &egg, &ball, &near);
     let needed = (0..=ITERATIONS_MAX).find(|&limit| {
-        descend_within(&difference, Goal::Distance { tolerance: 1e-12 }, &[], limit).end != End::Undecided
+        descend_within(
+            &difference,
+            Goal::DistanceWithin { tolerance: 1e-12, bound: f64::INFINITY },
+            &[],
+            limit,
+        )
+        .end != End::Undecided
     });
     let needed = needed.expect("it ends in time");
     assert!(needed > 2, "{needed}");

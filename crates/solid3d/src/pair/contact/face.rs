@@ -90,6 +90,11 @@ impl<'a> Placed<'a> {
         Placed { body, map, inverse: inverse_linear(&map.matrix3) }
     }
 
+    /// Whether it touches in one point, whatever it touches.
+    pub fn is_ball(&self) -> bool {
+        matches!(self.body, Body::Sphere(_))
+    }
+
     /// Whether what a face says of the heights is only true at its corners.
     fn is_round(&self) -> bool {
         !matches!(self.body, Body::Cuboid(_) | Body::Hull { .. } | Body::Simplex { .. })
@@ -307,7 +312,11 @@ impl<'a> Placed<'a> {
     fn simplex(&self, vertices: &[DVec3], indices: &[u32], direction: DVec3) -> Face {
         let mut corners: Vec<Corner> =
             indices.iter().map(|&i| self.corner(vertices[i as usize], i)).collect();
-        if let Some(normal) = triangle_normal(&corners) {
+        let normal = match corners[..] {
+            [p, q, r] => triangle_normal([p, q, r].map(|corner| corner.point)),
+            _ => None,
+        };
+        if let Some(normal) = normal {
             let cosine = normal.dot(direction);
             let number = u32::from(cosine < 0.0);
             return Face { corners, normal: normal * cosine.signum(), number, cosine: cosine.abs() };
@@ -323,11 +332,10 @@ impl<'a> Placed<'a> {
 }
 
 /// The unit normal of a triangle; `None` for one without area, and for what is none.
-pub(super) fn triangle_normal(corners: &[Corner]) -> Option<DVec3> {
+pub(super) fn triangle_normal([p, q, r]: [DVec3; 3]) -> Option<DVec3> {
     /// The sine of the least angle at a corner beyond which the normal has no digits.
     const SINE_MIN: f64 = 1e-12;
-    let &[p, q, r] = corners else { return None };
-    let (u, v) = (q.point - p.point, r.point - p.point);
+    let (u, v) = (q - p, r - p);
     // In a unit of its own, where squares of its area do not vanish: the other shape may be any number of times as large.
     let unit = unit_scale(u.abs().max(v.abs()).max_element());
     let (u, v) = (u * unit, v * unit);
@@ -357,11 +365,10 @@ mod tests {
     fn a_triangle_of_any_size_has_a_unit_normal() {
         for exponent in (-200..=0).step_by(3) {
             let corners = [[1.0, 2.0, 3.0], [2.5, -1.0, 0.5], [-0.5, 1.5, -2.0]];
-            let corners =
-                corners.map(|p| Corner { point: DVec3::from_array(p) * 10f64.powi(exponent), vertex: 0 });
-            let normal = triangle_normal(&corners).expect("it has an area");
+            let corners = corners.map(|p| DVec3::from_array(p) * 10f64.powi(exponent));
+            let normal = triangle_normal(corners).expect("it has an area");
             assert!((normal.length() - 1.0).abs() < 1e-14, "1e{exponent}: {normal}");
-            let [p, q, r] = corners.map(|corner| corner.point * 10f64.powi(-exponent));
+            let [p, q, r] = corners.map(|corner| corner * 10f64.powi(-exponent));
             assert!(
                 normal.dot(q - p).abs() < 1e-12 && normal.dot(r - p).abs() < 1e-12,
                 "1e{exponent}: {normal}"

@@ -14,7 +14,7 @@ mod face;
 mod region;
 mod soup;
 
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use solid_convex::{Penetration, Support, epa, gjk};
 
 use super::depth::of_common;
@@ -23,7 +23,7 @@ use super::reach::reach;
 use super::{Placed, Relation, Scratch, closed_form, table, world_bounds};
 use crate::shape::{Body, Class, Complex};
 use clip::{Origin, clip};
-use face::{Face, triangle_normal};
+use face::Face;
 
 /// A part of the surface of a shape. Its number stays with the shape however it moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -282,6 +282,10 @@ impl Pair<'_> {
     fn touches(&self, a: &face::Placed, b: &face::Placed, meeting: &Meeting) -> Vec<Touch> {
         let Meeting { normal, depth, on_a, on_b } = *meeting;
         let (face_a, face_b) = facing(a, b, normal);
+        let deepest = Touch { on_a, on_b, depth, features: [feature_of(&face_a), feature_of(&face_b)] };
+        if a.is_ball() || b.is_ball() {
+            return vec![deepest];
+        }
         let mut touches = self.clipped(a, &face_a, b, &face_b, normal);
         let error = SAME_DEPTH + DEPTH_ERROR * depth.abs();
         // Nothing is deeper along the normal; but a face is flat only up to what is a length to a much smaller body.
@@ -289,10 +293,8 @@ impl Pair<'_> {
             touch.on_b -= normal * (touch.depth - depth);
             touch.depth = depth;
         }
-        let deepest = touches.iter().map(|touch| touch.depth).fold(f64::NEG_INFINITY, f64::max);
-        if deepest < depth - error {
-            let features = [feature_of(&face_a), feature_of(&face_b)];
-            touches.push(Touch { on_a, on_b, depth, features });
+        if touches.iter().all(|touch| touch.depth < depth - error) {
+            touches.push(deepest);
         }
         touches
     }
@@ -374,10 +376,4 @@ fn projected(face: &Face, flat: impl Fn(DVec3) -> DVec2) -> (Vec<usize>, Vec<DVe
         }
     }
     ((0..all.len()).collect(), all)
-}
-
-/// The plane of a triangle, in the common frame.
-fn plane_of(map: &DAffine3, corners: [DVec3; 3]) -> Option<DVec3> {
-    let placed = corners.map(|p| face::Corner { point: map.transform_point3(p), vertex: 0 });
-    triangle_normal(&placed)
 }

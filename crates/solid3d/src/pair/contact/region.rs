@@ -25,6 +25,10 @@ pub(super) struct Region {
 /// Puts patches together whose primitives are connected on both sides, and whose normals are that of the deepest of them. In the order
 /// of their first primitives. Cost: follows the patches at one vertex, times how many normals they have.
 pub(super) fn regions(a: &Part, b: &Part, patches: Vec<Patch>) -> Vec<Region> {
+    if let [Patch { primitives, normal, touches, .. }] = &patches[..] {
+        let points = touches.iter().map(|&touch| (*primitives, touch)).collect();
+        return vec![Region { normal: *normal, points }];
+    }
     let deepest = |patch: &Patch| patch.touches.iter().map(|touch| touch.depth).fold(f64::MIN, f64::max);
     let depths: Vec<f64> = patches.iter().map(deepest).collect();
     let mut seeds: Vec<usize> = (0..patches.len()).collect();
@@ -47,9 +51,11 @@ pub(super) fn regions(a: &Part, b: &Part, patches: Vec<Patch>) -> Vec<Region> {
 struct Joining<'p> {
     patches: &'p [Patch],
     is_taken: Vec<bool>,
-    /// Of each patch, a vertex of either surface: those by which it is connected.
-    vertices: Vec<Vec<[u32; 2]>>,
-    at_vertex: HashMap<[u32; 2], Neighbours>,
+    /// Patches by the vertices that connect them, a vertex of each surface: those of patch `i` are in the groups
+    /// `groups_of[starts[i]..starts[i + 1]]`.
+    groups: Vec<Neighbours>,
+    groups_of: Vec<usize>,
+    starts: Vec<usize>,
 }
 
 /// Patches that have a vertex of either surface in common.
@@ -63,19 +69,26 @@ struct Neighbours {
 
 impl<'p> Joining<'p> {
     fn new(a: &Part, b: &Part, patches: &'p [Patch]) -> Self {
-        let vertices: Vec<Vec<[u32; 2]>> = patches.iter().map(|patch| vertices(a, b, patch)).collect();
-        let mut at_vertex: HashMap<[u32; 2], Neighbours> = HashMap::new();
-        for (i, vertices) in vertices.iter().enumerate() {
-            for &vertex in vertices {
-                at_vertex.entry(vertex).or_default().patches.push(i);
-            }
+        let (mut vertices, mut starts) = (Vec::new(), vec![0]);
+        for patch in patches {
+            vertices.extend(connections(a, b, patch));
+            starts.push(vertices.len());
         }
-        Joining { patches, is_taken: vec![false; patches.len()], vertices, at_vertex }
+        let mut order: Vec<usize> = (0..vertices.len()).collect();
+        order.sort_unstable_by_key(|&place| (vertices[place], place));
+        let mut groups_of = vec![0; vertices.len()];
+        let mut groups: Vec<Neighbours> = Vec::new();
+        for same in order.chunk_by(|&x, &y| vertices[x] == vertices[y]) {
+            same.iter().for_each(|&place| groups_of[place] = groups.len());
+            let patch = |&place: &usize| starts.partition_point(|&start| start <= place) - 1;
+            groups.push(Neighbours { patches: same.iter().map(patch).collect(), seen_by: None });
+        }
+        Joining { patches, is_taken: vec![false; patches.len()], groups, groups_of, starts }
     }
 
     /// Takes a patch, and all of its normal that are connected with it; `None` when it is taken already. In ascending order.
     fn grow(&mut self, seed: usize) -> Option<Vec<usize>> {
-        let Joining { patches, is_taken, vertices, at_vertex } = self;
+        let Joining { patches, is_taken, groups, groups_of, starts } = self;
         if std::mem::replace(&mut is_taken[seed], true) {
             return None;
         }
@@ -83,8 +96,8 @@ impl<'p> Joining<'p> {
         let mut next = 0;
         while let Some(&member) = members.get(next) {
             next += 1;
-            for vertex in &vertices[member] {
-                let neighbours = at_vertex.get_mut(vertex).expect("each vertex of a patch has neighbours");
+            for &group in &groups_of[starts[member]..starts[member + 1]] {
+                let neighbours = &mut groups[group];
                 if neighbours.seen_by.replace(seed) == Some(seed) {
                     continue;
                 }
@@ -108,7 +121,7 @@ fn is_same(normal: DVec3, other: DVec3) -> bool {
 }
 
 /// By which a patch is connected to others: a vertex of each surface.
-fn vertices(a: &Part, b: &Part, patch: &Patch) -> Vec<[u32; 2]> {
+fn connections(a: &Part, b: &Part, patch: &Patch) -> Vec<[u32; 2]> {
     let [of_a, of_b] = [corners(a, patch.primitives[0]), corners(b, patch.primitives[1])];
     of_a.iter().flat_map(|&x| of_b.iter().map(move |&y| [x, y])).collect()
 }

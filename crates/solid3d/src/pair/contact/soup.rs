@@ -15,11 +15,13 @@ use glam::{DAffine3, DVec3};
 use solid_convex::Support;
 use solid_convex::simd::level;
 
+use super::super::closed_form::Similarity;
+use super::super::reach::core;
 use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
 use super::super::table::PlacedConvex;
 use super::super::triangle_triangle::Triangle;
 use super::super::{Scratch, complex_convex, table, triangle_triangle};
-use super::{Meeting, Pair, Part, Patch, Touch, face, facing, plane_of};
+use super::{Meeting, Pair, Part, Patch, Touch, face, facing};
 use crate::shape::{Body, Complex};
 use crate::tree::{LeafPairs, bits, pairs_on};
 
@@ -56,14 +58,19 @@ pub(super) fn soup_body(
     let [map_soup, map_body] =
         if mirrored { [pair.frame.common[1], pair.frame.common[0]] } else { pair.frame.common };
     let body = face::Placed::new(kind, map_body);
-    let other = Other { support: *support, map: map_body, corners: &[] };
+    let round = core(*support).zip(Similarity::new(&map_body.matrix3));
+    let (ends, radius) = round.map_or(([DVec3::ZERO; 2], 0.0), |((ends, radius), similarity)| {
+        (ends.map(|end| map_body.transform_point3(end)), radius * similarity.stretch)
+    });
+    let corners = if round.is_some() { &ends[..] } else { &[] };
+    let other = Other { support: *support, map: map_body, corners, radius };
     let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
     let patch = |primitive: u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
         let placed = face::Placed::new(&primitive_body, map_soup);
         let corners = placed_corners(complex, primitive, &map_soup);
-        let side = Side { complex, primitive, body: placed, corners: &corners, other };
+        let side = Side::new(complex, primitive, placed, &corners, other);
         let primitives = if mirrored { [0, primitive] } else { [primitive, 0] };
         let over = |normal: DVec3| match mirrored {
             true => pair.over(&body, &side.body, normal, false),
@@ -207,10 +214,10 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
         let (placed_a, placed_b) = (face::Placed::new(&body_a, map_a), face::Placed::new(&body_b, map_b));
         let (corners_a, corners_b) = (placed_corners(a, i, &map_a), placed_corners(b, j, &map_b));
-        let other_a = Other { support: &hull_a, map: map_a, corners: &corners_a };
-        let other_b = Other { support: &hull_b, map: map_b, corners: &corners_b };
-        let of_a = Side { complex: a, primitive: i, body: placed_a, corners: &corners_a, other: other_b };
-        let of_b = Side { complex: b, primitive: j, body: placed_b, corners: &corners_b, other: other_a };
+        let other_a = Other { support: &hull_a, map: map_a, corners: &corners_a, radius: 0.0 };
+        let other_b = Other { support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
+        let of_a = Side::new(a, i, placed_a, &corners_a, other_b);
+        let of_b = Side::new(b, j, placed_b, &corners_b, other_a);
         let (on_a, on_b) = (of_a.corrected(-meeting.normal), of_b.corrected(meeting.normal));
         let (normal, touches) = match (on_a, on_b) {
             (_, Corrected::Replaced(normal)) => (normal, pair.over(&of_a.body, &of_b.body, normal, false)),
@@ -278,8 +285,10 @@ impl Meeting {
 struct Other<'a> {
     support: &'a dyn Support,
     map: DAffine3,
-    /// Of a primitive, where its corners are; none of others.
+    /// Of a primitive, where its corners are, and of what is round the ends of its core; none of others.
     corners: &'a [DVec3],
+    /// How far it reaches around these.
+    radius: f64,
 }
 
 impl Other<'_> {
@@ -287,10 +296,10 @@ impl Other<'_> {
         self.map.transform_point3(self.support.center())
     }
 
-    /// How far it reaches along a direction.
+    /// How far it reaches along a direction, a unit vector.
     fn greatest(&self, direction: DVec3) -> f64 {
         if !self.corners.is_empty() {
-            return highest(self.corners, direction);
+            return highest(self.corners, direction) + self.radius;
         }
         let furthest = self.support.support(self.map.matrix3.transpose() * direction);
         direction.dot(self.map.transform_point3(furthest))
@@ -315,6 +324,10 @@ struct Side<'a> {
     /// Space: common.
     corners: &'a [DVec3],
     other: Other<'a>,
+    /// The normal of the primitive when it is a triangle, by its order.
+    plane: Option<DVec3>,
+    /// 1 when the normal of the triangle points out of a solid, -1 when into it, 0 when there is none.
+    orientation: f64,
 }
 
 /// A normal out of a primitive.
@@ -336,10 +349,26 @@ impl Corrected {
     }
 }
 
-impl Side<'_> {
+impl<'a> Side<'a> {
+    fn new(
+        complex: &'a Complex,
+        primitive: u32,
+        body: face::Placed<'a>,
+        corners: &'a [DVec3],
+        other: Other<'a>,
+    ) -> Self {
+        let plane = match *corners {
+            [p, q, r] => face::triangle_normal([p, q, r]),
+            _ => None,
+        };
+        let turned = body.map.matrix3.determinant().signum();
+        let orientation = if complex.is_solid() { complex.topology().orientation() * turned } else { 0.0 };
+        Side { complex, primitive, body, corners, other, plane, orientation }
+    }
+
     /// The normal, if the surface has it where it is touched; else that of the triangle.
     fn corrected(&self, out: DVec3) -> Corrected {
-        let Some(normal) = self.plane() else { return Corrected::Kept(out) };
+        let Some(normal) = self.plane else { return Corrected::Kept(out) };
         let cosine = normal.dot(out);
         if cosine.abs() > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL {
             return Corrected::Kept(normal * cosine.signum());
@@ -347,8 +376,8 @@ impl Side<'_> {
         if self.is_of_the_surface(out) {
             return Corrected::Kept(out);
         }
-        let side = if self.orientation() != 0.0 {
-            self.orientation()
+        let side = if self.orientation != 0.0 {
+            self.orientation
         } else if cosine.abs() > SIDE_COSINE {
             cosine
         } else {
@@ -361,7 +390,7 @@ impl Side<'_> {
     /// The normal of a triangle with a flat surface around it, to the side on which the way out is shorter.
     fn flat(&self) -> Option<DVec3> {
         let corners = self.complex.primitive(self.primitive);
-        let normal = self.complex.topology().is_flat(corners).then(|| self.plane())??;
+        let normal = self.complex.topology().is_flat(corners).then_some(self.plane)??;
         Some(if self.depth(normal) <= self.depth(-normal) { normal } else { -normal })
     }
 
@@ -369,7 +398,6 @@ impl Side<'_> {
     /// than along the primitive's own: that of the shortest.
     fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
         let topology = self.complex.topology();
-        let orientation = self.orientation();
         let (mut least, mut best) = (self.depth(own) - LEVEL, None);
         let corners = self.complex.primitive(self.primitive);
         for (i, &corner) in corners.iter().enumerate() {
@@ -382,7 +410,9 @@ impl Side<'_> {
                 if normal.dot(own).abs() > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL {
                     continue;
                 }
-                for out in [normal, -normal].into_iter().filter(|out| orientation * normal.dot(*out) >= 0.0) {
+                for out in
+                    [normal, -normal].into_iter().filter(|out| self.orientation * normal.dot(*out) >= 0.0)
+                {
                     let depth = self.depth(out);
                     if depth < least && self.is_of_the_surface(out) {
                         (least, best) = (depth, Some(out));
@@ -398,27 +428,17 @@ impl Side<'_> {
         highest(self.corners, out) + self.other.greatest(-out)
     }
 
-    /// The normal of the primitive when it is a triangle, by its order.
-    fn plane(&self) -> Option<DVec3> {
-        self.plane_of(self.primitive)
-    }
-
-    /// The same of any primitive.
+    /// The normal of another primitive of the soup, when it is a triangle.
     fn plane_of(&self, primitive: u32) -> Option<DVec3> {
         let &[i, j, k] = self.complex.primitive(primitive) else { return None };
-        plane_of(&self.body.map, [i, j, k].map(|i| self.complex.vertices()[i as usize]))
-    }
-
-    /// 1 when the normal of the triangle points out of a solid, -1 when into it, 0 when there is none.
-    fn orientation(&self) -> f64 {
-        let turned = self.body.map.matrix3.determinant().signum();
-        if self.complex.is_solid() { self.complex.topology().orientation() * turned } else { 0.0 }
+        let corner = |i: u32| self.body.map.transform_point3(self.complex.vertices()[i as usize]);
+        face::triangle_normal([i, j, k].map(corner))
     }
 
     /// Whether a normal points into a solid.
     fn is_inward(&self, out: DVec3) -> bool {
-        let orientation = self.orientation();
-        orientation != 0.0 && self.plane().is_some_and(|normal| orientation * normal.dot(out) < -SAME_NORMAL)
+        let points_in = |normal: DVec3| self.orientation * normal.dot(out) < -SAME_NORMAL;
+        self.orientation != 0.0 && self.plane.is_some_and(points_in)
     }
 
     /// Whether nothing around what is furthest along a normal, of the primitive, is further.
