@@ -74,8 +74,9 @@ mod tests {
         let experiments = include_str!("../../../docs/experiments.md");
         let peers = include_str!("../../../docs/peers.md");
         let of_experiments = all().iter().map(|experiment| (experiments, experiment.name));
-        for (document, name) in
-            of_experiments.chain([(experiments, "shortfalls"), (experiments, "threads"), (peers, "peers")])
+        for (document, name) in of_experiments
+            .chain([(experiments, "shortfalls"), (experiments, "threads")])
+            .chain([(peers, "peers"), (peers, "questions")])
         {
             let [begin, end] = marks(name);
             assert!(document.contains(&begin) && document.contains(&end), "{name}");

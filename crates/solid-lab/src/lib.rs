@@ -5,6 +5,7 @@
 //! - [`inputs`]: shapes, pairs and motions to measure on, from a seed.
 //! - [`experiments`]: the tables and figures of the thesis.
 //! - [`peers`]: the library, the thesis's design and parry, on the same inputs in one run.
+//! - [`questions`]: every question of every pair of kinds beside parry.
 //! - [`threads`]: one thread against two.
 //! - [`document`]: where the results are put.
 
@@ -13,4 +14,5 @@ pub mod document;
 pub mod experiments;
 pub mod inputs;
 pub mod peers;
+pub mod questions;
 pub mod threads;

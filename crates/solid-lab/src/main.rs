@@ -11,7 +11,7 @@ use solid_lab::document;
 use solid_lab::experiments::{self, Experiment, Report, Settings};
 use solid_lab::inputs::SEED;
 use solid_lab::peers::{self, Effort};
-use solid_lab::threads;
+use solid_lab::{questions, threads};
 
 /// Measures again what the thesis measured, and the library beside its peers
 #[derive(Debug, Parser)]
@@ -25,7 +25,7 @@ struct Cli {
 enum Command {
     /// Names the experiments
     List,
-    /// Runs an experiment, or all of them, the comparison with the peers, and that of one thread and two
+    /// Runs an experiment, or all of them, the comparisons with the peers, and that of one thread and two
     Run {
         /// The name of an experiment, or `all`
         name: String,
@@ -52,6 +52,14 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         chart: Option<PathBuf>,
     },
+    /// Every question of every pair of kinds beside parry
+    Questions {
+        #[command(flatten)]
+        measuring: Measuring,
+        /// Bring `peers.md` in this folder up to date
+        #[arg(long, value_name = "FOLDER")]
+        docs: Option<PathBuf>,
+    },
     /// One thread against two
     Threads {
         #[command(flatten)]
@@ -74,7 +82,10 @@ struct Measuring {
 
 fn main() -> Result<()> {
     let command = Cli::parse().command;
-    if let Command::Run { docs: Some(docs), .. } | Command::Threads { docs: Some(docs), .. } = &command {
+    if let Command::Run { docs: Some(docs), .. }
+    | Command::Questions { docs: Some(docs), .. }
+    | Command::Threads { docs: Some(docs), .. } = &command
+    {
         document::expect_in(docs)?;
     }
     match command {
@@ -92,6 +103,7 @@ fn main() -> Result<()> {
             if name == "all" {
                 let chart = docs.as_ref().map(|docs| docs.join("peers.svg"));
                 compare(measuring, &[], None, chart.as_deref(), docs.as_deref())?;
+                ask(measuring, docs.as_deref())?;
                 one_and_two(measuring, docs.as_deref())?;
             }
             Ok(())
@@ -99,6 +111,10 @@ fn main() -> Result<()> {
         Command::Peers { measuring, only, json, chart } => {
             threads::stay_on_one()?;
             compare(measuring, &only, json.as_deref(), chart.as_deref(), None)
+        }
+        Command::Questions { measuring, docs } => {
+            threads::stay_on_one()?;
+            ask(measuring, docs.as_deref())
         }
         Command::Threads { measuring, docs } => one_and_two(measuring, docs.as_deref()),
     }
@@ -171,6 +187,19 @@ fn compare(
         document::fill(&docs.join("experiments.md"), &[("shortfalls", peers::shortfalls(&report))])?;
     }
     Ok(())
+}
+
+fn ask(measuring: Measuring, docs: Option<&Path>) -> Result<()> {
+    let start = Instant::now();
+    let report = questions::run(effort(measuring), measuring.seed, |name| {
+        eprintln!("{:5.1} s: {name}", start.elapsed().as_secs_f64());
+    });
+    let table = questions::table(&report);
+    println!("{table}");
+    match docs {
+        Some(docs) => document::fill(&docs.join("peers.md"), &[("questions", table)]),
+        None => Ok(()),
+    }
 }
 
 fn one_and_two(measuring: Measuring, docs: Option<&Path>) -> Result<()> {

@@ -11,7 +11,7 @@
 mod bench;
 mod cases;
 mod chart;
-mod contestants;
+pub(crate) mod contestants;
 mod effort;
 mod machine;
 mod report;
