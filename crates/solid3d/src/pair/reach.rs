@@ -1,5 +1,7 @@
 //! How far a placed shape reaches.
 
+use std::ops::RangeInclusive;
+
 use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::simd::dispatch;
@@ -81,6 +83,12 @@ pub(super) fn core(shape: &dyn Support) -> Option<([DVec3; 2], f64)> {
 
 /// The length of a vector whose square may not be a number.
 fn length(v: DVec3) -> f64 {
+    /// Squares of lengths that lose no digits.
+    const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
+    let square = v.length_squared();
+    if PLAIN.contains(&square) {
+        return square.sqrt();
+    }
     let largest = v.abs().max_element();
     if largest > 0.0 { largest * (v / largest).length() } else { 0.0 }
 }

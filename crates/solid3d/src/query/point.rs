@@ -8,6 +8,7 @@ use glam::{DAffine3, DVec3};
 use super::cast::bounded;
 use super::{Distance, distance, intersects, placed};
 use crate::error::{Error, Result};
+use crate::pair;
 use crate::placement::direction;
 use crate::shape::{Shape, ShapeKind};
 
@@ -22,8 +23,9 @@ use crate::shape::{Shape, ShapeKind};
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<bool> {
-    let (point, at) = as_shape(point)?;
-    intersects(shape, placement, point, &at)
+    let body = placed(shape, placement)?;
+    let (of_point, at) = as_shape(point)?;
+    pair::contains(body, point).map_or_else(|| intersects(shape, placement, of_point, &at), Ok)
 }
 
 /// The point of a placed shape that is closest to a point, and their distance: of solids 0 inside, where the point itself is the
@@ -37,8 +39,12 @@ pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Resu
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn closest_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<ClosestPoint> {
-    let (point, at) = as_shape(point)?;
-    let Distance { distance, point_on_a, .. } = distance(shape, placement, point, &at)?;
+    let body = placed(shape, placement)?;
+    let (of_point, at) = as_shape(point)?;
+    if let Some((distance, on_body)) = pair::closest_to(body, point) {
+        return Ok(ClosestPoint { point: placement.transform_point3(on_body), distance });
+    }
+    let Distance { distance, point_on_a, .. } = distance(shape, placement, of_point, &at)?;
     Ok(ClosestPoint { point: point_on_a, distance })
 }
 

@@ -18,6 +18,25 @@ pub(super) struct BallAndBody {
     ball: Similarity,
 }
 
+/// Whether there is no gap of this size, in the unit of the pair; `None` where it is too small to tell.
+fn intersects(gap: f64) -> Option<bool> {
+    Gap { least: gap, greatest: gap }.intersects()
+}
+
+/// Whether a point is in a body, as [`BallAndBody`] says of a ball without a radius.
+pub(crate) fn contains(body: Placed, point: DVec3) -> Option<bool> {
+    intersects(Seen::new(body, point, 0.0)?.distance())
+}
+
+/// How far a point is from a body, and the point of the body that is nearest, in the body's own space: as of a ball without a radius.
+pub(crate) fn closest_to(body: Placed, point: DVec3) -> Option<(f64, DVec3)> {
+    let seen = Seen::new(body, point, 0.0)?;
+    Some(match intersects(seen.distance())? {
+        true => (0.0, seen.point()),
+        false => (seen.distance() / seen.scale, seen.on_surface()),
+    })
+}
+
 impl BallAndBody {
     /// `None` for other shapes, and for placements that are not a rotation with a uniform scale.
     pub fn new(ball: Placed, body: Placed) -> Option<BallAndBody> {
@@ -34,7 +53,7 @@ impl BallAndBody {
 
     /// Whether they intersect; `None` where GJK has to say.
     pub fn intersects(&self) -> Option<bool> {
-        Gap { least: self.gap(), greatest: self.gap() }.intersects()
+        intersects(self.gap())
     }
 
     /// Whether they intersect, with the evidence.

@@ -22,6 +22,7 @@ use solid_convex::{Closest, Penetration, unit_scale};
 use super::{Mirror, Placed, Relation};
 use crate::shape::Simple;
 use ball::BallAndBody;
+pub(crate) use ball::{closest_to, contains};
 use boxes::PlacedBox;
 pub(super) use point::surface_point;
 use round::{Cores, PlacedRound};
