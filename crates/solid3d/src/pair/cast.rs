@@ -1,13 +1,13 @@
 //! When two shapes that move along straight lines first meet. Only the relative motion counts: `A` moves, `B` stands still.
 //!
 //! Convex against convex by the GJK cast; complex shapes by branch and bound over their trees, with the boxes of one swept through
-//! the space of the other. The time found so far cuts off what is met later.
+//! the space of the other. The time found so far cuts off what is met later, and so do the planes of the last impacts, of what is behind them.
 
 use glam::{DAffine3, DVec3};
 use solid_convex::{Impact, gjk};
 
 use super::complex_convex::convex_in_complex;
-use super::frame::{Frame, slack};
+use super::frame::{Frame, ROUNDINGS, slack};
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Placed, Relation, Scratch, intersection};
 use crate::bounds::Aabb;
@@ -87,7 +87,7 @@ fn complex_convex(
     (convex, at_convex): PlacedConvex,
     scratch: &mut Scratch,
 ) -> Option<Impact> {
-    let (bounds, _) = convex_in_complex((complex, at), (convex, at_convex));
+    let (bounds, frame) = convex_in_complex((complex, at), (convex, at_convex));
     // In the space of the complex shape it is the convex one that moves.
     let (direction, error) = local_motion(at, -motion);
     let moving = TreeRay {
@@ -96,19 +96,90 @@ fn complex_convex(
         half_extents: bounds.half_extents() * (1.0 + f64::EPSILON) + error,
     };
     let Scratch { traversal, primitive_tests, .. } = scratch;
-    let mut earliest = Earliest::new();
+    let (mut earliest, mut planes) = (Earliest::new(), Planes::new());
     complex.tree().along(&moving, &mut END.clone(), traversal, |leaf, until| {
         for &primitive in leaf {
             let arrives = moving.reaches(&complex.primitive_bounds(primitive));
-            if arrives.is_some_and(|t| t < earliest.until) {
+            let parted = || part(&planes.planes, complex.points_of(primitive));
+            if arrives.is_some_and(|t| t < earliest.until) && !parted() {
                 *primitive_tests += 1;
                 let hull = complex.primitive_hull(primitive);
-                earliest.offer(gjk::cast(&hull, at, motion, convex, at_convex, earliest.until.min(1.0)));
+                let impact = gjk::cast(&hull, at, motion, convex, at_convex, earliest.until.min(1.0));
+                if let Some(plane) =
+                    impact.and_then(|impact| Plane::of(&impact, at, motion, at_convex, &frame))
+                {
+                    planes.add(plane.over(plane.normals[1].dot(convex.support(plane.normals[1]))));
+                }
+                earliest.offer(impact);
             }
         }
         *until = earliest.until;
     });
     earliest.impact
+}
+
+/// A plane between two shapes at an impact, towards which they came together all the way: what is beyond it then was not met before.
+#[derive(Clone, Copy)]
+struct Plane {
+    /// From `B` to `A`, in the space of `A` and in that of `B`.
+    normals: [DVec3; 2],
+    /// What of `A` is this much further along its normal than what of `B` is along its own is beyond. Infinite of no plane.
+    beyond: f64,
+}
+
+impl Plane {
+    const NONE: Plane = Plane { normals: [DVec3::ZERO; 2], beyond: f64::INFINITY };
+
+    /// The plane of an impact of a shape that moves and one that stands still; `None` where they did not come together along its normal.
+    fn of(impact: &Impact, at_a: &DAffine3, motion: DVec3, at_b: &DAffine3, frame: &Frame) -> Option<Plane> {
+        let normal = impact.normal.filter(|normal| normal.dot(motion) < 0.0)?;
+        let moved = motion * impact.time;
+        let rounding = frame.rounding() + ROUNDINGS * moved.abs().max_element();
+        Some(Plane {
+            normals: [at_a, at_b].map(|at| at.matrix3.transpose() * normal),
+            beyond: normal.dot(at_b.translation - at_a.translation - moved) + rounding,
+        })
+    }
+
+    /// The same over what of `B` reaches so far along its normal.
+    fn over(self, height: f64) -> Plane {
+        Plane { beyond: self.beyond + height, ..self }
+    }
+
+    /// Whether points of `A` are beyond it.
+    fn parts(&self, points: impl Iterator<Item = DVec3>) -> bool {
+        points.map(|point| self.normals[0].dot(point)).all(|height| height >= self.beyond)
+    }
+}
+
+/// The last planes found.
+struct Planes {
+    planes: [Plane; 4],
+    next: usize,
+}
+
+impl Planes {
+    fn new() -> Self {
+        Planes { planes: [Plane::NONE; 4], next: 0 }
+    }
+
+    fn add(&mut self, plane: Plane) {
+        self.planes[self.next] = plane;
+        self.next = (self.next + 1) % self.planes.len();
+    }
+
+    /// Over points of `B`.
+    fn over(&self, points: impl Iterator<Item = DVec3> + Clone) -> [Plane; 4] {
+        self.planes.map(|plane| {
+            let heights = points.clone().map(|point| plane.normals[1].dot(point));
+            plane.over(heights.fold(f64::NEG_INFINITY, f64::max))
+        })
+    }
+}
+
+/// Whether one of some planes tells that points of `A` are met no earlier than what it is of.
+fn part(planes: &[Plane], points: impl Iterator<Item = DVec3> + Clone) -> bool {
+    planes.iter().any(|plane| plane.parts(points.clone()))
 }
 
 fn complex_complex(
@@ -128,7 +199,7 @@ fn complex_complex(
         half_extents: bounds.half_extents() * (1.0 + f64::EPSILON) + relative.slack_in_a,
     };
     let Scratch { traversal, primitive_tests, .. } = scratch;
-    let mut earliest = Earliest::new();
+    let (mut earliest, mut planes) = (Earliest::new(), Planes::new());
     cast_pairs(
         a.tree(),
         b.tree(),
@@ -142,17 +213,15 @@ fn complex_complex(
                 let moving = moving(&Aabb::of_points(b.points_of(of_b).map(to_a)));
                 for &of_a in leaf_a {
                     let arrives = moving.reaches(&a.primitive_bounds(of_a));
-                    if arrives.is_some_and(|t| t < earliest.until) {
+                    let parted = || part(&planes.over(b.points_of(of_b)), a.points_of(of_a));
+                    if arrives.is_some_and(|t| t < earliest.until) && !parted() {
                         *primitive_tests += 1;
                         let (hull_a, hull_b) = (a.primitive_hull(of_a), b.primitive_hull(of_b));
-                        earliest.offer(gjk::cast(
-                            &hull_a,
-                            at_a,
-                            motion,
-                            &hull_b,
-                            at_b,
-                            earliest.until.min(1.0),
-                        ));
+                        let until = earliest.until.min(1.0);
+                        let impact = gjk::cast(&hull_a, at_a, motion, &hull_b, at_b, until);
+                        let plane = impact.and_then(|impact| Plane::of(&impact, at_a, motion, at_b, &frame));
+                        plane.into_iter().for_each(|plane| planes.add(plane));
+                        earliest.offer(impact);
                     }
                 }
             }

@@ -113,6 +113,11 @@ impl Frame {
         }
     }
 
+    /// How far a placed point may be from where it truly lies, along the axes of the world.
+    pub fn rounding(&self) -> f64 {
+        ROUNDINGS * self.size
+    }
+
     /// Takes a point of the common frame to the world.
     pub fn to_world(&self, point: DVec3) -> DVec3 {
         point / self.scale + self.origin
