@@ -35,7 +35,7 @@ pub struct Impact {
 /// How far apart, relative to the size of the data, objects may be that a cast reports as meeting. The size is the sum of the
 /// objects' extents and of the distance of their origins where they meet.
 ///
-/// More than [`TOUCHING_ERROR`](super::TOUCHING_ERROR), since on round objects the coarse axis of a step may fail to separate
+/// More than [`TOUCHING_ERROR`], since on round objects the coarse axis of a step may fail to separate
 /// sooner than the best one; the largest seen in tests is a hundredth of this.
 pub const CAST_ERROR: f64 = 1e-10;
 
