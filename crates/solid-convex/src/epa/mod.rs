@@ -30,7 +30,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::feature::SLIVER_SINE_SQUARED;
-use crate::gjk::{End, Goal, TOUCHING_ERROR, descend, intersects};
+use crate::gjk::{BEYOND_TOUCHING, End, Goal, descend, intersects};
 use crate::rounded::Core;
 use crate::simplex::{Reduced, Simplex};
 use crate::{Support, Witness};
@@ -52,9 +52,6 @@ const EXPANSIONS_MAX: usize = 4 * VERTICES_MAX;
 
 /// The error of the height of a support point along a unit vector, whose coordinates sum to less than 2.
 const HEIGHT_ERROR: f64 = 2.0 * SUPPORT_ERROR;
-
-/// A gap or a depth beyond which no question takes objects to touch, in the unit of the difference.
-const BEYOND_TOUCHING: f64 = 4.0 * TOUCHING_ERROR;
 
 /// Bounds that are further apart than the tolerance of the search, times this, are so because planes of faces were lost in rounding, or because
 /// [`VERTICES_MAX`] ended it.

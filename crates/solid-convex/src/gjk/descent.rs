@@ -123,7 +123,7 @@ where
     descend_within(difference, goal, points, ITERATIONS_MAX)
 }
 
-/// Runs a descent of at most so many iterations. One that has to stop is undecided, whatever the objects do: it claims
+/// Runs a descent of at most so many iterations, from points of the difference if there are any. One that has to stop is undecided, whatever the objects do: it claims
 /// neither separation nor intersection without the evidence.
 pub(super) fn descend_within<A, B>(
     difference: &Difference<A, B>,
@@ -203,7 +203,7 @@ where
     Descent { end, v, axis, simplex, beyond: false }
 }
 
-/// A simplex of points of the difference, and its point closest to the origin; `None` where that is the origin, nearly.
+/// A simplex of points of the difference, and its point closest to the origin; `None` where that is the origin, nearly, and of no points.
 fn begun(points: &[SupportPoint]) -> Option<(Simplex, DVec3)> {
     if points.is_empty() {
         return None;

@@ -6,7 +6,7 @@ use super::descent::{Descent, End, Goal, descend_after, descend_robustly};
 use super::lean::{Lean, Search, Sure};
 use super::pairs::Pair;
 use super::task::{self, Task};
-use super::{TOUCHING_ERROR, Witness, intersects};
+use super::{BEYOND_TOUCHING, TOUCHING_ERROR, Witness, intersects};
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::rounded::Core;
 use crate::{Polytope, Support};
@@ -24,9 +24,6 @@ pub struct Closest {
 /// The relative error of a distance, as far as the rounding error of positions allows: polytopes reach it in their last
 /// iteration anyway, and for quadrics each digit costs some four iterations.
 pub(crate) const DISTANCE_TOLERANCE: f64 = 1e-12;
-
-/// A distance that may not be one for all questions, in the difference's unit.
-const NEARLY_TOUCHING: f64 = 4.0 * TOUCHING_ERROR;
 
 /// The closest points of two placed convex objects, and their distance. Algorithm 4.1 of the thesis.
 ///
@@ -320,7 +317,7 @@ where
 {
     let goal = task.goal(difference.scale());
     let mut descent = descend_after(difference, goal, lean);
-    if !difference.is_polytope() && descent.v.length_squared() <= NEARLY_TOUCHING * NEARLY_TOUCHING {
+    if !difference.is_polytope() && descent.v.length_squared() <= BEYOND_TOUCHING * BEYOND_TOUCHING {
         // What touches is to do so for all questions: they begin from nothing.
         descent = descend_robustly(difference, goal);
     }

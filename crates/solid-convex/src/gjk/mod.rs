@@ -48,3 +48,6 @@ pub use proof::{Decision, Proof, Vertices};
 /// makes them near its tip. Of 1.2 * 10^6 pairs of all kinds, half of them flat or thin down to 10^-9, with a gap of 2, 10 or 1,000 times this
 /// opened along their normal, and of 2 * 10^5 with 1.05 times this, none was said to touch.
 pub const TOUCHING_ERROR: f64 = 1e-12;
+
+/// A gap or a depth beyond which no question takes objects to touch, in the unit of the difference.
+pub(crate) const BEYOND_TOUCHING: f64 = 4.0 * TOUCHING_ERROR;

@@ -1,3 +1,4 @@
+use parry3d_f64::math::Vector;
 use parry3d_f64::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, Ray as ParryRay, ShapeCastOptions,
     cast_shapes, cast_shapes_nonlinear, contact, distance, intersection_test,
@@ -5,9 +6,9 @@ use parry3d_f64::query::{
 use solid3d::glam::DVec3;
 use solid3d::query::{self, ContactOptions, ImpactOptions, Ray, RayOptions};
 
-use super::kinds::{Kind, vector};
+use super::kinds::Kind;
 use super::poses::{Placed, Poses, Sight};
-use parry3d_f64::math::Vector;
+use crate::peers::contestants::parry::double::vector;
 
 /// Asks for one of several poses; the number keeps the compiler from leaving it out.
 pub type Asker<'q> = Box<dyn Fn(usize) -> f64 + 'q>;

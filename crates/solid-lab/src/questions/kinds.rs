@@ -8,6 +8,7 @@ use solid3d::glam::DVec3;
 
 use crate::inputs::{Mesh, direction};
 use crate::peers::Effort;
+use crate::peers::contestants::parry::double::vector;
 
 /// A shape of some kind, in the types of both.
 pub struct Kind {
@@ -47,9 +48,4 @@ pub fn all(effort: Effort, rng: &mut StdRng) -> Vec<Kind> {
 
 fn vectors(points: &[DVec3]) -> Vec<Vector> {
     points.iter().map(|p| vector(*p)).collect()
-}
-
-/// In parry's numbers.
-pub fn vector(v: DVec3) -> Vector {
-    Vector::new(v.x, v.y, v.z)
 }

@@ -7,9 +7,9 @@ use rand::rngs::StdRng;
 use solid3d::glam::{DAffine3, DVec3};
 use solid3d::query;
 
-use super::kinds::{Kind, vector};
+use super::kinds::Kind;
 use crate::inputs::{PairPose, Pose, direction};
-use crate::peers::contestants::parry::double;
+use crate::peers::contestants::parry::double::{self, vector};
 use crate::peers::{Effort, Library};
 
 /// Pairs of poses. What meets at all is in `meeting`, what does not in `apart`; `ways` begin far away and lead to each other.

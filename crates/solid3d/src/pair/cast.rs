@@ -8,7 +8,7 @@ use solid_convex::{Impact, gjk};
 
 use super::complex_convex::convex_in_complex;
 use super::frame::{Frame, ROUNDINGS, slack};
-use super::table::{PlacedComplex, PlacedConvex};
+use super::table::{PlacedComplex, PlacedConvex, convex};
 use super::{Placed, Relation, Scratch, intersection};
 use crate::bounds::Aabb;
 use crate::placement::inverse_linear;
@@ -22,7 +22,7 @@ const END: f64 = 1.0 + 4.0 * f64::EPSILON;
 pub(crate) fn cast(a: Placed, motion: DVec3, b: Placed, scratch: &mut Scratch) -> Option<Impact> {
     let (at_a, at_b) = (a.placement, b.placement);
     if motion != DVec3::ZERO
-        && let (Class::Convex(on_a), Class::Convex(on_b)) = (a.shape.class(), b.shape.class())
+        && let Some(((on_a, _), (on_b, _))) = convex(a, b)
     {
         // What is apart at the start is so by the first step of the cast.
         let impact = gjk::cast(on_a, at_a, motion, on_b, at_b, 1.0)?;

@@ -40,9 +40,7 @@ impl Shape {
             _ => return None,
         })
     }
-}
 
-impl Shape {
     /// The radius of a ball, or of a point at the local origin, which is 0; `None` for other shapes.
     #[inline]
     pub(crate) fn ball_radius(&self) -> Option<f64> {

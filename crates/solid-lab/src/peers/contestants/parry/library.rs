@@ -15,7 +15,8 @@ use crate::peers::contestants::{Boxes, Coherent, Depths, Library, Primitives, Ra
 /// parry's shapes and queries.
 pub struct Parry;
 
-fn vector(v: DVec3) -> Vector {
+/// A point or a direction in its numbers.
+pub fn vector(v: DVec3) -> Vector {
     Vector::new(real(v.x), real(v.y), real(v.z))
 }
 
