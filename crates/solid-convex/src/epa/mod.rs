@@ -156,26 +156,40 @@ where
     match start(difference, ended) {
         Ok(mut polytope) => {
             let found = expand(difference, &mut polytope);
-            let better = match found.is_certain(difference) {
-                true => None,
-                false => stretched(difference, polytope.vertices(), ended),
+            let found = match found.is_certain(difference) {
+                true => found,
+                false => uncertain(difference, polytope.vertices(), found),
             };
             polytope.recycle();
-            better.filter(|better| better.uncertainty() < found.uncertainty()).unwrap_or(found)
+            found
         }
         Err(normal) => flat(difference, normal, ended),
     }
 }
 
-/// The same for a difference as thin as a needle, of which some points are known, and those that a descent ended with: see
-/// [`Stretch`].
+/// The better of what was found and what is found of the difference when it is stretched: see [`Stretch`]. Of the points of both, and those that
+/// GJK finds where the boundary is said to be, the nearest to there are given: planes of slivers leave the rays elsewhere.
 #[cold]
 #[inline(never)]
-fn stretched<A, B>(
-    difference: &Difference<A, B>,
-    points: &[SupportPoint],
-    ended: &[SupportPoint],
-) -> Option<Nearest>
+fn uncertain<A, B>(difference: &Difference<A, B>, points: &[SupportPoint], found: Nearest) -> Nearest
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let better = stretched(difference, points).filter(|better| better.uncertainty() < found.uncertainty());
+    let best = better.unwrap_or(found);
+    let target = best.normal * best.height;
+    let there = descend(&difference.moved(target), Goal::Separation).simplex;
+    let missed = |points: &Witness| difference.point(points.on_a, points.on_b).w.distance_squared(target);
+    let of_gjk = (there.points().next().is_some()).then(|| Witness::of(&there));
+    match of_gjk.filter(|points| missed(points) < missed(&best.points)) {
+        Some(points) => Nearest { points, ..best },
+        None => best,
+    }
+}
+
+/// The depth of the origin in a difference as thin as a needle, of which some points are known, as its stretched image has it.
+fn stretched<A, B>(difference: &Difference<A, B>, points: &[SupportPoint]) -> Option<Nearest>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,
@@ -188,14 +202,7 @@ where
     polytope.recycle();
     let normal = stretch.normal(found.normal).normalize();
     let height = normal.dot(difference.support_against(-normal).w);
-    // Of a needle that is all but flat, where its stretched boundary is may be lost; what a descent ended with is off by the depth alone.
-    let missed = |points: &Witness| {
-        let p = difference.point(points.on_a, points.on_b);
-        p.w.distance_squared(normal * height)
-    };
-    let at_rest = closest(ended, DVec3::ZERO).1;
-    let points = if missed(&at_rest) < missed(&found.points) { at_rest } else { found.points };
-    Some(Nearest { height, normal, points, ..found })
+    Some(Nearest { height, normal, ..found })
 }
 
 /// The point of the boundary of `A - B` nearest to the origin.
