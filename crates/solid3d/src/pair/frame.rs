@@ -57,9 +57,7 @@ impl Frame {
     pub fn new(at_a: &DAffine3, reach_a: DVec3, at_b: &DAffine3, reach_b: DVec3) -> Frame {
         let inverse_a = inverse_linear(&at_a.matrix3);
         let offset = at_a.translation - at_b.translation;
-        let size = image_reach(&at_a.matrix3, reach_a).max_element()
-            + image_reach(&at_b.matrix3, reach_b).max_element()
-            + offset.abs().max_element();
+        let size = size([at_a, at_b], [reach_a, reach_b]);
         let scale = unit_scale(size);
         let (origin, [from_a, from_b]) = if comes_first(offset) {
             (at_a.translation, [DVec3::ZERO, -offset * scale])
@@ -82,22 +80,6 @@ impl Frame {
             offset,
             size,
         }
-    }
-
-    /// The same, but that the common space is around two shapes, whose boxes in the world are given, and its unit near their sizes: they may lie
-    /// far from their local origins, as what is given in coordinates of the earth.
-    pub fn around(&self, [at_a, at_b]: [&DAffine3; 2], bounds: [Aabb; 2]) -> Frame {
-        let [center_a, center_b] = bounds.map(|bounds| bounds.center());
-        let [half_a, half_b] = bounds.map(|bounds| bounds.half_extents().max_element());
-        let between = center_a - center_b;
-        let size = half_a + half_b + between.abs().max_element();
-        let scale = unit_scale(size.max(UNIT_MIN * self.size));
-        let origin = if comes_first(between) { center_a } else { center_b };
-        let common = [at_a, at_b].map(|at| DAffine3 {
-            matrix3: at.matrix3 * scale,
-            translation: (at.translation - origin) * scale,
-        });
-        Frame { common, origin, scale, ..*self }
     }
 
     /// Takes points of either space to the other. Of what is convex, where it is in the space of a mesh is mostly enough.
@@ -138,6 +120,47 @@ impl Frame {
     pub fn beyond(&self, length: f64) -> f64 {
         length * self.scale * (1.0 + gjk::TOUCHING_ERROR) + 2.0 * gjk::TOUCHING_ERROR
     }
+}
+
+/// A common space around two shapes, with a unit near their sizes: they may lie far from their local origins, as what is given in coordinates of
+/// the earth. It is the same whichever is the first.
+pub(super) struct Around {
+    /// Takes local points of each to that space, which has the world's axes.
+    pub common: [DAffine3; 2],
+    /// The origin of that space, in the world.
+    origin: DVec3,
+    /// World lengths times this are lengths of that space; a power of two.
+    pub scale: f64,
+}
+
+impl Around {
+    /// Of shapes that reach so far from their local origins, and are within these boxes of the world.
+    pub fn new(at: [&DAffine3; 2], reach: [DVec3; 2], bounds: [Aabb; 2]) -> Around {
+        let [center_a, center_b] = bounds.map(|bounds| bounds.center());
+        let [half_a, half_b] = bounds.map(|bounds| bounds.half_extents().max_element());
+        let between = center_a - center_b;
+        let near = half_a + half_b + between.abs().max_element();
+        let scale = unit_scale(near.max(UNIT_MIN * size(at, reach)));
+        let origin = if comes_first(between) { center_a } else { center_b };
+        let common = at.map(|at| DAffine3 {
+            matrix3: at.matrix3 * scale,
+            translation: (at.translation - origin) * scale,
+        });
+        Around { common, origin, scale }
+    }
+
+    /// Takes a point to the world.
+    pub fn to_world(&self, point: DVec3) -> DVec3 {
+        point / self.scale + self.origin
+    }
+}
+
+/// The size of the data: how far two placed shapes reach from their local origins, and how far apart these are.
+#[inline(always)]
+fn size([at_a, at_b]: [&DAffine3; 2], [reach_a, reach_b]: [DVec3; 2]) -> f64 {
+    image_reach(&at_a.matrix3, reach_a).max_element()
+        + image_reach(&at_b.matrix3, reach_b).max_element()
+        + (at_a.translation - at_b.translation).abs().max_element()
 }
 
 /// Whether what is so far from another comes before it, by the first coordinate in which they differ.

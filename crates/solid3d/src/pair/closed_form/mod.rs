@@ -61,7 +61,7 @@ pub(super) fn intersects(a: Placed, b: Placed) -> Option<bool> {
 /// Whether they intersect, of pairs that take a common space.
 #[inline(never)]
 pub(super) fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
-    match Pair::new(a, b)? {
+    match Pair::new(a, b)?.0 {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).gap().intersects(),
         Pair::RoundBox(round, cuboid) | Pair::BoxRound(cuboid, round) => {
             Cores::of_round_and_box(&round, &cuboid)?.gap().intersects()
@@ -86,7 +86,15 @@ pub(super) fn ball_intersects(a: Placed, b: Placed) -> Option<bool> {
 
 /// How deep shapes are in each other that are known to intersect; `None` where EPA has to say.
 pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
-    of_ball(a, b, BallAndBody::penetration)
+    of_ball(a, b, BallAndBody::penetration).or_else(|| of_rounds(a, b))
+}
+
+/// The same of two capsules whose cores are apart.
+fn of_rounds(a: Placed, b: Placed) -> Option<Penetration> {
+    match Pair::new(a, b)? {
+        (Pair::Rounds(a, b), scale) => Cores::of_rounds(&a, &b).penetration(scale),
+        _ => None,
+    }
 }
 
 /// Whether they intersect, with the evidence; `None` where GJK has to say.
@@ -96,7 +104,7 @@ pub(super) fn intersection(a: Placed, b: Placed) -> Option<Relation> {
 
 /// The same of simple shapes.
 fn of_simple(a: Placed, b: Placed) -> Option<Relation> {
-    match Pair::new(a, b)? {
+    match Pair::new(a, b)?.0 {
         Pair::Rounds(a, b) => Cores::of_rounds(&a, &b).relation(),
         Pair::RoundBox(a, b) => Cores::of_round_and_box(&a, &b)?.relation(),
         Pair::BoxRound(a, b) => Cores::of_round_and_box(&b, &a)?.relation().mirrored(),
@@ -139,8 +147,9 @@ fn size([of_a, of_b]: [Simple; 2], [at_a, at_b]: [&Similarity; 2], offset: DVec3
 }
 
 impl Pair {
+    /// With its unit: world lengths times that are lengths of its space.
     #[inline(always)] // as `of`: made where it is looked at, since it is large
-    fn new(a: Placed, b: Placed) -> Option<Pair> {
+    fn new(a: Placed, b: Placed) -> Option<(Pair, f64)> {
         let kinds = [a.shape.simple()?, b.shape.simple()?];
         let at = [Similarity::new(&a.placement.matrix3)?, Similarity::new(&b.placement.matrix3)?];
         Pair::of(kinds, at, b.placement.translation - a.placement.translation)
@@ -148,11 +157,11 @@ impl Pair {
 
     /// Of two shapes under similarities; `offset` leads from the origin of the first to that of the second.
     #[inline(always)]
-    fn of([of_a, of_b]: [Simple; 2], [at_a, at_b]: [Similarity; 2], offset: DVec3) -> Option<Pair> {
+    fn of([of_a, of_b]: [Simple; 2], [at_a, at_b]: [Similarity; 2], offset: DVec3) -> Option<(Pair, f64)> {
         let scale = unit_scale(size([of_a, of_b], [&at_a, &at_b], offset));
         let (at_a, at_b) = (at_a.scaled(scale), at_b.scaled(scale));
         let offset = offset * scale;
-        Some(match (of_a, of_b) {
+        let pair = match (of_a, of_b) {
             (Simple::Cuboid { half: half_a }, Simple::Cuboid { half: half_b }) => Pair::Boxes(
                 PlacedBox { half: half_a, at: at_a, center: DVec3::ZERO },
                 PlacedBox { half: half_b, at: at_b, center: offset },
@@ -168,7 +177,8 @@ impl Pair {
             (Simple::Round(a), Simple::Round(b)) => {
                 Pair::Rounds(PlacedRound::new(a, at_a, DVec3::ZERO), PlacedRound::new(b, at_b, offset))
             }
-        })
+        };
+        Some((pair, scale))
     }
 }
 

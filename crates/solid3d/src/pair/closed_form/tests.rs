@@ -90,6 +90,54 @@ fn closed_forms_say_what_gjk_says() {
     assert!((30..=70).contains(&(100 * all_hits / all_decided)), "{all_hits} of {all_decided}");
 }
 
+/// The points of two shapes in the world; they are of these.
+fn in_world(a: Placed, b: Placed, points: Witness, context: &str) -> [DVec3; 2] {
+    [(a, points.on_a), (b, points.on_b)].map(|(placed, point)| {
+        let dot = solid_convex::Points::new(std::slice::from_ref(&point)).unwrap();
+        let here = DAffine3::IDENTITY;
+        let out = gjk::closest_points(support(placed.shape), &here, &dot, &here).distance;
+        assert!(out < 1e-12, "{context}: {out:e} outside");
+        placed.placement.transform_point3(point)
+    })
+}
+
+/// A depth is EPA's, and its points are as far from each other, along its direction.
+fn assert_is_the_depth(a: Placed, b: Placed, found: &Penetration, context: &str) {
+    let slow = epa::penetration(support(a.shape), a.placement, support(b.shape), b.placement).unwrap();
+    let error = 1e-11 + 1e-3 * slow.depth * f64::from(u8::from(slow.upper - slow.lower > 1e-6));
+    let bounds = slow.lower - 1e-11..=slow.upper + error;
+    assert!(bounds.contains(&found.depth), "{context}: {found:?}, {slow:?}");
+    assert!((0.0..=found.depth).contains(&found.lower) && found.depth <= found.upper, "{context}: {found:?}");
+    let [x, y] = in_world(a, b, found.points, context);
+    assert!((x + found.direction * found.depth).distance(y) < 1e-11, "{context}: {found:?}");
+    assert!((found.direction.length() - 1.0).abs() < 1e-13, "{context}: {found:?}");
+}
+
+/// Capsules of all sizes and ways, side by side among them, whose cores are apart.
+#[test]
+fn capsules_are_as_deep_in_each_other_as_epa_tells() {
+    let mut rng = StdRng::seed_from_u64(SEED + 1);
+    let capsules = [(0.4, 1.0), (0.1, 2.0), (1.5, 0.1)].map(|(radius, length)| Shape::capsule(radius, length).unwrap());
+    let (mut hits, mut decided) = (0, 0);
+    for case in 0..9_000 {
+        let [mut at_a, at_b] = placements(&mut rng);
+        if case % 4 == 0 {
+            at_a.matrix3 = at_b.matrix3 * [1.0, -0.5, 2.0][case % 3];
+        }
+        at_a.translation = at_b.translation + (at_a.translation - at_b.translation) * 0.8;
+        let (a, b) = (&capsules[case % 3], &capsules[case / 3 % 3]);
+        let (a, b) = (Placed { shape: a, placement: &at_a }, Placed { shape: b, placement: &at_b });
+        let context = format!("seed {SEED}, case {case}: {at_a}, {at_b}");
+        hits += usize::from(intersects(a, b) == Some(true));
+        let Some(found) = penetration(a, b) else { continue };
+        decided += 1;
+        assert_eq!(intersects(a, b), Some(true), "{context}");
+        assert_is_the_depth(a, b, &found, &context);
+    }
+    println!("{decided} of {hits} decided");
+    assert!((2_000..7_000).contains(&hits) && 10 * decided > 9 * hits, "{decided} of {hits}");
+}
+
 /// Balls of all sizes, and points, beside all bodies, in either order.
 #[test]
 fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
@@ -111,15 +159,7 @@ fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
         let Some(hit) = ball_intersects(a, b) else { continue };
         (decided, hits) = (decided + 1, hits + usize::from(hit));
         assert_eq!(hit, outcome.witness().is_some(), "{context}");
-        let in_world = |points: Witness| {
-            for (shape, point) in [(a.shape, points.on_a), (b.shape, points.on_b)] {
-                let dot = solid_convex::Points::new(std::slice::from_ref(&point)).unwrap();
-                let here = DAffine3::IDENTITY;
-                let out = gjk::closest_points(support(shape), &here, &dot, &here).distance;
-                assert!(out < 1e-12, "{context}: {out:e} outside");
-            }
-            [a.placement.transform_point3(points.on_a), b.placement.transform_point3(points.on_b)]
-        };
+        let in_world = |points| in_world(a, b, points, &context);
         match of_ball(a, b, BallAndBody::relation).unwrap() {
             Relation::Separated { axis } => {
                 assert!(gjk::separates(&axis.unwrap(), of_a.0, of_a.1, of_b.0, of_b.1), "{context}");
@@ -144,15 +184,7 @@ fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
         let found = penetration(a, b);
         assert_eq!(found.is_some(), hit, "{context}");
         if let Some(found) = found {
-            let slow = epa::penetration(of_a.0, of_a.1, of_b.0, of_b.1).unwrap();
-            let error = 1e-11 + 1e-3 * slow.depth * f64::from(u8::from(slow.upper - slow.lower > 1e-6));
-            assert!(
-                (slow.lower - 1e-11..=slow.upper + error).contains(&found.depth),
-                "{context}: {found:?}, {slow:?}"
-            );
-            let [x, y] = in_world(found.points);
-            assert!((x + found.direction * found.depth).distance(y) < 1e-11, "{context}: {found:?}");
-            assert!((found.direction.length() - 1.0).abs() < 1e-13, "{context}: {found:?}");
+            assert_is_the_depth(a, b, &found, &context);
             inside += usize::from(found.depth > 0.7);
         }
     }

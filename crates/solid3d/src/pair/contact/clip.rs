@@ -2,6 +2,7 @@
 //! polygon clipping*, 1974).
 
 use glam::DVec2;
+use smallvec::{SmallVec, smallvec};
 
 /// Coordinates are below some units: a point this far outside an edge is on it.
 const ON_EDGE: f64 = 1e-9;
@@ -40,19 +41,22 @@ pub(super) struct Clipped {
     pub origin: Origin,
 }
 
+/// Two faces of four corners have at most eight in common.
+type Corners = SmallVec<[Clipped; 8]>;
+
 /// The corners of the intersection of two convex polygons, either way around, segments or points. Of two segments or points only where
 /// they run side by side.
-pub(super) fn clip(a: &[DVec2], b: &[DVec2]) -> Vec<Clipped> {
+pub(super) fn clip(a: &[DVec2], b: &[DVec2]) -> Corners {
     match (a.len(), b.len()) {
-        (0, _) | (_, 0) => Vec::new(),
+        (0, _) | (_, 0) => Corners::new(),
         (_, 3..) => against(a, b),
         (3.., _) => swapped(against(b, a)),
         (2, 2) => side_by_side([a[0], a[1]], [b[0], b[1]]),
-        _ => Vec::new(),
+        _ => Corners::new(),
     }
 }
 
-fn swapped(mut corners: Vec<Clipped>) -> Vec<Clipped> {
+fn swapped(mut corners: Corners) -> Corners {
     corners.iter_mut().for_each(|corner| corner.origin = corner.origin.swapped());
     corners
 }
@@ -65,17 +69,17 @@ enum On {
 }
 
 /// The subject cut by each edge of a polygon of area.
-fn against(subject: &[DVec2], by: &[DVec2]) -> Vec<Clipped> {
+fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
     let area = area(by);
     let turn = area.signum();
     let extent_squared = by.iter().map(|p| p.distance_squared(by[0])).fold(0.0, f64::max);
     let slack = (ON_EDGE * area.abs() / extent_squared).clamp(ON_EDGE_MIN, ON_EDGE);
-    let mut left: Vec<(Clipped, On)> = subject
+    let mut left: SmallVec<[(Clipped, On); 8]> = subject
         .iter()
         .enumerate()
         .map(|(i, &at)| (Clipped { at, origin: Origin::OfA(i) }, On::Subject(i)))
         .collect();
-    let mut next = Vec::with_capacity(left.len() + by.len());
+    let mut next = smallvec![];
     for j in 0..by.len() {
         let (from, to) = (by[j], by[(j + 1) % by.len()]);
         let Some(along) = (to - from).try_normalize() else { continue };
@@ -104,7 +108,7 @@ fn against(subject: &[DVec2], by: &[DVec2]) -> Vec<Clipped> {
         std::mem::swap(&mut left, &mut next);
         next.clear();
     }
-    let mut corners: Vec<Clipped> = Vec::with_capacity(left.len());
+    let mut corners = Corners::new();
     for (corner, _) in left {
         if corners.iter().all(|other| other.at.distance_squared(corner.at) > ON_EDGE * ON_EDGE) {
             corners.push(corner);
@@ -114,15 +118,15 @@ fn against(subject: &[DVec2], by: &[DVec2]) -> Vec<Clipped> {
 }
 
 /// The ends of what two segments have in common along their way, when that is the same.
-fn side_by_side(a: [DVec2; 2], b: [DVec2; 2]) -> Vec<Clipped> {
+fn side_by_side(a: [DVec2; 2], b: [DVec2; 2]) -> Corners {
     let (of_a, of_b) = (a[1] - a[0], b[1] - b[0]);
     let Some(along) =
         (if of_a.length_squared() >= of_b.length_squared() { of_a } else { of_b }).try_normalize()
     else {
-        return Vec::new();
+        return Corners::new();
     };
     if of_a.perp_dot(of_b).abs() > PARALLEL_SINE * of_a.length() * of_b.length() {
-        return Vec::new();
+        return Corners::new();
     }
     let place = |p: DVec2| along.dot(p);
     let range = |ends: [DVec2; 2]| {
@@ -131,7 +135,7 @@ fn side_by_side(a: [DVec2; 2], b: [DVec2; 2]) -> Vec<Clipped> {
     };
     let ((low_a, high_a), (low_b, high_b)) = (range(a), range(b));
     let within = |p: DVec2, low: f64, high: f64| (low - ON_EDGE..=high + ON_EDGE).contains(&place(p));
-    let mut corners: Vec<Clipped> = Vec::new();
+    let mut corners = Corners::new();
     for (i, at) in a.into_iter().enumerate() {
         if within(at, low_b, high_b) {
             corners.push(Clipped { at, origin: Origin::OfA(i) });

@@ -2,10 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::DVec3;
+use smallvec::{SmallVec, smallvec};
 use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Line, Sphere, Support, unit_scale};
 
-use crate::placement::{direction, inverse_linear};
+use super::map::Map;
+use crate::placement::direction;
 use crate::shape::{Body, Facets};
 
 /// Corners of the polygon that stands for a circle: what is cut off is 2 % of the radius.
@@ -33,11 +35,14 @@ pub(super) struct Corner {
     pub vertex: u32,
 }
 
+/// Most faces have no more than four.
+type Corners = SmallVec<[Corner; 4]>;
+
 /// A part of the surface: a convex polygon, a segment or a point.
 #[derive(Clone, Debug)]
 pub(super) struct Face {
     /// In order around it.
-    pub corners: Vec<Corner>,
+    pub corners: Corners,
     /// The outward unit normal of a polygon; of others a direction that they face.
     pub normal: DVec3,
     /// Its number among the faces of its body.
@@ -80,14 +85,14 @@ impl Face {
 /// A convex body in the common frame of a pair.
 pub(super) struct Placed<'a> {
     body: &'a Body<'a>,
-    /// Takes local points to the common frame.
-    pub map: DAffine3,
-    inverse: DMat3,
+    pub map: &'a Map,
+    /// Its number in the shape it is of.
+    pub primitive: u32,
 }
 
 impl<'a> Placed<'a> {
-    pub fn new(body: &'a Body<'a>, map: DAffine3) -> Self {
-        Placed { body, map, inverse: inverse_linear(&map.matrix3) }
+    pub fn new(body: &'a Body<'a>, primitive: u32, map: &'a Map) -> Self {
+        Placed { body, map, primitive }
     }
 
     /// Whether it touches in one point, whatever it touches.
@@ -102,7 +107,7 @@ impl<'a> Placed<'a> {
 
     /// The face that faces a direction best, of those at the furthest point along it. Space of the direction: common.
     pub fn face(&self, direction: DVec3) -> Face {
-        let local = self.map.matrix3.transpose() * direction;
+        let local = self.map.linear().transpose() * direction;
         match self.body {
             Body::Sphere(sphere) => self.ball(sphere, direction, local),
             Body::Cuboid(cuboid) => self.side_of_box(cuboid, direction, local),
@@ -159,8 +164,9 @@ impl<'a> Placed<'a> {
 
     /// Where a line along a direction runs through a round body, as parameters.
     fn chord(&self, at: DVec3, direction: DVec3) -> Option<[f64; 2]> {
-        let origin = self.inverse * (at - self.map.translation);
-        let line = Line::new(origin, self.inverse * direction)?;
+        let inverse = self.map.inverse();
+        let origin = *inverse * (at - self.map.affine.translation);
+        let line = Line::new(origin, *inverse * direction)?;
         let chord = match self.body {
             Body::Sphere(sphere) => sphere.chord(&line),
             Body::Cone(cone) => cone.chord(&line),
@@ -172,16 +178,16 @@ impl<'a> Placed<'a> {
     }
 
     fn corner(&self, local: DVec3, vertex: u32) -> Corner {
-        Corner { point: self.map.transform_point3(local), vertex }
+        Corner { point: self.map.point(local), vertex }
     }
 
     /// The image of a normal: by the inverse transposed, whose entries may be so large that their squares are not numbers.
     fn normal(&self, local: DVec3) -> DVec3 {
-        direction(self.inverse.transpose() * local).unwrap_or(DVec3::ZERO)
+        direction(self.map.inverse().transpose() * local).unwrap_or(DVec3::ZERO)
     }
 
     fn ball(&self, sphere: &Sphere, direction: DVec3, local: DVec3) -> Face {
-        let corners = vec![self.corner(sphere.support(local), 0)];
+        let corners = smallvec![self.corner(sphere.support(local), 0)];
         Face { corners, normal: direction, number: 0, cosine: 1.0 }
     }
 
@@ -203,7 +209,7 @@ impl<'a> Placed<'a> {
             let vertex = (0..3).map(|k| u32::from(signs[k] > 0.0) << k).sum();
             self.corner(half * signs, vertex)
         });
-        Face { corners: corners.to_vec(), normal, number: 2 * axis as u32 + u32::from(sign < 0.0), cosine }
+        Face { corners: corners.into(), normal, number: 2 * axis as u32 + u32::from(sign < 0.0), cosine }
     }
 
     fn cylinder(&self, cylinder: &Cylinder, direction: DVec3, local: DVec3) -> Face {
@@ -224,7 +230,7 @@ impl<'a> Placed<'a> {
             };
         }
         let end = |y: f64, vertex: u32| self.corner(DVec3::new(radius * x, y, radius * z), vertex);
-        let corners = vec![end(half, 2 * RIM), end(-half, 2 * RIM + 1)];
+        let corners = smallvec![end(half, 2 * RIM), end(-half, 2 * RIM + 1)];
         Face { corners, normal: side, number: 2, cosine: of_side }
     }
 
@@ -240,7 +246,7 @@ impl<'a> Placed<'a> {
             let corners = self.rim(radius, -half, RIM, of_base, local);
             return Face { corners, normal: base, number: 1, cosine: of_base };
         }
-        let corners = vec![
+        let corners = smallvec![
             self.corner(DVec3::new(0.0, half, 0.0), 2 * RIM),
             self.corner(DVec3::new(radius * x, -half, radius * z), 2 * RIM + 1),
         ];
@@ -253,7 +259,7 @@ impl<'a> Placed<'a> {
         let side = self.normal(DVec3::new(x, 0.0, z));
         let cosine = side.dot(direction);
         let upper = u32::from(local.y >= 0.0);
-        let mut corners = vec![self.corner(capsule.support(local), upper)];
+        let mut corners: Corners = smallvec![self.corner(capsule.support(local), upper)];
         if cosine >= SIDE_COSINE {
             let far = if local.y < 0.0 { half } else { -half };
             corners.push(self.corner(DVec3::new(radius * x, far, radius * z), 1 - upper));
@@ -262,7 +268,7 @@ impl<'a> Placed<'a> {
     }
 
     /// A circle across the axis y: corners at places that stay with the body, and, when it is tilted, the furthest point.
-    fn rim(&self, radius: f64, y: f64, first: u32, cosine: f64, local: DVec3) -> Vec<Corner> {
+    fn rim(&self, radius: f64, y: f64, first: u32, cosine: f64, local: DVec3) -> Corners {
         let mut places: Vec<(f64, u32)> =
             (0..RIM).map(|i| (TAU * f64::from(i) / f64::from(RIM), first + i)).collect();
         if cosine < 1.0 - 0.5 * ALIGNED_SINE * ALIGNED_SINE {
@@ -310,7 +316,7 @@ impl<'a> Placed<'a> {
 
     /// Both sides of a triangle are its face. One without area is a segment.
     fn simplex(&self, vertices: &[DVec3], indices: &[u32], direction: DVec3) -> Face {
-        let mut corners: Vec<Corner> =
+        let mut corners: Corners =
             indices.iter().map(|&i| self.corner(vertices[i as usize], i)).collect();
         let normal = match corners[..] {
             [p, q, r] => triangle_normal([p, q, r].map(|corner| corner.point)),
@@ -324,7 +330,7 @@ impl<'a> Placed<'a> {
         if let [p, q, r] = corners[..] {
             let length = |pair: &[Corner; 2]| pair[0].point.distance_squared(pair[1].point);
             let longest = [[p, q], [q, r], [p, r]].into_iter().max_by(|x, y| length(x).total_cmp(&length(y)));
-            corners = longest.expect("a triangle has edges").to_vec();
+            corners = longest.expect("a triangle has edges")[..].into();
         }
         corners.dedup_by(|x, y| x.point == y.point);
         Face { corners, normal: direction, number: 0, cosine: 1.0 }

@@ -11,19 +11,22 @@
 
 mod clip;
 mod face;
+mod map;
 mod region;
 mod soup;
 
 use glam::{DVec2, DVec3};
+use smallvec::{SmallVec, smallvec};
 use solid_convex::{Penetration, Support, epa, gjk};
 
 use super::depth::of_common;
-use super::frame::Frame;
+use super::frame::{Around, Frame};
 use super::reach::reach;
 use super::{Placed, Relation, Scratch, closed_form, table, world_bounds};
 use crate::shape::{Body, Class, Complex};
 use clip::{Origin, clip};
 use face::Face;
+use map::Map;
 
 /// A part of the surface of a shape. Its number stays with the shape however it moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -91,12 +94,12 @@ struct Touch {
     on_a: DVec3,
     on_b: DVec3,
     depth: f64,
+    primitives: [u32; 2],
     features: [Feature; 2],
 }
 
-/// The contacts of a pair of primitives. Space: common.
+/// The contacts of a pair of primitives, at least one. Space: common.
 struct Patch {
-    primitives: [u32; 2],
     normal: DVec3,
     touches: Vec<Touch>,
     /// Whether the normal points into a solid: what is on the wrong side of a wall of it.
@@ -119,10 +122,10 @@ struct Meeting {
 struct Pair<'a> {
     a: Placed<'a>,
     b: Placed<'a>,
-    /// Where it is decided which primitives meet, here as everywhere.
-    placing: Frame,
-    /// Around the shapes: where their contacts are.
-    frame: Frame,
+    /// Where their contacts are.
+    frame: Around,
+    /// Those of `a` and `b` to that frame.
+    maps: [Map; 2],
     /// Space: common.
     margin: f64,
 }
@@ -141,10 +144,14 @@ pub(crate) fn contacts(
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
     let (mut part_a, mut part_b) = (part(a), part(b));
-    let placing = Frame::new(a.placement, reach(a.shape), b.placement, reach(b.shape));
-    let frame = placing.around([a.placement, b.placement], [world_bounds(a), world_bounds(b)]);
+    let frame = Around::new(
+        [a.placement, b.placement],
+        [reach(a.shape), reach(b.shape)],
+        [world_bounds(a), world_bounds(b)],
+    );
     let margin = options.margin * frame.scale;
-    let pair = Pair { a, b, placing, frame, margin };
+    let maps = frame.common.map(Map::new);
+    let pair = Pair { a, b, frame, maps, margin };
     // A surface that is taken for the body it bounds does not collide with what is inside.
     let hollow = is_hollow(a) || is_hollow(b);
     let apart = |scratch: &mut _| matches!(table::intersection(a, b, scratch), Relation::Separated { .. });
@@ -202,6 +209,12 @@ impl Patch {
 }
 
 impl Pair<'_> {
+    /// How the two spaces lie to each other, as it is seen where it is decided which primitives meet, here as everywhere.
+    fn placing(&self) -> Frame {
+        let Pair { a, b, .. } = self;
+        Frame::new(a.placement, reach(a.shape), b.placement, reach(b.shape))
+    }
+
     fn patches(&self, a: &Part, b: &Part, scratch: &mut Scratch) -> Vec<Patch> {
         match (a, b) {
             (Part::Body(..), Part::Body(..)) => soup::body_body(self, a, b),
@@ -216,11 +229,11 @@ impl Pair<'_> {
         if let Some(most) = options.max_points {
             region::reduce(&mut points, normal, most.max(1));
         }
-        let points = points.into_iter().map(|(primitives, touch)| ContactPoint {
+        let points = points.into_iter().map(|touch| ContactPoint {
             point_on_a: self.frame.to_world(touch.on_a),
             point_on_b: self.frame.to_world(touch.on_b),
             depth: touch.depth / self.frame.scale,
-            primitives: [self.owner(self.a, primitives[0]), self.owner(self.b, primitives[1])],
+            primitives: [self.owner(self.a, touch.primitives[0]), self.owner(self.b, touch.primitives[1])],
             features: touch.features,
         });
         Manifold { normal, points: points.collect() }
@@ -252,10 +265,9 @@ impl Pair<'_> {
     /// The same by how deep they are in each other, if they are.
     fn meeting_by(&self, found: Option<Penetration>, a: &dyn Support, b: &dyn Support) -> Option<Meeting> {
         let (at_a, at_b) = (self.a.placement, self.b.placement);
-        let [from_a, from_b] = &self.frame.common;
+        let [from_a, from_b] = &self.maps;
         if let Some(found) = found {
-            let on_a = from_a.transform_point3(found.points.on_a);
-            let on_b = from_b.transform_point3(found.points.on_b);
+            let (on_a, on_b) = (from_a.point(found.points.on_a), from_b.point(found.points.on_b));
             let depth = found.depth * self.frame.scale;
             return Some(Meeting { normal: found.direction, depth, on_a, on_b });
         }
@@ -267,8 +279,7 @@ impl Pair<'_> {
         if distance > self.margin {
             return None;
         }
-        let on_a = from_a.transform_point3(closest.points.on_a);
-        let on_b = from_b.transform_point3(closest.points.on_b);
+        let (on_a, on_b) = (from_a.point(closest.points.on_a), from_b.point(closest.points.on_b));
         let between = || (on_a - on_b).try_normalize();
         let axis = || match gjk::intersection(a, at_a, b, at_b) {
             gjk::Outcome::Separated { axis } => Some(axis),
@@ -281,11 +292,12 @@ impl Pair<'_> {
     /// The contacts of two bodies along their normal, the deepest point among them.
     fn touches(&self, a: &face::Placed, b: &face::Placed, meeting: &Meeting) -> Vec<Touch> {
         let Meeting { normal, depth, on_a, on_b } = *meeting;
-        let (face_a, face_b) = facing(a, b, normal);
-        let deepest = Touch { on_a, on_b, depth, features: [feature_of(&face_a), feature_of(&face_b)] };
+        let primitives = [a.primitive, b.primitive];
+        let deepest = |features| Touch { on_a, on_b, depth, primitives, features };
         if a.is_ball() || b.is_ball() {
-            return vec![deepest];
+            return vec![deepest([touched(a, -normal), touched(b, normal)])];
         }
+        let (face_a, face_b) = facing(a, b, normal);
         let mut touches = self.clipped(a, &face_a, b, &face_b, normal);
         let error = SAME_DEPTH + DEPTH_ERROR * depth.abs();
         // Nothing is deeper along the normal; but a face is flat only up to what is a length to a much smaller body.
@@ -294,7 +306,7 @@ impl Pair<'_> {
             touch.depth = depth;
         }
         if touches.iter().all(|touch| touch.depth < depth - error) {
-            touches.push(deepest);
+            touches.push(deepest([feature_of(&face_a), feature_of(&face_b)]));
         }
         touches
     }
@@ -316,6 +328,7 @@ impl Pair<'_> {
         let (order_b, polygon_b) = projected(face_b, flat);
         let base = origin - normal * origin.dot(normal);
         let corners = clip(&polygon_a, &polygon_b);
+        let primitives = [a.primitive, b.primitive];
         let touch = |corner: clip::Clipped| {
             let at = base + u * corner.at.x + v * corner.at.y;
             let of = |face: &Face, order: &[usize], i: usize| face.corners[order[i % order.len()]];
@@ -333,7 +346,7 @@ impl Pair<'_> {
             let height_b = b.height(face_b, at, normal, normal)?;
             let depth = height_b - height_a;
             let (on_a, on_b) = (at + normal * height_a, at + normal * height_b);
-            (depth >= -self.margin - SAME_DEPTH).then_some(Touch { on_a, on_b, depth, features })
+            (depth >= -self.margin - SAME_DEPTH).then_some(Touch { on_a, on_b, depth, primitives, features })
         };
         corners.into_iter().filter_map(touch).collect()
     }
@@ -352,6 +365,15 @@ fn facing(a: &face::Placed, b: &face::Placed, normal: DVec3) -> (Face, Face) {
     (face_a, face_b)
 }
 
+/// What of a body a ball touches, on the side that faces a direction: of a ball it is the one point.
+fn touched(body: &face::Placed, direction: DVec3) -> Feature {
+    if body.is_ball() {
+        return Feature::Vertex(0);
+    }
+    let face = body.face(direction);
+    feature_of(&if face.is_aligned() { face } else { face.slim(direction) })
+}
+
 /// What a point within a face is of.
 fn feature_of(face: &Face) -> Feature {
     match face.corners[..] {
@@ -362,8 +384,8 @@ fn feature_of(face: &Face) -> Feature {
 }
 
 /// The corners of a face in a plane, and which these are: of a polygon that is seen from its edge, the two ends.
-fn projected(face: &Face, flat: impl Fn(DVec3) -> DVec2) -> (Vec<usize>, Vec<DVec2>) {
-    let all: Vec<DVec2> = face.corners.iter().map(|corner| flat(corner.point)).collect();
+fn projected(face: &Face, flat: impl Fn(DVec3) -> DVec2) -> (SmallVec<[usize; 4]>, SmallVec<[DVec2; 4]>) {
+    let all: SmallVec<[DVec2; 4]> = face.corners.iter().map(|corner| flat(corner.point)).collect();
     let far = |from: DVec2| {
         let distance = |&i: &usize| all[i].distance_squared(from);
         (0..all.len()).max_by(|i, j| distance(i).total_cmp(&distance(j)).then(j.cmp(i))).unwrap_or(0)
@@ -372,7 +394,7 @@ fn projected(face: &Face, flat: impl Fn(DVec3) -> DVec2) -> (Vec<usize>, Vec<DVe
         let from = far(all[0]);
         let to = far(all[from]);
         if clip::area(&all).abs() <= THIN * all[from].distance_squared(all[to]) {
-            return (vec![from, to], vec![all[from], all[to]]);
+            return (smallvec![from, to], smallvec![all[from], all[to]]);
         }
     }
     ((0..all.len()).collect(), all)

@@ -19,15 +19,14 @@ const FLAT: f64 = 1e-8;
 /// Contacts with one normal, each with its primitives. Space: common.
 pub(super) struct Region {
     pub normal: DVec3,
-    pub points: Vec<([u32; 2], Touch)>,
+    pub points: Vec<Touch>,
 }
 
 /// Puts patches together whose primitives are connected on both sides, and whose normals are that of the deepest of them. In the order
 /// of their first primitives. Cost: follows the patches at one vertex, times how many normals they have.
 pub(super) fn regions(a: &Part, b: &Part, patches: Vec<Patch>) -> Vec<Region> {
-    if let [Patch { primitives, normal, touches, .. }] = &patches[..] {
-        let points = touches.iter().map(|&touch| (*primitives, touch)).collect();
-        return vec![Region { normal: *normal, points }];
+    if patches.len() == 1 {
+        return patches.into_iter().map(|patch| Region { normal: patch.normal, points: patch.touches }).collect();
     }
     let deepest = |patch: &Patch| patch.touches.iter().map(|touch| touch.depth).fold(f64::MIN, f64::max);
     let depths: Vec<f64> = patches.iter().map(deepest).collect();
@@ -38,10 +37,7 @@ pub(super) fn regions(a: &Part, b: &Part, patches: Vec<Patch>) -> Vec<Region> {
         seeds.into_iter().filter_map(|seed| Some((patches[seed].normal, joining.grow(seed)?))).collect();
     joined.sort_unstable_by_key(|(_, members)| members[0]);
     let region = |(normal, members): (DVec3, Vec<usize>)| {
-        let touches = members.iter().flat_map(|&i| {
-            let patch = &patches[i];
-            patch.touches.iter().map(|&touch| (patch.primitives, touch))
-        });
+        let touches = members.iter().flat_map(|&i| patches[i].touches.iter().copied());
         Region { normal, points: thinned(touches.collect(), normal, members.len() > 1) }
     };
     joined.into_iter().map(region).collect()
@@ -122,7 +118,8 @@ fn is_same(normal: DVec3, other: DVec3) -> bool {
 
 /// By which a patch is connected to others: a vertex of each surface.
 fn connections(a: &Part, b: &Part, patch: &Patch) -> Vec<[u32; 2]> {
-    let [of_a, of_b] = [corners(a, patch.primitives[0]), corners(b, patch.primitives[1])];
+    let [i, j] = patch.touches[0].primitives;
+    let (of_a, of_b) = (corners(a, i), corners(b, j));
     of_a.iter().flat_map(|&x| of_b.iter().map(move |&y| [x, y])).collect()
 }
 
@@ -141,17 +138,17 @@ fn corners(part: &Part, primitive: u32) -> Vec<u32> {
 }
 
 /// Points without duplicates; of flat surfaces of several primitives, those at the outline, which say all of the others.
-fn thinned(points: Vec<([u32; 2], Touch)>, normal: DVec3, several: bool) -> Vec<([u32; 2], Touch)> {
+fn thinned(points: Vec<Touch>, normal: DVec3, several: bool) -> Vec<Touch> {
     let (u, v) = normal.any_orthonormal_pair();
-    let Some(origin) = points.first().map(|(_, touch)| touch.on_a) else { return points };
+    let Some(origin) = points.first().map(|touch| touch.on_a) else { return points };
     let flat = |touch: &Touch| DVec2::new(u.dot(touch.on_a - origin), v.dot(touch.on_a - origin));
     if !several {
         return points;
     }
-    let places: Vec<DVec2> = points.iter().map(|(_, touch)| flat(touch)).collect();
+    let places: Vec<DVec2> = points.iter().map(flat).collect();
     let around = outline(&places, FLAT);
     let height = |touch: &Touch| normal.dot(touch.on_a - origin);
-    let linear = |value: &dyn Fn(&Touch) -> f64| is_linear(&places, &around, |i| value(&points[i].1));
+    let linear = |value: &dyn Fn(&Touch) -> f64| is_linear(&places, &around, |i| value(&points[i]));
     if linear(&height) && linear(&|touch: &Touch| touch.depth) {
         return around.into_iter().map(|i| points[i]).collect();
     }
@@ -159,9 +156,9 @@ fn thinned(points: Vec<([u32; 2], Touch)>, normal: DVec3, several: bool) -> Vec<
 }
 
 /// Of points at one place, the deepest; by a grid, whose cells hold few.
-fn without_duplicates(points: Vec<([u32; 2], Touch)>, places: &[DVec2]) -> Vec<([u32; 2], Touch)> {
+fn without_duplicates(points: Vec<Touch>, places: &[DVec2]) -> Vec<Touch> {
     let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by(|&i, &j| points[j].1.depth.total_cmp(&points[i].1.depth).then(i.cmp(&j)));
+    order.sort_by(|&i, &j| points[j].depth.total_cmp(&points[i].depth).then(i.cmp(&j)));
     let mut kept_in: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
     let mut kept = Vec::new();
     for i in order {
@@ -169,7 +166,7 @@ fn without_duplicates(points: Vec<([u32; 2], Touch)>, places: &[DVec2]) -> Vec<(
         let cell = [cell.x as i64, cell.y as i64];
         let near = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [cell[0] + dx, cell[1] + dy]));
         let same = |&j: &usize| {
-            let (p, q) = (&points[i].1, &points[j].1);
+            let (p, q) = (&points[i], &points[j]);
             p.on_a.distance(q.on_a) <= SAME_POINT && p.on_b.distance(q.on_b) <= SAME_POINT
         };
         if !near.into_iter().any(|cell| kept_in.get(&cell).is_some_and(|others| others.iter().any(same))) {
@@ -208,16 +205,16 @@ fn is_linear(places: &[DVec2], around: &[usize], value: impl Fn(usize) -> f64) -
 }
 
 /// Leaves at most so many points: the deepest, then always the one furthest from those.
-pub(super) fn reduce(points: &mut Vec<([u32; 2], Touch)>, normal: DVec3, most: usize) {
+pub(super) fn reduce(points: &mut Vec<Touch>, normal: DVec3, most: usize) {
     if points.len() <= most {
         return;
     }
     let across = |i: usize, j: usize| {
-        let v = points[i].1.on_a - points[j].1.on_a;
+        let v = points[i].on_a - points[j].on_a;
         (v - normal * v.dot(normal)).length_squared()
     };
     let deepest = (0..points.len())
-        .max_by(|&i, &j| points[i].1.depth.total_cmp(&points[j].1.depth).then(j.cmp(&i)))
+        .max_by(|&i, &j| points[i].depth.total_cmp(&points[j].depth).then(j.cmp(&i)))
         .unwrap_or(0);
     let mut kept = vec![deepest];
     let mut distance: Vec<f64> = (0..points.len()).map(|i| across(i, deepest)).collect();

@@ -12,15 +12,18 @@ use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
+use smallvec::SmallVec;
 use solid_convex::Support;
 use solid_convex::simd::level;
 
 use super::super::closed_form::Similarity;
+use super::super::frame::Frame;
 use super::super::reach::core;
 use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
 use super::super::table::PlacedConvex;
 use super::super::triangle_triangle::Triangle;
 use super::super::{Scratch, complex_convex, table, triangle_triangle};
+use super::map::Map;
 use super::{Meeting, Pair, Part, Patch, Touch, face, facing};
 use crate::shape::{Body, Complex};
 use crate::tree::{LeafPairs, bits, pairs_on};
@@ -38,10 +41,10 @@ const SAME_NORMAL: f64 = 1e-6;
 pub(super) fn body_body(pair: &Pair, a: &Part, b: &Part) -> Vec<Patch> {
     let (Part::Body(kind_a, of_a), Part::Body(kind_b, of_b)) = (a, b) else { return Vec::new() };
     let Some(meeting) = pair.meeting_of_bodies(*of_a, *of_b) else { return Vec::new() };
-    let [map_a, map_b] = pair.frame.common;
-    let (placed_a, placed_b) = (face::Placed::new(kind_a, map_a), face::Placed::new(kind_b, map_b));
+    let [map_a, map_b] = &pair.maps;
+    let (placed_a, placed_b) = (face::Placed::new(kind_a, 0, map_a), face::Placed::new(kind_b, 0, map_b));
     let touches = pair.touches(&placed_a, &placed_b, &meeting);
-    vec![Patch { primitives: [0, 0], normal: meeting.normal, touches, is_inward: false }]
+    vec![Patch { normal: meeting.normal, touches, is_inward: false }]
 }
 
 /// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
@@ -55,12 +58,12 @@ pub(super) fn soup_body(
     let (Part::Soup(complex), Part::Body(kind, support)) = (soup, body) else { return Vec::new() };
     let (placed_soup, placed_body) = if mirrored { (pair.b, pair.a) } else { (pair.a, pair.b) };
     let convex: PlacedConvex = (*support, placed_body.placement);
-    let [map_soup, map_body] =
-        if mirrored { [pair.frame.common[1], pair.frame.common[0]] } else { pair.frame.common };
-    let body = face::Placed::new(kind, map_body);
-    let round = core(*support).zip(Similarity::new(&map_body.matrix3));
+    let [map_a, map_b] = &pair.maps;
+    let [map_soup, map_body] = if mirrored { [map_b, map_a] } else { [map_a, map_b] };
+    let body = face::Placed::new(kind, 0, map_body);
+    let round = core(*support).zip(Similarity::new(map_body.linear()));
     let (ends, radius) = round.map_or(([DVec3::ZERO; 2], 0.0), |((ends, radius), similarity)| {
-        (ends.map(|end| map_body.transform_point3(end)), radius * similarity.stretch)
+        (ends.map(|end| map_body.point(end)), radius * similarity.stretch)
     });
     let corners = if round.is_some() { &ends[..] } else { &[] };
     let other = Other { support: *support, map: map_body, corners, radius };
@@ -68,10 +71,9 @@ pub(super) fn soup_body(
     let patch = |primitive: u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
-        let placed = face::Placed::new(&primitive_body, map_soup);
-        let corners = placed_corners(complex, primitive, &map_soup);
-        let side = Side::new(complex, primitive, placed, &corners, other);
-        let primitives = if mirrored { [0, primitive] } else { [primitive, 0] };
+        let placed = face::Placed::new(&primitive_body, primitive, map_soup);
+        let corners = placed_corners(complex, primitive, map_soup);
+        let side = Side::new(complex, placed, &corners, other);
         let over = |normal: DVec3| match mirrored {
             true => pair.over(&body, &side.body, normal, false),
             false => pair.over(&side.body, &body, -normal, true),
@@ -98,12 +100,8 @@ pub(super) fn soup_body(
             }
         };
         let is_inward = side.is_inward(out);
-        (!touches.is_empty()).then_some(Patch {
-            primitives,
-            normal: if mirrored { out } else { -out },
-            touches,
-            is_inward,
-        })
+        let normal = if mirrored { out } else { -out };
+        (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     };
     found.into_iter().filter_map(patch).collect()
 }
@@ -125,7 +123,8 @@ fn near_body(
         });
     } else {
         let (query, _) = complex_convex::convex_in_complex(soup, body);
-        let query = query.inflated(pair.local_margin(usize::from(mirrored)));
+        let (_, margins) = pair.margins(&pair.placing());
+        let query = query.inflated(margins[usize::from(mirrored)]);
         let Scratch { traversal, primitive_tests, .. } = scratch;
         let _ = soup.0.tree().overlapping(&query, traversal, |leaf| {
             found.extend(leaf.iter().filter(|&&i| soup.0.primitive_bounds(i).overlaps(&query)));
@@ -195,14 +194,15 @@ fn beyond<S: Simd>(simd: S, margin: f64, x: &Triangle, row: &Row, lanes: u32) ->
 
 /// The contacts of two soups.
 pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scratch) -> Vec<Patch> {
-    let mut relative = pair.placing.relative();
-    relative.slack_in_a += pair.local_margin(0);
-    relative.slack_in_b += pair.local_margin(1);
-    let [map_a, map_b] = pair.frame.common;
+    let placing = pair.placing();
+    let mut relative = placing.relative();
+    let (margin, [in_a, in_b]) = pair.margins(&placing);
+    relative.slack_in_a += in_a;
+    relative.slack_in_b += in_b;
+    let [map_a, map_b] = &pair.maps;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     rows.iter_mut().for_each(Rows::clear);
-    let margin = pair.margin / pair.frame.scale * pair.placing.scale;
-    let (soups, maps) = ([a, b], &pair.placing.common);
+    let (soups, maps) = ([a, b], &placing.common);
     let mut near = NearPairs { soups, maps, margin, rows, primitive_tests, found: Vec::new() };
     let _ = pairs_on(level(), a.tree(), b.tree(), &relative, &|| None, traversal, &mut near);
     let mut found = near.found;
@@ -212,12 +212,12 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let (hull_a, hull_b) = (a.primitive_hull(i), b.primitive_hull(j));
         let meeting = pair.meeting(&hull_a, &hull_b, must)?;
         let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
-        let (placed_a, placed_b) = (face::Placed::new(&body_a, map_a), face::Placed::new(&body_b, map_b));
-        let (corners_a, corners_b) = (placed_corners(a, i, &map_a), placed_corners(b, j, &map_b));
+        let (placed_a, placed_b) = (face::Placed::new(&body_a, i, map_a), face::Placed::new(&body_b, j, map_b));
+        let (corners_a, corners_b) = (placed_corners(a, i, map_a), placed_corners(b, j, map_b));
         let other_a = Other { support: &hull_a, map: map_a, corners: &corners_a, radius: 0.0 };
         let other_b = Other { support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
-        let of_a = Side::new(a, i, placed_a, &corners_a, other_b);
-        let of_b = Side::new(b, j, placed_b, &corners_b, other_a);
+        let of_a = Side::new(a, placed_a, &corners_a, other_b);
+        let of_b = Side::new(b, placed_b, &corners_b, other_a);
         let (on_a, on_b) = (of_a.corrected(-meeting.normal), of_b.corrected(meeting.normal));
         let (normal, touches) = match (on_a, on_b) {
             (_, Corrected::Replaced(normal)) => (normal, pair.over(&of_a.body, &of_b.body, normal, false)),
@@ -230,7 +230,7 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
             }
         };
         let is_inward = of_a.is_inward(-normal) || of_b.is_inward(normal);
-        (!touches.is_empty()).then_some(Patch { primitives, normal, touches, is_inward })
+        (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     };
     found.into_iter().filter_map(patch).collect()
 }
@@ -239,20 +239,22 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
 /// told.
 pub(super) fn whole(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
     let found = table::penetration(pair.a, pair.b, scratch)?;
-    let [from_a, from_b] = &pair.frame.common;
+    let [from_a, from_b] = &pair.maps;
     let touch = Touch {
-        on_a: from_a.transform_point3(found.points.on_a),
-        on_b: from_b.transform_point3(found.points.on_b),
+        on_a: from_a.point(found.points.on_a),
+        on_b: from_b.point(found.points.on_b),
         depth: found.depth * pair.frame.scale,
+        primitives: [0, 0],
         features: [super::Feature::Face(0); 2],
     };
-    Some(Patch { primitives: [0, 0], normal: found.direction, touches: vec![touch], is_inward: false })
+    Some(Patch { normal: found.direction, touches: vec![touch], is_inward: false })
 }
 
 impl Pair<'_> {
-    /// The margin in the local space of one of the two.
-    fn local_margin(&self, of: usize) -> f64 {
-        self.margin / self.frame.stretch()[of].least
+    /// The margin in a frame, and in the local spaces of the two.
+    fn margins(&self, placing: &Frame) -> (f64, [f64; 2]) {
+        let margin = self.margin / self.frame.scale * placing.scale;
+        (margin, placing.stretch().map(|stretch| margin / stretch.least))
     }
 
     /// The contacts along a normal, given from `b` to `a`, that may not be that of the deepest point.
@@ -284,7 +286,7 @@ impl Meeting {
 #[derive(Clone, Copy)]
 struct Other<'a> {
     support: &'a dyn Support,
-    map: DAffine3,
+    map: &'a Map,
     /// Of a primitive, where its corners are, and of what is round the ends of its core; none of others.
     corners: &'a [DVec3],
     /// How far it reaches around these.
@@ -293,7 +295,7 @@ struct Other<'a> {
 
 impl Other<'_> {
     fn center(&self) -> DVec3 {
-        self.map.transform_point3(self.support.center())
+        self.map.point(self.support.center())
     }
 
     /// How far it reaches along a direction, a unit vector.
@@ -301,14 +303,14 @@ impl Other<'_> {
         if !self.corners.is_empty() {
             return highest(self.corners, direction) + self.radius;
         }
-        let furthest = self.support.support(self.map.matrix3.transpose() * direction);
-        direction.dot(self.map.transform_point3(furthest))
+        let furthest = self.support.support(self.map.linear().transpose() * direction);
+        direction.dot(self.map.point(furthest))
     }
 }
 
 /// The corners of a primitive where it is placed.
-fn placed_corners(complex: &Complex, primitive: u32, map: &DAffine3) -> Vec<DVec3> {
-    complex.points_of(primitive).map(|point| map.transform_point3(point)).collect()
+fn placed_corners(complex: &Complex, primitive: u32, map: &Map) -> SmallVec<[DVec3; 4]> {
+    complex.points_of(primitive).map(|point| map.point(point)).collect()
 }
 
 /// How far points reach along a direction.
@@ -319,7 +321,6 @@ fn highest(points: &[DVec3], direction: DVec3) -> f64 {
 /// A primitive of a soup, and what it is in contact with.
 struct Side<'a> {
     complex: &'a Complex,
-    primitive: u32,
     body: face::Placed<'a>,
     /// Space: common.
     corners: &'a [DVec3],
@@ -352,7 +353,6 @@ impl Corrected {
 impl<'a> Side<'a> {
     fn new(
         complex: &'a Complex,
-        primitive: u32,
         body: face::Placed<'a>,
         corners: &'a [DVec3],
         other: Other<'a>,
@@ -361,9 +361,9 @@ impl<'a> Side<'a> {
             [p, q, r] => face::triangle_normal([p, q, r]),
             _ => None,
         };
-        let turned = body.map.matrix3.determinant().signum();
+        let turned = body.map.linear().determinant().signum();
         let orientation = if complex.is_solid() { complex.topology().orientation() * turned } else { 0.0 };
-        Side { complex, primitive, body, corners, other, plane, orientation }
+        Side { complex, body, corners, other, plane, orientation }
     }
 
     /// The normal, if the surface has it where it is touched; else that of the triangle.
@@ -389,7 +389,7 @@ impl<'a> Side<'a> {
 
     /// The normal of a triangle with a flat surface around it, to the side on which the way out is shorter.
     fn flat(&self) -> Option<DVec3> {
-        let corners = self.complex.primitive(self.primitive);
+        let corners = self.complex.primitive(self.body.primitive);
         let normal = self.complex.topology().is_flat(corners).then_some(self.plane)??;
         Some(if self.depth(normal) <= self.depth(-normal) { normal } else { -normal })
     }
@@ -399,7 +399,7 @@ impl<'a> Side<'a> {
     fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
         let topology = self.complex.topology();
         let (mut least, mut best) = (self.depth(own) - LEVEL, None);
-        let corners = self.complex.primitive(self.primitive);
+        let corners = self.complex.primitive(self.body.primitive);
         for (i, &corner) in corners.iter().enumerate() {
             for &neighbour in topology.around(corner) {
                 let is_at = |corner: &u32| topology.around(*corner).binary_search(&neighbour).is_ok();
@@ -431,7 +431,7 @@ impl<'a> Side<'a> {
     /// The normal of another primitive of the soup, when it is a triangle.
     fn plane_of(&self, primitive: u32) -> Option<DVec3> {
         let &[i, j, k] = self.complex.primitive(primitive) else { return None };
-        let corner = |i: u32| self.body.map.transform_point3(self.complex.vertices()[i as usize]);
+        let corner = |i: u32| self.body.map.point(self.complex.vertices()[i as usize]);
         face::triangle_normal([i, j, k].map(corner))
     }
 
@@ -444,9 +444,9 @@ impl<'a> Side<'a> {
     /// Whether nothing around what is furthest along a normal, of the primitive, is further.
     fn is_of_the_surface(&self, out: DVec3) -> bool {
         let (complex, topology) = (self.complex, self.complex.topology());
-        let local = self.body.map.matrix3.transpose() * out;
+        let local = self.body.map.linear().transpose() * out;
         let height = |vertex: u32| local.dot(complex.vertices()[vertex as usize]);
-        let corners = complex.primitive(self.primitive);
+        let corners = complex.primitive(self.body.primitive);
         let highest = corners.iter().map(|&i| height(i)).fold(f64::NEG_INFINITY, f64::max);
         let mut touched = corners.iter().copied().filter(|&i| height(i) >= highest - LEVEL);
         let Some(first) = touched.next() else { return true };
