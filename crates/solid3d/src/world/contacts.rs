@@ -25,6 +25,7 @@ impl World {
         }
         let known = |argument, id| self.objects.get(id).ok_or(Error::UnknownObject { argument, id });
         let (of_a, of_b) = (known("a", a)?.placed(), known("b", b)?.placed());
-        Ok(pair::contacts(of_a, of_b, options.checked()?, &mut Scratch::default()))
+        let options = options.checked()?;
+        Ok(Scratch::with(|scratch| pair::contacts(of_a, of_b, options, scratch)))
     }
 }

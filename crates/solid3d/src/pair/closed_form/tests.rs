@@ -117,7 +117,8 @@ fn assert_is_the_depth(a: Placed, b: Placed, found: &Penetration, context: &str)
 #[test]
 fn capsules_are_as_deep_in_each_other_as_epa_tells() {
     let mut rng = StdRng::seed_from_u64(SEED + 1);
-    let capsules = [(0.4, 1.0), (0.1, 2.0), (1.5, 0.1)].map(|(radius, length)| Shape::capsule(radius, length).unwrap());
+    let capsules =
+        [(0.4, 1.0), (0.1, 2.0), (1.5, 0.1)].map(|(radius, length)| Shape::capsule(radius, length).unwrap());
     let (mut hits, mut decided) = (0, 0);
     for case in 0..9_000 {
         let [mut at_a, at_b] = placements(&mut rng);

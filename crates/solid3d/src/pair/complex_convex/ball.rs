@@ -34,7 +34,7 @@ pub(super) fn closest_points(triangle: &Triangle, round: &Round, frame: &Frame) 
 
 /// The point of a triangle that is nearest to another, by how far it is from the first corner along the edges to the second and the third
 /// (Ericson, *Real-Time Collision Detection*, 2005, section 5.1.5).
-fn nearest_to(point: DVec3, [p, q, r]: &Triangle) -> [f64; 2] {
+pub(in super::super) fn nearest_to(point: DVec3, [p, q, r]: &Triangle) -> [f64; 2] {
     let (pq, pr) = (*q - *p, *r - *p);
     let [(p1, p2), (q1, q2), (r1, r2)] = [p, q, r].map(|corner| {
         let way = point - *corner;

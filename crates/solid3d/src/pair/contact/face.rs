@@ -316,8 +316,7 @@ impl<'a> Placed<'a> {
 
     /// Both sides of a triangle are its face. One without area is a segment.
     fn simplex(&self, vertices: &[DVec3], indices: &[u32], direction: DVec3) -> Face {
-        let mut corners: Corners =
-            indices.iter().map(|&i| self.corner(vertices[i as usize], i)).collect();
+        let mut corners: Corners = indices.iter().map(|&i| self.corner(vertices[i as usize], i)).collect();
         let normal = match corners[..] {
             [p, q, r] => triangle_normal([p, q, r].map(|corner| corner.point)),
             _ => None,

@@ -18,6 +18,7 @@ impl Map {
         Map { affine, inverse: OnceCell::new() }
     }
 
+    #[inline]
     pub fn point(&self, local: DVec3) -> DVec3 {
         self.affine.transform_point3(local)
     }

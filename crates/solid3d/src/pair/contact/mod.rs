@@ -9,6 +9,7 @@
 //!
 //! Everything is computed in a common frame around the pair: lengths near 1, so that tolerances are relative to the shapes.
 
+mod ball;
 mod clip;
 mod face;
 mod map;

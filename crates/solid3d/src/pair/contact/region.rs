@@ -26,7 +26,10 @@ pub(super) struct Region {
 /// of their first primitives. Cost: follows the patches at one vertex, times how many normals they have.
 pub(super) fn regions(a: &Part, b: &Part, patches: Vec<Patch>) -> Vec<Region> {
     if patches.len() == 1 {
-        return patches.into_iter().map(|patch| Region { normal: patch.normal, points: patch.touches }).collect();
+        return patches
+            .into_iter()
+            .map(|patch| Region { normal: patch.normal, points: patch.touches })
+            .collect();
     }
     let deepest = |patch: &Patch| patch.touches.iter().map(|touch| touch.depth).fold(f64::MIN, f64::max);
     let depths: Vec<f64> = patches.iter().map(deepest).collect();

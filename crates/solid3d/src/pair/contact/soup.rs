@@ -23,6 +23,7 @@ use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
 use super::super::table::PlacedConvex;
 use super::super::triangle_triangle::Triangle;
 use super::super::{Scratch, complex_convex, table, triangle_triangle};
+use super::ball::{Way, way};
 use super::map::Map;
 use super::{Meeting, Pair, Part, Patch, Touch, face, facing};
 use crate::shape::{Body, Complex};
@@ -36,6 +37,9 @@ const SIDE_COSINE: f64 = 0.2;
 
 /// A normal within this of that of the triangle is the same: the square root of the error of a depth.
 const SAME_NORMAL: f64 = 1e-6;
+
+/// A square that lost no digits.
+const SQUARE_MIN: f64 = 1e-280;
 
 /// The contacts of two bodies.
 pub(super) fn body_body(pair: &Pair, a: &Part, b: &Part) -> Vec<Patch> {
@@ -82,9 +86,11 @@ pub(super) fn soup_body(
             Some(normal) => (normal, over(normal)),
             None => {
                 let must = pair.margin == 0.0;
-                let meeting = match mirrored {
-                    true => pair.meeting(*support, &hull, must)?,
-                    false => pair.meeting(&hull, *support, must)?,
+                let meeting = match side.meeting_of_ball(mirrored) {
+                    Some(meeting) if must => meeting.touching(),
+                    Some(meeting) => meeting.within(pair.margin)?,
+                    None if mirrored => pair.meeting(*support, &hull, must)?,
+                    None => pair.meeting(&hull, *support, must)?,
                 };
                 let corrected = side.corrected(if mirrored { meeting.normal } else { -meeting.normal });
                 let touches = match corrected {
@@ -212,7 +218,8 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let (hull_a, hull_b) = (a.primitive_hull(i), b.primitive_hull(j));
         let meeting = pair.meeting(&hull_a, &hull_b, must)?;
         let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
-        let (placed_a, placed_b) = (face::Placed::new(&body_a, i, map_a), face::Placed::new(&body_b, j, map_b));
+        let (placed_a, placed_b) =
+            (face::Placed::new(&body_a, i, map_a), face::Placed::new(&body_b, j, map_b));
         let (corners_a, corners_b) = (placed_corners(a, i, map_a), placed_corners(b, j, map_b));
         let other_a = Other { support: &hull_a, map: map_a, corners: &corners_a, radius: 0.0 };
         let other_b = Other { support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
@@ -276,6 +283,16 @@ impl Pair<'_> {
 }
 
 impl Meeting {
+    /// Of what is known to have a common point.
+    fn touching(self) -> Meeting {
+        Meeting { depth: self.depth.max(0.0), ..self }
+    }
+
+    /// `None` for what is further apart than a margin.
+    fn within(self, margin: f64) -> Option<Meeting> {
+        (self.depth >= -margin).then_some(self)
+    }
+
     /// The same with the normal as it was corrected; `sign` is that of the side it was corrected on.
     fn along(&self, corrected: &Corrected, sign: f64) -> Meeting {
         Meeting { normal: corrected.normal() * sign, ..*self }
@@ -298,10 +315,11 @@ impl Other<'_> {
         self.map.point(self.support.center())
     }
 
-    /// How far it reaches along a direction, a unit vector.
+    /// How far it reaches along a direction, times the length of that.
     fn greatest(&self, direction: DVec3) -> f64 {
         if !self.corners.is_empty() {
-            return highest(self.corners, direction) + self.radius;
+            let around = if self.radius > 0.0 { self.radius * direction.length() } else { 0.0 };
+            return highest(self.corners, direction) + around;
         }
         let furthest = self.support.support(self.map.linear().transpose() * direction);
         direction.dot(self.map.point(furthest))
@@ -315,7 +333,8 @@ fn placed_corners(complex: &Complex, primitive: u32, map: &Map) -> SmallVec<[DVe
 
 /// How far points reach along a direction.
 fn highest(points: &[DVec3], direction: DVec3) -> f64 {
-    points.iter().map(|point| direction.dot(*point)).fold(f64::NEG_INFINITY, f64::max)
+    let heights = points.iter().map(|point| direction.dot(*point));
+    heights.fold(f64::NEG_INFINITY, |highest, height| if height > highest { height } else { highest })
 }
 
 /// A primitive of a soup, and what it is in contact with.
@@ -351,12 +370,7 @@ impl Corrected {
 }
 
 impl<'a> Side<'a> {
-    fn new(
-        complex: &'a Complex,
-        body: face::Placed<'a>,
-        corners: &'a [DVec3],
-        other: Other<'a>,
-    ) -> Self {
+    fn new(complex: &'a Complex, body: face::Placed<'a>, corners: &'a [DVec3], other: Other<'a>) -> Self {
         let plane = match *corners {
             [p, q, r] => face::triangle_normal([p, q, r]),
             _ => None,
@@ -364,6 +378,18 @@ impl<'a> Side<'a> {
         let turned = body.map.linear().determinant().signum();
         let orientation = if complex.is_solid() { complex.topology().orientation() * turned } else { 0.0 };
         Side { complex, body, corners, other, plane, orientation }
+    }
+
+    /// How a triangle and a ball lie to each other, where that is known in closed form.
+    fn meeting_of_ball(&self, mirrored: bool) -> Option<Meeting> {
+        let (&[p, q, r], &[center, end]) = (self.corners, self.other.corners) else { return None };
+        let is_ball = center == end && self.other.radius > 0.0;
+        let Way { out, depth, foot } = is_ball.then(|| way(&[p, q, r], center, self.other.radius))??;
+        let on_ball = center - out * self.other.radius;
+        Some(match mirrored {
+            true => Meeting { normal: out, depth, on_a: on_ball, on_b: foot },
+            false => Meeting { normal: -out, depth, on_a: foot, on_b: on_ball },
+        })
     }
 
     /// The normal, if the surface has it where it is touched; else that of the triangle.
@@ -399,14 +425,20 @@ impl<'a> Side<'a> {
     fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
         let topology = self.complex.topology();
         let (mut least, mut best) = (self.depth(own) - LEVEL, None);
-        let corners = self.complex.primitive(self.body.primitive);
+        let corners: SmallVec<[u32; 4]> =
+            self.complex.primitive(self.body.primitive).iter().map(|&i| topology.welded(i)).collect();
         for (i, &corner) in corners.iter().enumerate() {
             for &neighbour in topology.around(corner) {
-                let is_at = |corner: &u32| topology.around(*corner).binary_search(&neighbour).is_ok();
+                let &[p, q, r] = self.complex.primitive(neighbour) else { continue };
+                let is_at = |corner: &u32| [p, q, r].iter().any(|&i| topology.welded(i) == *corner);
                 if corners[..i].iter().any(is_at) {
                     continue;
                 }
-                let Some(normal) = self.plane_of(neighbour) else { continue };
+                let triangle = self.placed([p, q, r]);
+                if !self.may_be_shorter(&triangle, least) {
+                    continue;
+                }
+                let Some(normal) = face::triangle_normal(triangle) else { continue };
                 if normal.dot(own).abs() > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL {
                     continue;
                 }
@@ -423,16 +455,24 @@ impl<'a> Side<'a> {
         best
     }
 
-    /// How far the other reaches back behind what of the primitive is furthest along a normal.
+    /// Whether the way out along the normal of a triangle may be shorter than a length: a quick look, with the slack
+    /// that takes.
+    fn may_be_shorter(&self, [p, q, r]: &Triangle, length: f64) -> bool {
+        let across = (*q - *p).cross(*r - *p);
+        let square = across.length_squared();
+        let limit = (length + 2.0 * LEVEL) * square.sqrt();
+        square < SQUARE_MIN || self.depth(across) <= limit || self.depth(-across) <= limit
+    }
+
+    /// How far the other reaches back behind what of the primitive is furthest along a normal; along a vector of any length, times that.
     fn depth(&self, out: DVec3) -> f64 {
         highest(self.corners, out) + self.other.greatest(-out)
     }
 
-    /// The normal of another primitive of the soup, when it is a triangle.
-    fn plane_of(&self, primitive: u32) -> Option<DVec3> {
-        let &[i, j, k] = self.complex.primitive(primitive) else { return None };
-        let corner = |i: u32| self.body.map.point(self.complex.vertices()[i as usize]);
-        face::triangle_normal([i, j, k].map(corner))
+    /// Where vertices of the soup are.
+    fn placed(&self, [p, q, r]: [u32; 3]) -> Triangle {
+        let at = |i: u32| self.body.map.point(self.complex.vertices()[i as usize]);
+        [at(p), at(q), at(r)]
     }
 
     /// Whether a normal points into a solid.
