@@ -18,6 +18,14 @@ pub(super) struct BallAndBody {
     ball: Similarity,
 }
 
+/// A ball, or a point, that its placement leaves one: with its radius in the world.
+pub(super) fn placed_ball(ball: Placed) -> Option<(Similarity, f64)> {
+    let radius = ball.shape.ball_radius()?;
+    let at = Similarity::new(&ball.placement.matrix3)?;
+    let radius = radius * at.stretch;
+    Some((at, radius))
+}
+
 /// Whether there is no gap of this size, in the unit of the pair; `None` where it is too small to tell.
 fn intersects(gap: f64) -> Option<bool> {
     Gap { least: gap, greatest: gap }.intersects()
@@ -40,9 +48,7 @@ pub(crate) fn closest_to(body: Placed, point: DVec3) -> Option<(f64, DVec3)> {
 impl BallAndBody {
     /// `None` for other shapes, and for placements that are not a rotation with a uniform scale.
     pub fn new(ball: Placed, body: Placed) -> Option<BallAndBody> {
-        let radius = ball.shape.ball_radius()?;
-        let at = Similarity::new(&ball.placement.matrix3)?;
-        let radius = radius * at.stretch;
+        let (at, radius) = placed_ball(ball)?;
         Some(BallAndBody { seen: Seen::new(body, ball.placement.translation, radius)?, radius, ball: at })
     }
 

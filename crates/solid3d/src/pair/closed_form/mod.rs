@@ -6,6 +6,7 @@
 
 mod ball;
 mod boxes;
+mod cast;
 mod point;
 mod quick;
 mod round;
@@ -24,6 +25,7 @@ use crate::shape::Simple;
 use ball::BallAndBody;
 pub(crate) use ball::{closest_to, contains};
 use boxes::PlacedBox;
+pub(super) use cast::cast;
 pub(super) use point::surface_point;
 use round::{Cores, PlacedRound};
 pub(super) use similarity::Similarity;

@@ -139,6 +139,46 @@ fn capsules_are_as_deep_in_each_other_as_epa_tells() {
     assert!((2_000..7_000).contains(&hits) && 10 * decided > 9 * hits, "{decided} of {hits}");
 }
 
+/// Balls of all sizes, and points, near or far, slow or fast, that miss, graze or hit each other.
+#[test]
+fn balls_meet_when_gjk_says_so() {
+    let mut rng = StdRng::seed_from_u64(SEED + 2);
+    let balls = [0.7, 0.05, 1e-4].map(|radius| Shape::sphere(radius).unwrap());
+    let balls = [&balls[0], &balls[1], &balls[2], &Shape::convex_hull(&[DVec3::ZERO]).unwrap()];
+    let (mut hits, mut decided, cases) = (0, 0, 12_000);
+    for case in 0..cases {
+        let [mut at_a, at_b] = placements(&mut rng);
+        at_a.translation += (at_a.translation - at_b.translation) * 10f64.powf(rng.random_range(0.0..4.0));
+        let (a, b) = (
+            Placed { shape: balls[case % 4], placement: &at_a },
+            Placed { shape: balls[case / 4 % 4], placement: &at_b },
+        );
+        let way = at_b.translation - at_a.translation;
+        let aside = way.any_orthonormal_vector() * rng.random_range(0.0..[1.5, 1e-3][case % 2]);
+        let motion = (way + aside) * [0.9, 1.1, 30.0, -1.0][case / 16 % 4];
+        let context = format!("seed {SEED}, case {case}: {at_a}, {at_b}, {motion}");
+        let Some(found) = cast(a, motion, b) else { continue };
+        decided += 1;
+        let slow = gjk::cast(support(a.shape), &at_a, motion, support(b.shape), &at_b, 1.0);
+        assert_eq!(found.is_some(), slow.is_some(), "{context}: {found:?}, {slow:?}");
+        let (Some(found), Some(slow)) = (found, slow) else { continue };
+        hits += 1;
+        // Either may be before the impact by a gap of 1e-10 of the size of the data.
+        let size = way.length() + motion.length() + 2.0;
+        let normal = found.normal.unwrap();
+        let later = (found.time - slow.time).abs() * -normal.dot(motion);
+        assert!(later < 2e-10 * size, "{context}: {found:?}, {slow:?}");
+        assert!((normal.length() - 1.0).abs() < 1e-14, "{context}: {found:?}");
+        let moved = DAffine3 { translation: at_a.translation + motion * found.time, ..at_a };
+        let [x, y] = in_world(Placed { placement: &moved, ..a }, b, found.points, &context);
+        assert!(x.distance(y) < 1e-11 * size && (x - y).dot(normal) > -1e-14 * size, "{context}: {found:?}");
+    }
+    assert!(
+        100 * decided > 80 * cases && (20..=60).contains(&(100 * hits / decided)),
+        "{hits} of {decided} of {cases}"
+    );
+}
+
 /// Balls of all sizes, and points, beside all bodies, in either order.
 #[test]
 fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
