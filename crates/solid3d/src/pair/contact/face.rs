@@ -202,14 +202,14 @@ impl<'a> Placed<'a> {
         let (cosine, axis, sign, normal) =
             sides.into_iter().max_by(|x, y| x.0.total_cmp(&y.0)).expect("a box has three axes");
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        let around = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
-        let corners = around.map(|(along_i, along_j)| {
+        let corner = |along_i: f64, along_j: f64| {
             let mut signs = DVec3::splat(sign);
             (signs[i], signs[j]) = (along_i, along_j);
             let vertex = (0..3).map(|k| u32::from(signs[k] > 0.0) << k).sum();
             self.corner(half * signs, vertex)
-        });
-        Face { corners: corners.into(), normal, number: 2 * axis as u32 + u32::from(sign < 0.0), cosine }
+        };
+        let corners = smallvec![corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0), corner(1.0, -1.0)];
+        Face { corners, normal, number: 2 * axis as u32 + u32::from(sign < 0.0), cosine }
     }
 
     fn cylinder(&self, cylinder: &Cylinder, direction: DVec3, local: DVec3) -> Face {

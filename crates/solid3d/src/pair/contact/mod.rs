@@ -349,7 +349,9 @@ impl Pair<'_> {
             let (on_a, on_b) = (at + normal * height_a, at + normal * height_b);
             (depth >= -self.margin - SAME_DEPTH).then_some(Touch { on_a, on_b, depth, primitives, features })
         };
-        corners.into_iter().filter_map(touch).collect()
+        let mut touches = Vec::with_capacity(corners.len());
+        touches.extend(corners.into_iter().filter_map(touch));
+        touches
     }
 }
 
