@@ -69,7 +69,11 @@ pub(super) fn soup_body(
     let (ends, radius) = round.map_or(([DVec3::ZERO; 2], 0.0), |((ends, radius), similarity)| {
         (ends.map(|end| map_body.point(end)), radius * similarity.stretch)
     });
-    let corners = if round.is_some() { &ends[..] } else { &[] };
+    let corners = match round {
+        Some(_) if ends[0] == ends[1] => &ends[..1],
+        Some(_) => &ends[..],
+        None => &[],
+    };
     let other = Other { support: *support, map: map_body, corners, radius };
     let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
     let patch = |primitive: u32| {
@@ -304,7 +308,7 @@ impl Meeting {
 struct Other<'a> {
     support: &'a dyn Support,
     map: &'a Map,
-    /// Of a primitive, where its corners are, and of what is round the ends of its core; none of others.
+    /// Of a primitive, where its corners are, of what is round the ends of its core, which of a ball are one; none of others.
     corners: &'a [DVec3],
     /// How far it reaches around these.
     radius: f64,
@@ -315,14 +319,15 @@ impl Other<'_> {
         self.map.point(self.support.center())
     }
 
-    /// How far it reaches along a direction, times the length of that.
-    fn greatest(&self, direction: DVec3) -> f64 {
+    /// The least and the greatest height along a direction, times the length of that.
+    fn extremes(&self, direction: DVec3) -> [f64; 2] {
         if !self.corners.is_empty() {
+            let [low, high] = extremes(self.corners, direction);
             let around = if self.radius > 0.0 { self.radius * direction.length() } else { 0.0 };
-            return highest(self.corners, direction) + around;
+            return [low - around, high + around];
         }
-        let furthest = self.support.support(self.map.linear().transpose() * direction);
-        direction.dot(self.map.point(furthest))
+        let local = self.map.linear().transpose() * direction;
+        [-local, local].map(|local| direction.dot(self.map.point(self.support.support(local))))
     }
 }
 
@@ -331,10 +336,11 @@ fn placed_corners(complex: &Complex, primitive: u32, map: &Map) -> SmallVec<[DVe
     complex.points_of(primitive).map(|point| map.point(point)).collect()
 }
 
-/// How far points reach along a direction.
-fn highest(points: &[DVec3], direction: DVec3) -> f64 {
+/// The least and the greatest height of points along a direction.
+fn extremes(points: &[DVec3], direction: DVec3) -> [f64; 2] {
     let heights = points.iter().map(|point| direction.dot(*point));
-    heights.fold(f64::NEG_INFINITY, |highest, height| if height > highest { height } else { highest })
+    heights
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| [low.min(height), high.max(height)])
 }
 
 /// A primitive of a soup, and what it is in contact with.
@@ -382,9 +388,8 @@ impl<'a> Side<'a> {
 
     /// How a triangle and a ball lie to each other, where that is known in closed form.
     fn meeting_of_ball(&self, mirrored: bool) -> Option<Meeting> {
-        let (&[p, q, r], &[center, end]) = (self.corners, self.other.corners) else { return None };
-        let is_ball = center == end && self.other.radius > 0.0;
-        let Way { out, depth, foot } = is_ball.then(|| way(&[p, q, r], center, self.other.radius))??;
+        let (&[p, q, r], &[center]) = (self.corners, self.other.corners) else { return None };
+        let Way { out, depth, foot } = way(&[p, q, r], center, self.other.radius)?;
         let on_ball = center - out * self.other.radius;
         Some(match mirrored {
             true => Meeting { normal: out, depth, on_a: on_ball, on_b: foot },
@@ -417,14 +422,15 @@ impl<'a> Side<'a> {
     fn flat(&self) -> Option<DVec3> {
         let corners = self.complex.primitive(self.body.primitive);
         let normal = self.complex.topology().is_flat(corners).then_some(self.plane)??;
-        Some(if self.depth(normal) <= self.depth(-normal) { normal } else { -normal })
+        let [depth, opposite] = self.depths(normal);
+        Some(if depth <= opposite { normal } else { -normal })
     }
 
     /// The normal of a face next to the primitive that the surface has at the primitive, too, when the way out along it is shorter
     /// than along the primitive's own: that of the shortest.
     fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
         let topology = self.complex.topology();
-        let (mut least, mut best) = (self.depth(own) - LEVEL, None);
+        let (mut least, mut best) = (self.depths(own)[0] - LEVEL, None);
         let corners: SmallVec<[u32; 4]> =
             self.complex.primitive(self.body.primitive).iter().map(|&i| topology.welded(i)).collect();
         for (i, &corner) in corners.iter().enumerate() {
@@ -442,12 +448,10 @@ impl<'a> Side<'a> {
                 if normal.dot(own).abs() > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL {
                     continue;
                 }
-                for out in
-                    [normal, -normal].into_iter().filter(|out| self.orientation * normal.dot(*out) >= 0.0)
-                {
-                    let depth = self.depth(out);
-                    if depth < least && self.is_of_the_surface(out) {
-                        (least, best) = (depth, Some(out));
+                for (sign, depth) in [1.0, -1.0].into_iter().zip(self.depths(normal)) {
+                    let is_outward = self.orientation * sign >= 0.0;
+                    if is_outward && depth < least && self.is_of_the_surface(normal * sign) {
+                        (least, best) = (depth, Some(normal * sign));
                     }
                 }
             }
@@ -461,12 +465,16 @@ impl<'a> Side<'a> {
         let across = (*q - *p).cross(*r - *p);
         let square = across.length_squared();
         let limit = (length + 2.0 * LEVEL) * square.sqrt();
-        square < SQUARE_MIN || self.depth(across) <= limit || self.depth(-across) <= limit
+        let [depth, opposite] = self.depths(across);
+        square < SQUARE_MIN || depth.min(opposite) <= limit
     }
 
-    /// How far the other reaches back behind what of the primitive is furthest along a normal; along a vector of any length, times that.
-    fn depth(&self, out: DVec3) -> f64 {
-        highest(self.corners, out) + self.other.greatest(-out)
+    /// How far the other reaches back behind what of the primitive is furthest along a normal, and along its opposite; along a vector of any
+    /// length, times that.
+    fn depths(&self, out: DVec3) -> [f64; 2] {
+        let [low, high] = extremes(self.corners, out);
+        let [behind, beyond] = self.other.extremes(out);
+        [high - behind, beyond - low]
     }
 
     /// Where vertices of the soup are.
