@@ -1,6 +1,6 @@
 //! When two shapes that move along straight lines first meet. Only the relative motion counts: `A` moves, `B` stands still.
 //!
-//! Convex against convex by the GJK cast; complex shapes by branch and bound over their trees, with the boxes of one swept through
+//! Two balls in closed form, convex against convex by the GJK cast; complex shapes by branch and bound over their trees, with the boxes of one swept through
 //! the space of the other. The time found so far cuts off what is met later, and so do the planes of the last impacts, of what is behind them.
 
 use glam::{DAffine3, DVec3};
