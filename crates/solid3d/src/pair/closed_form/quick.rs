@@ -104,21 +104,23 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Whether a ball, of which alone is told, and a box, the `cuboid`th of the two, intersect: in the box's own space, times the square of its scale.
+    /// Whether a ball or a capsule and a box, the `cuboid`th of the two, intersect: in the box's own space, times the square of its scale.
     #[inline(always)]
     fn round_and_box_meet(&self, round: Round, cuboid: usize, half: DVec3) -> Option<bool> {
-        if !round.is_ball() {
-            return None;
-        }
         let unit = self.scales[cuboid];
-        let radius = round.radius * self.scales[1 - cuboid];
-        let size = radius + half.element_sum() * unit + self.offset.abs().element_sum();
+        let reach = round.reach() * self.scales[1 - cuboid];
+        let size = reach + half.element_sum() * unit + self.offset.abs().element_sum();
         if !PLAIN_SIZES.contains(&size) {
             return None;
         }
-        let square = self.ball_and_box(cuboid, half).way().length_squared();
-        let (radius, margin) = (radius * unit, ROUGH_GAP_MIN * size * unit);
-        decide(square, [radius - margin, radius + margin])
+        let pair = self.ball_and_box(cuboid, half);
+        let (radius, margin) = (round.radius * self.scales[1 - cuboid] * unit, ROUGH_GAP_MIN * size * unit);
+        let radii = [radius - margin, radius + margin];
+        if round.is_ball() {
+            return decide(pair.way().length_squared(), radii);
+        }
+        let axis = self.at[1 - cuboid].matrix3.y_axis * round.half_height;
+        pair.segment_meets(self.local(cuboid, axis), half * self.squares[cuboid], radii)
     }
 
     /// Whether two boxes intersect, by the balls around them and in them.
@@ -129,7 +131,8 @@ impl<'a> View<'a> {
         if reach < *PLAIN_SIZES.start() {
             return None;
         }
-        let ([near, _], [_, far]) = (around(inner, reach), around(reach, reach));
+        let outer = self.both([a.length(), b.length()]);
+        let ([near, _], [_, far]) = (around(inner, reach), around(outer, reach));
         decide(self.offset.length_squared(), [near, far])
     }
 
@@ -242,13 +245,18 @@ impl<'a> View<'a> {
     /// A ball, and the box that is the `cuboid`th of the two.
     #[inline(always)]
     fn ball_and_box(&self, cuboid: usize, half: DVec3) -> CenterAndBox {
-        let center = if cuboid == 1 { -self.offset } else { self.offset };
+        let center = self.local(cuboid, if cuboid == 1 { -self.offset } else { self.offset });
         let stretch_squared = self.squares[cuboid];
         let half = half * stretch_squared;
-        let DMat3 { x_axis, y_axis, z_axis } = self.at[cuboid].matrix3;
-        // Of the matrix, transposed; glam's product is not always inlined, and is then called without vectors.
-        let center = DVec3::new(x_axis.dot(center), y_axis.dot(center), z_axis.dot(center));
         CenterAndBox { center, on_box: center.clamp(-half, half), stretch_squared }
+    }
+
+    /// A vector of the world in the own space of one of the two, times the square of its scale.
+    #[inline(always)]
+    fn local(&self, k: usize, v: DVec3) -> DVec3 {
+        let DMat3 { x_axis, y_axis, z_axis } = self.at[k].matrix3;
+        // Of the matrix, transposed; glam's product is not always inlined, and is then called without vectors.
+        DVec3::new(x_axis.dot(v), y_axis.dot(v), z_axis.dot(v))
     }
 }
 
@@ -277,6 +285,21 @@ impl CenterAndBox {
     #[inline(always)]
     fn way(&self) -> DVec3 {
         self.center - self.on_box
+    }
+
+    /// Whether all within the lesser radius of a segment through the point, given by its half axis, meets the box, and all within the greater does not. What is
+    /// apart is told along the axes of the box, and what meets by a point of the segment that is near the box: not where edges pass each other.
+    #[inline(always)]
+    fn segment_meets(&self, axis: DVec3, half: DVec3, [near, far]: [f64; 2]) -> Option<bool> {
+        if (self.center.abs() - axis.abs() - half).max_element() > far {
+            return Some(false);
+        }
+        let inverse = 1.0 / axis.length_squared();
+        let nearest_to =
+            |point: DVec3| self.center + axis * ((point - self.center).dot(axis) * inverse).clamp(-1.0, 1.0);
+        let on_box = nearest_to(DVec3::ZERO).clamp(-half, half);
+        let square = nearest_to(on_box).distance_squared(on_box);
+        ((near > 0.0) & (square < near * near)).then_some(true)
     }
 
     /// The point of the box. Space: its own.

@@ -397,3 +397,46 @@ fn thin_capsules_are_told_as_gjk_tells_them() {
     assert!(decided > 8_000 && thin > 300, "{decided} decided, {thin} of them thin");
     assert!((30..=70).contains(&(100 * hits / decided)), "{hits} of {decided} hit");
 }
+
+/// Capsules and boxes of any sizes and proportions, mirrored among them, that all but touch, by a face, an edge or a corner: seen on every level alike,
+/// and as GJK tells them. Most are not left open.
+#[test]
+fn capsules_and_boxes_are_seen_as_gjk_tells_them() {
+    let mut rng = StdRng::seed_from_u64(SEED + 3);
+    let [mut sure_hits, mut sure_misses, mut hits, mut misses] = [0; 4];
+    for case in 0..24_000 {
+        let spread = [0.3, 3.0][case % 2];
+        let mut size = || 10f64.powf(rng.random_range(-spread..spread));
+        let capsule = Shape::capsule(size(), size()).unwrap();
+        let block = Shape::cuboid([size(), size(), size()]).unwrap();
+        let [mut at_a, at_b] = placements(&mut rng);
+        if case % 3 == 0 {
+            at_a.matrix3 = at_b.matrix3 * DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
+        }
+        // Along the way that parts them, by a part of their gap or overlap.
+        let unit = DVec3::from([0; 3].map(|_| rng.random_range(-1.0..1.0)));
+        let reach = capsule.simple().unwrap().radius() + block.simple().unwrap().radius();
+        at_a.translation = at_b.translation + unit * reach;
+        let [of_a, of_b] = [&capsule, &block].map(support);
+        let closest = gjk::closest_points(of_a, &at_a, of_b, &at_b);
+        if closest.distance > 0.0 {
+            let [p, q] =
+                [at_a.transform_point3(closest.points.on_a), at_b.transform_point3(closest.points.on_b)];
+            at_a.translation += (q - p) * [0.0, 0.9, 0.999_999_9, 1.000_000_1, 1.2, 3.0][case / 3 % 6];
+        }
+        let placed =
+            [Placed { shape: &capsule, placement: &at_a }, Placed { shape: &block, placement: &at_b }];
+        let [a, b] = if case % 2 == 0 { placed } else { [placed[1], placed[0]] };
+        let seen = levels().map(|level| dispatch!(level, simd => quick::intersects(simd, a, b)));
+        assert_eq!(seen[0], seen[1], "case {case}: {at_a}, {at_b}");
+        let meets = gjk::intersection(of_a, &at_a, of_b, &at_b).witness().is_some();
+        (hits, misses) = (hits + usize::from(meets), misses + usize::from(!meets));
+        if let Glance::Sure(answer) = seen[0] {
+            assert_eq!(answer, meets, "case {case}: {capsule:?}, {block:?}, {at_a}, {at_b}");
+            sure_hits += usize::from(answer);
+            sure_misses += usize::from(!answer);
+        }
+    }
+    println!("{sure_hits} of {hits} that meet, {sure_misses} of {misses} that do not");
+    assert!(hits > 6_000 && misses > 6_000 && sure_hits * 10 > hits * 6 && sure_misses * 2 > misses);
+}
