@@ -20,16 +20,20 @@ pub(super) fn closest_points(triangle: &Triangle, round: &Round, frame: &Frame) 
     let length = way.length();
     let gap = length - round.radius;
     let to_surface = if gap > CLEARLY_APART {
-        // The plane across the way bounds the distance from below.
-        let heights = placed.map(|corner| way.dot(center - corner));
-        let least = heights[0].min(heights[1]).min(heights[2]) / length;
-        (length - least <= CONFIRMED).then_some(round.radius / length)?
+        is_confirmed(&placed, center, way, length).then_some(round.radius / length)?
     } else {
         // The point is in the ball.
         (gap < -CLEARLY_APART).then_some(1.0)?
     };
     let on_b = round.local_ends[0] - round.at.local(way * to_surface);
     Some(Closest { distance: gap.max(0.0) / frame.scale, points: Witness { on_a: point(triangle), on_b } })
+}
+
+/// Whether the way from a triangle to a point is the shortest, or no longer by what rounding hides: the plane across it bounds the distance from below.
+pub(in super::super) fn is_confirmed(triangle: &Triangle, point: DVec3, way: DVec3, length: f64) -> bool {
+    let heights = triangle.map(|corner| way.dot(point - corner));
+    let least = heights[0].min(heights[1]).min(heights[2]) / length;
+    length - least <= CONFIRMED
 }
 
 /// The point of a triangle that is nearest to another, by how far it is from the first corner along the edges to the second and the third

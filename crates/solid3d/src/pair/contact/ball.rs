@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::complex_convex::nearest_to;
-use super::super::row::CONFIRMED;
+use super::super::complex_convex::{is_confirmed, nearest_to};
 use super::super::triangle_triangle::Triangle;
 
 /// A centre nearer to the triangle than this, in the unit of the pair, has a way to it with few digits.
@@ -30,10 +29,11 @@ pub(super) fn way(triangle: &Triangle, center: DVec3, radius: f64) -> Option<Way
     if length < WAY_MIN {
         return None;
     }
-    let out = way / length;
-    // The plane across the way bounds the distance from below.
-    let least = triangle.map(|corner| out.dot(center - corner)).into_iter().fold(f64::INFINITY, f64::min);
-    (length - least <= CONFIRMED).then_some(Way { out, depth: radius - length, foot })
+    is_confirmed(triangle, center, way, length).then_some(Way {
+        out: way / length,
+        depth: radius - length,
+        foot,
+    })
 }
 
 #[cfg(test)]
