@@ -597,6 +597,27 @@ fn degenerate_input_has_answers() {
     }
 }
 
+/// A roof of many triangles around one vertex, which each have all others next to them. Were each held against each, this would take
+/// minutes.
+#[test]
+fn a_fan_of_many_triangles() {
+    const COUNT: u32 = 20_000;
+    let rim = |i: u32| {
+        let (sin, cos) = (TAU * f64::from(i) / f64::from(COUNT)).sin_cos();
+        DVec3::new(cos, -0.2, sin)
+    };
+    let points: Vec<DVec3> = std::iter::once(DVec3::ZERO).chain((0..COUNT).map(rim)).collect();
+    let roof = Shape::mesh(points, (0..COUNT).map(|i| [0, 1 + i, 1 + (i + 1) % COUNT]).collect::<Vec<_>>());
+    let (roof, here) = (roof.unwrap(), DAffine3::IDENTITY);
+    let box_on_top = only(&roof, &here, &cube(), &at(0.1, 0.49, 0.2));
+    assert!(box_on_top.normal.abs_diff_eq(-DVec3::Y, 1e-9), "{box_on_top:#?}");
+    assert!(box_on_top.points.iter().any(|p| (p.depth - 0.01).abs() < 1e-9), "{box_on_top:#?}");
+    let ball = Shape::sphere(0.5).unwrap();
+    for region in contacts(&roof, &here, &ball, &at(0.0, 0.49, 0.0)) {
+        assert!(region.normal.y < -0.9 && region.points.iter().all(|p| p.depth < 0.05), "{region:#?}");
+    }
+}
+
 /// Scaling a scene by a power of two scales the answer, to the bit.
 #[test]
 fn powers_of_two_change_nothing() {

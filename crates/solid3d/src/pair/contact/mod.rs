@@ -5,7 +5,7 @@
 //! the surfaces overlap there along the normal. The deepest point is always among them.
 //!
 //! Of meshes and complex shapes: the contacts of all pairs of primitives, each with a normal that the surface around the
-//! primitive has ([`soup`]), put together where the surface is connected and the normal the same ([`region`]).
+//! primitive has ([`side`]), put together where the surface is connected and the normal the same ([`region`]).
 //!
 //! Everything is computed in a common frame around the pair: lengths near 1, so that tolerances are relative to the shapes.
 
@@ -13,8 +13,11 @@ mod ball;
 mod clip;
 mod face;
 mod map;
+mod other;
 mod region;
+mod side;
 mod soup;
+mod stars;
 
 use glam::{DVec2, DVec3};
 use smallvec::{SmallVec, smallvec};

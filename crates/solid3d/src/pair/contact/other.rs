@@ -1,0 +1,69 @@
+//! What a primitive is in contact with, in the common frame.
+
+use glam::DVec3;
+use solid_convex::Support;
+
+use super::super::triangle_triangle::Triangle;
+use super::map::Map;
+use super::stars::LEVEL;
+
+/// A square that lost no digits.
+const SQUARE_MIN: f64 = 1e-280;
+
+/// A convex body, or a primitive of the other soup.
+#[derive(Clone, Copy)]
+pub(super) struct Other<'a> {
+    /// The number of a primitive; 0 of a body.
+    pub primitive: u32,
+    pub support: &'a dyn Support,
+    pub map: &'a Map,
+    /// Of a primitive, where its corners are, of what is round the ends of its core, which of a ball are one; none of others.
+    pub corners: &'a [DVec3],
+    /// How far it reaches around these.
+    pub radius: f64,
+}
+
+impl Other<'_> {
+    pub fn center(&self) -> DVec3 {
+        self.map.point(self.support.center())
+    }
+
+    /// How far it reaches back behind what of some points is furthest along a normal, and along its opposite; along a vector of any
+    /// length, times that.
+    #[inline(always)]
+    pub fn depths(&self, points: &[DVec3], out: DVec3) -> [f64; 2] {
+        let [low, high] = extremes(points, out);
+        let [behind, beyond] = self.extremes(out);
+        [high - behind, beyond - low]
+    }
+
+    /// Whether one of the depths behind some points along the normal of a triangle may be less than a length: a quick look, with the
+    /// slack that takes.
+    pub fn may_be_nearer(&self, points: &[DVec3], [p, q, r]: &Triangle, length: f64) -> bool {
+        let across = (*q - *p).cross(*r - *p);
+        let square = across.length_squared();
+        let limit = (length + 2.0 * LEVEL) * square.sqrt();
+        let [depth, opposite] = self.depths(points, across);
+        square < SQUARE_MIN || depth.min(opposite) <= limit
+    }
+
+    /// The least and the greatest height along a direction, times the length of that.
+    #[inline]
+    fn extremes(&self, direction: DVec3) -> [f64; 2] {
+        if !self.corners.is_empty() {
+            let [low, high] = extremes(self.corners, direction);
+            let around = if self.radius > 0.0 { self.radius * direction.length() } else { 0.0 };
+            return [low - around, high + around];
+        }
+        let local = self.map.linear().transpose() * direction;
+        [-local, local].map(|local| direction.dot(self.map.point(self.support.support(local))))
+    }
+}
+
+/// The least and the greatest height of points along a direction.
+#[inline]
+fn extremes(points: &[DVec3], direction: DVec3) -> [f64; 2] {
+    let heights = points.iter().map(|point| direction.dot(*point));
+    heights
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| [low.min(height), high.max(height)])
+}

@@ -1,0 +1,205 @@
+//! A primitive of a soup in contact, and the normals that the surface has at it.
+//!
+//! A triangle in a surface is not alone: a box that slides over a floor is pushed up by each triangle under it, and by none of them aside,
+//! though aside may be the shortest way off that triangle. A normal is one of the surface when the part of the triangle that it touches
+//! is the highest along it of all that is around: the face always, an edge or a corner when the surface is convex there
+//! and the normal between those of the faces. Any other is replaced by the normal of the triangle, or by that of a face next to it that the
+//! surface has at the edge or corner that they share, as a riser with the tread above it, where the way out along that is shorter.
+
+use glam::DVec3;
+
+use super::ball::{Way, way};
+use super::other::Other;
+use super::stars::{LEVEL, SAME_NORMAL, Shortest, Stars, is_parallel};
+use super::{Meeting, face};
+
+/// A normal whose cosine with that of the triangle is beyond this tells the side on which the other is.
+const SIDE_COSINE: f64 = 0.2;
+
+/// A primitive of a soup, and what it is in contact with.
+pub(super) struct Side<'a> {
+    stars: &'a Stars<'a>,
+    pub body: face::Placed<'a>,
+    /// Space: common.
+    corners: &'a [DVec3],
+    other: Other<'a>,
+    /// The normal of the primitive when it is a triangle, by its order.
+    plane: Option<DVec3>,
+}
+
+/// A normal out of a primitive.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Corrected {
+    /// One that the surface has.
+    Kept(DVec3),
+    /// That of a face next to it, in place of another.
+    Adopted(DVec3),
+    /// That of the triangle, in place of another.
+    Replaced(DVec3),
+}
+
+impl Corrected {
+    pub fn normal(&self) -> DVec3 {
+        match *self {
+            Corrected::Kept(normal) | Corrected::Adopted(normal) | Corrected::Replaced(normal) => normal,
+        }
+    }
+}
+
+impl<'a> Side<'a> {
+    pub fn new(stars: &'a Stars<'a>, body: face::Placed<'a>, corners: &'a [DVec3], other: Other<'a>) -> Self {
+        let plane = match *corners {
+            [p, q, r] => face::triangle_normal([p, q, r]),
+            _ => None,
+        };
+        Side { stars, body, corners, other, plane }
+    }
+
+    /// How a triangle and a ball lie to each other, where that is known in closed form.
+    pub fn meeting_of_ball(&self, mirrored: bool) -> Option<Meeting> {
+        let (&[p, q, r], &[center]) = (self.corners, self.other.corners) else { return None };
+        let Way { out, depth, foot } = way(&[p, q, r], center, self.other.radius)?;
+        let on_ball = center - out * self.other.radius;
+        Some(match mirrored {
+            true => Meeting { normal: out, depth, on_a: on_ball, on_b: foot },
+            false => Meeting { normal: -out, depth, on_a: foot, on_b: on_ball },
+        })
+    }
+
+    /// The normal of a triangle with a flat surface around it, to the side on which the way out is shorter.
+    pub fn flat(&self) -> Option<DVec3> {
+        let is_flat = self.stars.is_flat(self.body.primitive);
+        let normal = is_flat.then_some(self.plane)??;
+        let [depth, opposite] = self.other.depths(self.corners, normal);
+        Some(if depth <= opposite { normal } else { -normal })
+    }
+
+    /// Whether a normal points into a solid.
+    pub fn is_inward(&self, out: DVec3) -> bool {
+        let orientation = self.stars.orientation;
+        let points_in = |normal: DVec3| orientation * normal.dot(out) < -SAME_NORMAL;
+        orientation != 0.0 && self.plane.is_some_and(points_in)
+    }
+
+    /// The normal, if the surface has it where it is touched; else that of the triangle, or of a face next to it.
+    pub fn corrected(&self, out: DVec3) -> Corrected {
+        let Some(normal) = self.plane else { return Corrected::Kept(out) };
+        let cosine = normal.dot(out);
+        if is_parallel(normal, out) {
+            return Corrected::Kept(normal * cosine.signum());
+        }
+        if self.stars.have(out, &self.stars.welded(self.body.primitive)) {
+            return Corrected::Kept(out);
+        }
+        let side = if self.stars.orientation != 0.0 {
+            self.stars.orientation
+        } else if cosine.abs() > SIDE_COSINE {
+            cosine
+        } else {
+            normal.dot(self.other.center() - self.corners[0])
+        };
+        let own = normal * side.signum();
+        self.shorter_around(own).map_or(Corrected::Replaced(own), Corrected::Adopted)
+    }
+
+    /// The normal of a face next to the triangle that the surface has where they meet, when the way out along it is shorter
+    /// than along the triangle's own: that of the shortest.
+    fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
+        let Side { stars, corners, other, .. } = *self;
+        let vertices = stars.welded(self.body.primitive);
+        let [depth, _] = other.depths(corners, own);
+        let mut shortest = Shortest { depth: depth - LEVEL, normal: None };
+        for (i, &vertex) in vertices.iter().enumerate() {
+            if stars.is_hub(vertex) {
+                let found = stars.shortest_at(vertex, &other);
+                if found.depth < shortest.depth
+                    && found.normal.is_some_and(|normal| !is_parallel(normal, own))
+                {
+                    shortest = found;
+                }
+            } else {
+                let is_new = |&triangle: &u32| {
+                    vertices[..i].iter().all(|&before| stars.is_hub(before) || !stars.has(triangle, before))
+                };
+                for triangle in stars.around(vertex).iter().copied().filter(is_new) {
+                    stars.shorten(&mut shortest, triangle, &vertices, corners, Some(own), &other);
+                }
+            }
+        }
+        // Between two hubs.
+        for edge in [[0, 1], [1, 2], [2, 0]].map(|edge| edge.map(|i| vertices[i])) {
+            if edge.iter().all(|&vertex| stars.is_hub(vertex)) {
+                for triangle in stars.around_all(&edge) {
+                    stars.shorten(&mut shortest, triangle, &vertices, corners, Some(own), &other);
+                }
+            }
+        }
+        shortest.normal
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DAffine3;
+    use rand::Rng;
+    use rand::rngs::StdRng;
+    use solid_convex::{Cuboid, Sphere};
+    use solid_oracle::generate::{in_cube, seeded};
+
+    use super::super::map::Map;
+    use super::*;
+    use crate::shape::{Body, Class, Shape};
+
+    /// Triangles around one vertex, and some on top of the last of these; bent at random, or but for a few spokes flat.
+    fn fan(rng: &mut StdRng, is_flat: bool) -> Shape {
+        let count = rng.random_range(3..40);
+        let mut points = vec![DVec3::ZERO];
+        for i in 0..count {
+            let (sin, cos) = (f64::from(i) / f64::from(count) * std::f64::consts::TAU).sin_cos();
+            let height = if is_flat && i % 8 != 0 { 0.0 } else { rng.random_range(-0.3..0.3) };
+            points.push(DVec3::new(cos, sin, height));
+        }
+        points.push(DVec3::new(1.5, 0.0, rng.random_range(-0.5..0.5)));
+        let mut triangles: Vec<_> = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
+        triangles.extend([[1, count, count + 1], [0, 1, count + 1]]);
+        Shape::mesh(points, triangles).unwrap()
+    }
+
+    /// Law: what is kept of a vertex of many triangles is what each triangle finds there by itself.
+    #[test]
+    fn hubs_change_nothing() {
+        let mut rng = seeded(151);
+        let [mut adopted, mut others] = [0; 2];
+        for case in 0..600 {
+            let shape = fan(&mut rng, case % 2 == 0);
+            let Class::Complex(complex) = shape.class() else { unreachable!("a mesh is complex") };
+            let here = Map::new(DAffine3::IDENTITY);
+            let there = Map::new(DAffine3::from_translation(in_cube(&mut rng) * 0.5));
+            let (ball, cuboid) = (Sphere::new(0.2).unwrap(), Cuboid::new(DVec3::splat(0.2)).unwrap());
+            let center = [there.point(DVec3::ZERO)];
+            let other = match case % 3 {
+                0 => Other { primitive: 0, support: &ball, map: &there, corners: &center, radius: 0.2 },
+                _ => Other { primitive: 0, support: &cuboid, map: &there, corners: &[], radius: 0.0 },
+            };
+            let [mut with_hubs, mut without] = [(); 2].map(|()| Stars::new(complex, &here));
+            (with_hubs.hub_min, without.hub_min) = (2, usize::MAX);
+            for triangle in 0..complex.primitive_count() as u32 {
+                let body = Body::of_primitive(complex, triangle);
+                let corners = without.corners(triangle);
+                let out = in_cube(&mut rng).normalize();
+                let [found, expected] = [&with_hubs, &without].map(|stars| {
+                    let placed = face::Placed::new(&body, triangle, &here);
+                    Side::new(stars, placed, &corners, other).corrected(out)
+                });
+                let depth = |corrected: Corrected| other.depths(&corners, corrected.normal())[0];
+                assert!(
+                    (depth(found) - depth(expected)).abs() < LEVEL
+                        && std::mem::discriminant(&found) == std::mem::discriminant(&expected),
+                    "case {case}, triangle {triangle}: {found:?}, {expected:?}"
+                );
+                *(if matches!(found, Corrected::Adopted(_)) { &mut adopted } else { &mut others }) += 1;
+            }
+        }
+        assert!(adopted > 2_000 && others > 2_000, "{adopted}, {others}");
+    }
+}

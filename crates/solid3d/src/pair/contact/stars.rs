@@ -1,0 +1,167 @@
+//! What lies around the vertices of a placed soup, and which normals its surface has there.
+
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+
+use glam::DVec3;
+use smallvec::SmallVec;
+
+use super::face;
+use super::map::Map;
+use super::other::Other;
+use crate::shape::Complex;
+
+/// Heights along a normal that differ by less than this, in the unit of the pair, are the same.
+pub(super) const LEVEL: f64 = 1e-9;
+
+/// A normal within this of that of the triangle is the same: the square root of the error of a depth.
+pub(super) const SAME_NORMAL: f64 = 1e-6;
+
+/// What is kept of a vertex takes longer than looking at so few triangles again.
+const HUB_MIN: usize = 32;
+
+/// The stars of the vertices of a soup: the primitives around each.
+pub(super) struct Stars<'a> {
+    complex: &'a Complex,
+    map: &'a Map,
+    /// 1 when the normals of the triangles point out of a solid, -1 when into it, 0 when there is none.
+    pub orientation: f64,
+    /// Vertices with more primitives around them are hubs: their triangles do not each look at all others.
+    pub hub_min: usize,
+    /// What was found at a vertex beside a primitive of the other shape: all around it ask for the same.
+    shortest: RefCell<HashMap<[u32; 2], Shortest>>,
+    /// The last vertex that had a normal, and that in local space: a face lies on all around it.
+    last: Cell<Option<(u32, DVec3)>>,
+}
+
+/// The normal along which the way out is the shortest.
+#[derive(Clone, Copy)]
+pub(super) struct Shortest {
+    pub depth: f64,
+    pub normal: Option<DVec3>,
+}
+
+impl<'a> Stars<'a> {
+    pub fn new(complex: &'a Complex, map: &'a Map) -> Stars<'a> {
+        let turned = map.linear().determinant().signum();
+        let orientation = if complex.is_solid() { complex.topology().orientation() * turned } else { 0.0 };
+        let (shortest, last) = (RefCell::default(), Cell::new(None));
+        Stars { complex, map, orientation, hub_min: HUB_MIN, shortest, last }
+    }
+
+    /// Where the corners of a primitive are.
+    pub fn corners(&self, primitive: u32) -> SmallVec<[DVec3; 4]> {
+        self.complex.primitive(primitive).iter().map(|&i| self.place(i)).collect()
+    }
+
+    /// Where a vertex is.
+    #[inline]
+    fn place(&self, vertex: u32) -> DVec3 {
+        self.map.point(self.complex.vertices()[vertex as usize])
+    }
+
+    /// The primitives around a vertex.
+    pub fn around(&self, vertex: u32) -> &'a [u32] {
+        self.complex.topology().around(vertex)
+    }
+
+    /// The primitives that have all of some vertices, of which there is one at least. Cost: follows those around the vertex that has the
+    /// fewest.
+    pub fn around_all(&self, vertices: &[u32]) -> impl Iterator<Item = u32> {
+        let stars = vertices.iter().map(|&vertex| self.around(vertex));
+        let fewest = stars.min_by_key(|star| star.len()).unwrap_or_default();
+        let has_all =
+            |triangle: u32| vertices.len() == 1 || vertices.iter().all(|&vertex| self.has(triangle, vertex));
+        fewest.iter().copied().filter(move |&triangle| has_all(triangle))
+    }
+
+    /// Whether the surface has a normal at what of some vertices is highest along it: nothing around that is higher.
+    pub fn have(&self, normal: DVec3, vertices: &[u32]) -> bool {
+        let local = self.map.linear().transpose() * normal;
+        let height = |vertex: u32| local.dot(self.complex.vertices()[vertex as usize]);
+        let highest = vertices.iter().map(|&i| height(i)).fold(f64::NEG_INFINITY, f64::max);
+        let is_touched = |vertex: &u32| height(*vertex) >= highest - LEVEL;
+        let touched: SmallVec<[u32; 4]> = vertices.iter().copied().filter(is_touched).collect();
+        let is_below =
+            |primitive| self.complex.primitive(primitive).iter().all(|&i| height(i) <= highest + LEVEL);
+        let star = (touched.len() == 1).then(|| (touched[0], local));
+        if star.is_some() && star == self.last.get() {
+            return true;
+        }
+        let has = self.around_all(&touched).all(is_below);
+        if has {
+            self.last.set(star);
+        }
+        has
+    }
+
+    /// Whether the surface is flat all around a triangle.
+    pub fn is_flat(&self, triangle: u32) -> bool {
+        self.complex.topology().is_flat(self.complex.primitive(triangle))
+    }
+
+    /// Whether so many primitives are around a vertex that what was found there is kept.
+    pub fn is_hub(&self, vertex: u32) -> bool {
+        self.around(vertex).len() > self.hub_min
+    }
+
+    /// The shortest way out at a vertex along one of the normals of the triangles there, of those that the surface has there.
+    pub fn shortest_at(&self, vertex: u32, other: &Other) -> Shortest {
+        *self.shortest.borrow_mut().entry([vertex, other.primitive]).or_insert_with(|| {
+            let at = self.place(vertex);
+            let mut shortest = Shortest { depth: f64::INFINITY, normal: None };
+            for &triangle in self.around(vertex) {
+                self.shorten(&mut shortest, triangle, &[vertex], &[at], None, other);
+            }
+            shortest
+        })
+    }
+
+    /// Takes the way out along the normal of a triangle, or its opposite, where it is shorter and the surface has that at what the
+    /// triangle shares with some vertices, which are at `corners`. Not along one that is known.
+    pub fn shorten(
+        &self,
+        shortest: &mut Shortest,
+        triangle: u32,
+        vertices: &[u32],
+        corners: &[DVec3],
+        known: Option<DVec3>,
+        other: &Other,
+    ) {
+        let &[p, q, r] = self.complex.primitive(triangle) else { return };
+        let placed = [self.place(p), self.place(q), self.place(r)];
+        if !other.may_be_nearer(corners, &placed, shortest.depth) {
+            return;
+        }
+        let Some(normal) = face::triangle_normal(placed) else { return };
+        if known.is_some_and(|known| is_parallel(normal, known)) {
+            return;
+        }
+        for (sign, depth) in [1.0, -1.0].into_iter().zip(other.depths(corners, normal)) {
+            let is_outward = self.orientation * sign >= 0.0;
+            let is_above = |corner: &DVec3| sign * normal.dot(*corner - placed[0]) > LEVEL;
+            if is_outward && depth < shortest.depth && !corners.iter().any(is_above) {
+                let shared = vertices.iter().copied().filter(|&vertex| self.has(triangle, vertex));
+                if self.have(normal * sign, &shared.collect::<SmallVec<[u32; 4]>>()) {
+                    *shortest = Shortest { depth, normal: Some(normal * sign) };
+                }
+            }
+        }
+    }
+
+    /// The vertices that stand for those of a primitive and all at their positions.
+    pub fn welded(&self, primitive: u32) -> SmallVec<[u32; 4]> {
+        self.complex.primitive(primitive).iter().map(|&i| self.complex.topology().welded(i)).collect()
+    }
+
+    /// Whether a primitive has a vertex that stands for all at its position.
+    pub fn has(&self, primitive: u32, welded: u32) -> bool {
+        let topology = self.complex.topology();
+        self.complex.primitive(primitive).iter().any(|&i| topology.welded(i) == welded)
+    }
+}
+
+/// Whether two unit normals are one, or each other's opposite.
+pub(super) fn is_parallel(normal: DVec3, other: DVec3) -> bool {
+    normal.dot(other).abs() > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL
+}
