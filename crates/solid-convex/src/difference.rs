@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use crate::gjk::{Pair, newton};
 use crate::{Support, unit_scale};
 
 /// A point of an object.
@@ -66,6 +67,16 @@ pub(crate) trait MinkowskiDifference {
 
     /// The points of two polytopes that have these indices; `None` of other objects.
     fn vertices(&self, indices: [u16; 2]) -> Option<[DVec3; 2]>;
+
+    /// Whether it is the hull of finitely many points.
+    fn is_polytope(&self) -> bool {
+        true
+    }
+
+    /// Of what is curved: pairs of points to go on from, and how many there are, where a descent has come to these points of the difference.
+    fn nearer(&self, _points: &[SupportPoint]) -> Option<([Pair; 3], usize)> {
+        None
+    }
 
     /// Where to start: from the middle of `B` to that of `A`, and along x when they coincide.
     fn initial_direction(&self) -> DVec3;
@@ -144,6 +155,11 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
         (self.a, self.b)
     }
 
+    /// The linear maps of both objects into the space of the difference.
+    pub fn linear(&self) -> [&DMat3; 2] {
+        [&self.linear_a, &self.linear_b]
+    }
+
     /// The point of the difference that a point of each object makes.
     #[inline(always)]
     pub fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
@@ -203,6 +219,15 @@ impl<A: Support + ?Sized, B: Support + ?Sized> MinkowskiDifference for Differenc
     #[inline(always)]
     fn point(&self, a: DVec3, b: DVec3) -> SupportPoint {
         self.point(a, b)
+    }
+
+    #[inline]
+    fn is_polytope(&self) -> bool {
+        self.is_polytope()
+    }
+
+    fn nearer(&self, points: &[SupportPoint]) -> Option<([Pair; 3], usize)> {
+        newton(self, points)
     }
 
     fn vertices(&self, [i, j]: [u16; 2]) -> Option<[DVec3; 2]> {

@@ -42,6 +42,6 @@ pub use epa::Penetration;
 pub use gjk::{Closest, Impact, Outcome, Witness};
 pub use kinds::{Capsule, Cone, Cuboid, Cylinder, IndexedPoints, Points, Polytope, Sphere};
 pub use size::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError, unit_scale};
-pub use support::Support;
+pub use support::{Locus, Support};
 
 pub use glam;

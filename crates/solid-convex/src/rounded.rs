@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::{Polytope, Support};
+use crate::{Locus, Polytope, Support};
 
 /// A placement turns balls into balls when its axes are as long as each other and at right angles up to this, relative to their
 /// length squared: what is left of a rotation and a scale when it is rounded. By Gershgorin's circles no length is then off the scale by more than
@@ -55,6 +55,10 @@ impl<S: Support + ?Sized> Support for Core<'_, S> {
 
     fn center(&self) -> DVec3 {
         self.object.center()
+    }
+
+    fn locus(&self, point: DVec3) -> Locus {
+        if self.scale.is_some() { Locus::Point } else { self.object.locus(point) }
     }
 
     fn is_polytope(&self) -> bool {

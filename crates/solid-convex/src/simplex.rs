@@ -145,8 +145,13 @@ impl Simplex {
 
     /// The points of `A` and of `B`, each in its local space, that the closest point is the difference of.
     pub fn witness(&self) -> (DVec3, DVec3) {
-        let weighted = self.points().zip(self.members.barycentric);
-        weighted.fold((DVec3::ZERO, DVec3::ZERO), |(a, b), (p, weight)| (a + p.a * weight, b + p.b * weight))
+        let none = (DVec3::ZERO, DVec3::ZERO);
+        self.weighted().fold(none, |(a, b), (p, weight)| (a + p.a * weight, b + p.b * weight))
+    }
+
+    /// The support points with the barycentric coordinates of the closest point.
+    pub fn weighted(&self) -> impl Iterator<Item = (&SupportPoint, f64)> {
+        self.points().zip(self.members.barycentric)
     }
 
     /// Whether a simplex of any four points contains the origin: then it is as [`reduce`](Simplex::reduce) leaves it.

@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3};
 
 use crate::Polytope;
 use crate::gjk::Balls;
+use crate::kinds::ball_support;
 
 /// A convex object, known by its support mapping. Space: the object's own.
 ///
@@ -50,6 +51,11 @@ pub trait Support: Send + Sync {
         None
     }
 
+    /// Where the support point moves to that is this one for a direction, as the direction turns a little.
+    fn locus(&self, _point: DVec3) -> Locus {
+        Locus::Point
+    }
+
     /// The object is all that is within this distance of its core; 0 for one that is its own core.
     fn core_radius(&self) -> f64 {
         0.0
@@ -58,6 +64,58 @@ pub trait Support: Send + Sync {
     /// A support point of the core, a polytope that the object is rounded from: of a ball its centre.
     fn core_support(&self, direction: DVec3) -> DVec3 {
         self.support(direction)
+    }
+}
+
+/// Where a support point moves as its direction turns a little: a smooth piece of the surface. Space: local.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Locus {
+    /// It stays, as a vertex, or nothing is known of how it moves.
+    Point,
+    /// A circle around the axis y.
+    Circle {
+        /// Its radius.
+        radius: f64,
+    },
+    /// A sphere.
+    Sphere {
+        /// Its middle.
+        center: DVec3,
+        /// Its radius.
+        radius: f64,
+    },
+}
+
+impl Locus {
+    /// The point of the locus of a point that is furthest along a direction, which is not zero.
+    pub(crate) fn furthest(self, point: DVec3, direction: DVec3) -> DVec3 {
+        match self {
+            Locus::Point => point,
+            Locus::Circle { radius } => {
+                let (x, z) = rim(radius, direction.x, direction.z);
+                DVec3::new(x, point.y, z)
+            }
+            Locus::Sphere { center, radius } => center + ball_support(radius, direction),
+        }
+    }
+
+    /// The curvature of the support function at a direction, its matrix of second derivatives: as up to two vectors of which it is the sum of
+    /// squares.
+    pub(crate) fn bends(self, direction: DVec3) -> [DVec3; 2] {
+        match self {
+            Locus::Circle { radius } => {
+                let across = direction.with_y(0.0).length();
+                let tangent = DVec3::new(-direction.z, 0.0, direction.x) / across;
+                [tangent * (radius / across).sqrt(), DVec3::ZERO]
+            }
+            Locus::Sphere { radius, .. } => {
+                let length = direction.length();
+                let (s, t) = (direction / length).any_orthonormal_pair();
+                let bend = (radius / length).sqrt();
+                [s * bend, t * bend]
+            }
+            Locus::Point => [DVec3::ZERO; 2],
+        }
     }
 }
 

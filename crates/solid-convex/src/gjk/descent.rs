@@ -204,7 +204,7 @@ where
 }
 
 /// A simplex of points of the difference, and its point closest to the origin; `None` where that is the origin, nearly, and of no points.
-fn begun(points: &[SupportPoint]) -> Option<(Simplex, DVec3)> {
+pub(super) fn begun(points: &[SupportPoint]) -> Option<(Simplex, DVec3)> {
     if points.is_empty() {
         return None;
     }

@@ -22,6 +22,7 @@ mod intersection;
 mod lean;
 mod nearby_feature;
 mod nearest;
+mod newton;
 mod pairs;
 mod proof;
 mod task;
@@ -39,6 +40,8 @@ pub use distance::{
 pub use intersection::{
     Outcome, Witness, intersection, intersects, intersects_closely, separates, separating_axis,
 };
+pub(crate) use newton::newton;
+pub(crate) use pairs::Pair;
 pub use proof::{Decision, Proof, Vertices};
 
 /// Objects nearer to each other than this, or overlapping less, relative to the size of the data, may be reported

@@ -7,7 +7,7 @@ use crate::difference::{NO_VERTEX, SupportPoint};
 
 /// A point of each object, each in its local space.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
+pub(crate) struct Pair {
     pub a: DVec3,
     pub b: DVec3,
     /// As of a [`SupportPoint`].

@@ -6,7 +6,7 @@ use super::sphere::ball_support;
 use crate::gjk::Balls;
 use crate::size::positive;
 use crate::support::with_sign;
-use crate::{SizeError, Support};
+use crate::{Locus, SizeError, Support};
 
 /// All points within a radius of a segment on the axis y, centred at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +45,10 @@ impl Support for Capsule {
 
     fn reach(&self) -> DVec3 {
         DVec3::new(self.radius, self.radius + self.half_height, self.radius)
+    }
+
+    fn locus(&self, point: DVec3) -> Locus {
+        Locus::Sphere { center: DVec3::Y * with_sign(self.half_height, point.y), radius: self.radius }
     }
 
     fn balls(&self) -> Option<Balls> {

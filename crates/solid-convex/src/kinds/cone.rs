@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::gjk::{Ball, Balls};
 use crate::size::positive;
 use crate::support::rim;
-use crate::{SizeError, Support};
+use crate::{Locus, SizeError, Support};
 
 /// A capped cone on the axis y, centred at the origin: apex at +height/2, base at -height/2 (thesis, section 4.4.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +45,10 @@ impl Support for Cone {
 
     fn reach(&self) -> DVec3 {
         DVec3::new(self.radius, self.half_height, self.radius)
+    }
+
+    fn locus(&self, point: DVec3) -> Locus {
+        if point.y < 0.0 { Locus::Circle { radius: self.radius } } else { Locus::Point }
     }
 
     fn balls(&self) -> Option<Balls> {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::gjk::Balls;
 use crate::size::positive;
 use crate::support::{rim, with_sign};
-use crate::{SizeError, Support};
+use crate::{Locus, SizeError, Support};
 
 /// A capped cylinder on the axis y, centred at the origin (thesis, section 4.4.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +39,10 @@ impl Support for Cylinder {
 
     fn reach(&self) -> DVec3 {
         DVec3::new(self.radius, self.half_height, self.radius)
+    }
+
+    fn locus(&self, _point: DVec3) -> Locus {
+        Locus::Circle { radius: self.radius }
     }
 
     fn balls(&self) -> Option<Balls> {

@@ -15,3 +15,4 @@ pub use cylinder::Cylinder;
 pub use points::{IndexedPoints, Points};
 pub use polytope::Polytope;
 pub use sphere::Sphere;
+pub(crate) use sphere::ball_support;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::gjk::Balls;
 use crate::size::positive;
-use crate::{SizeError, Support};
+use crate::{Locus, SizeError, Support};
 
 /// A ball centred at the origin (thesis, section 4.4.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ impl Sphere {
 }
 
 /// The point at distance `radius` from the origin in `direction`; the origin for the zero direction.
-pub(super) fn ball_support(radius: f64, direction: DVec3) -> DVec3 {
+pub(crate) fn ball_support(radius: f64, direction: DVec3) -> DVec3 {
     let largest = direction.abs().max_element();
     if largest == 0.0 {
         return DVec3::ZERO;
@@ -42,6 +42,10 @@ impl Support for Sphere {
 
     fn reach(&self) -> DVec3 {
         DVec3::splat(self.radius)
+    }
+
+    fn locus(&self, _point: DVec3) -> Locus {
+        Locus::Sphere { center: DVec3::ZERO, radius: self.radius }
     }
 
     fn balls(&self) -> Option<Balls> {
