@@ -22,13 +22,14 @@ use crate::simplex::Simplex;
 /// intersects, and 5 to tell how far it is apart; what takes many times that is about to touch.
 const STEPS_MAX: usize = 24;
 
-/// Next to what is curved each step leaves a part of the error: after so many it is some percent, from where Newton's method takes three or four.
+/// After so many steps what is curved is told from near enough for Newton's method: with six, one of twenty pairs of a cylinder and a hull was not,
+/// with eight one of a hundred.
 const STEPS_BEFORE_NEWTON: usize = 8;
 
 /// What that gave is the answer, or lacks a point or two.
 const STEPS_AFTER_NEWTON: usize = 4;
 
-/// So often Newton's method is tried: of 1,000 random pairs of cylinders and cones 2 take more than one.
+/// So often Newton's method is tried: few take more than one.
 const NEWTON_MAX: usize = 3;
 
 /// The least square of twice a face's area, or of an edge: of slivers whose closest points have few right digits.
@@ -197,7 +198,7 @@ impl Search<'_> {
     /// Of distances of what is curved, a few steps lead near enough for Newton's method.
     #[inline(always)]
     pub fn descend(self, lean: &mut Lean, difference: &impl MinkowskiDifference) {
-        if difference.is_polytope() || matches!(self.goal, Goal::Separation) {
+        if difference.is_polytope() || !matches!(self.goal, Goal::DistanceWithin { .. }) {
             return self.walk(lean, difference, STEPS_MAX);
         }
         self.walk(lean, difference, STEPS_BEFORE_NEWTON);

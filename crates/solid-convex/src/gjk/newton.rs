@@ -10,11 +10,12 @@
 //! height by `w t`. So the next normal follows from `(H + d) t = x + E dλ`, `E t = -(heights above the first)`, where `E` are the edges from the first
 //! point, across `n`.
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 
 use super::descent::begun;
 use super::pairs::Pair;
 use crate::difference::{Difference, NO_VERTEX, SupportPoint};
+use crate::simplex::Simplex;
 use crate::{Locus, Support};
 
 /// Newton's method ends after so many steps: begun within some percent, it takes three or four.
@@ -62,11 +63,12 @@ impl<'a> Loci<'a> {
             }
     }
 
+    /// Takes a point into the place of another.
     fn put(&mut self, to: usize, from: usize) {
         (self.points[to], self.loci[to]) = (self.points[from], self.loci[from]);
     }
 
-    /// Moves the points to where they are furthest along a direction of the difference.
+    /// Moves the first points to where they are furthest along a direction of the difference.
     fn slide(&mut self, direction: DVec3, len: usize) {
         let local = self.linear.mul_transpose_vec3(direction);
         for (point, locus) in self.points[..len].iter_mut().zip(&self.loci) {
@@ -78,6 +80,84 @@ impl<'a> Loci<'a> {
     fn bends(&self, i: usize, direction: DVec3) -> [DVec3; 2] {
         let local = self.linear.mul_transpose_vec3(direction);
         self.loci[i].bends(local).map(|bend| *self.linear * bend)
+    }
+}
+
+/// The points of a simplex, those that move as one taken together, with the weights of the closest point between them.
+struct Span<'a> {
+    a: Loci<'a>,
+    b: Loci<'a>,
+    weights: [f64; 3],
+    len: usize,
+}
+
+impl<'a> Span<'a> {
+    fn new<A, B>(difference: &'a Difference<A, B>, simplex: &Simplex) -> Self
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let (mut on_a, mut on_b, mut weights, mut count) = ([DVec3::ZERO; 3], [DVec3::ZERO; 3], [0.0; 3], 0);
+        for (p, weight) in simplex.weighted().take(3) {
+            (on_a[count], on_b[count], weights[count]) = (p.a, p.b, weight);
+            count += 1;
+        }
+        let ((of_a, of_b), [linear_a, linear_b]) = (difference.objects(), difference.linear());
+        let (a, b) = (Loci::new(of_a, linear_a, on_a, count), Loci::new(of_b, linear_b, on_b, count));
+        let mut span = Span { a, b, weights, len: 0 };
+        for i in 0..count {
+            let Span { a, b, weights, len } = &mut span;
+            if let Some(same) = (0..*len).find(|&j| a.are_one(i, j) && b.are_one(i, j)) {
+                weights[same] += weights[i];
+            } else {
+                a.put(*len, i);
+                b.put(*len, i);
+                weights[*len] = weights[i];
+                *len += 1;
+            }
+        }
+        span
+    }
+
+    /// Whether any of its points moves.
+    fn bends(&self) -> bool {
+        self.a.loci[..self.len].iter().chain(&self.b.loci[..self.len]).any(|locus| *locus != Locus::Point)
+    }
+
+    /// Moves its points to where they are along a normal.
+    fn slide(&mut self, n: DVec3) {
+        self.a.slide(-n, self.len);
+        self.b.slide(n, self.len);
+    }
+
+    /// The turn of a normal by a step of Newton's method, where the points are at `w` for it; the weights go along.
+    fn turn(&mut self, n: DVec3, w: &[DVec3; 3]) -> DVec3 {
+        // Along two axes across n.
+        let (s, t) = n.any_orthonormal_pair();
+        let across = |w: DVec3| DVec2::new(s.dot(w), t.dot(w));
+        let [(e, e_rises), (f, f_rises)] = [1, 2].map(|i| (across(w[i] - w[0]), n.dot(w[i] - w[0])));
+        if self.len == 3 {
+            // To the normal of the face.
+            let turn = DMat2::from_cols(e, f).transpose().inverse() * -DVec2::new(e_rises, f_rises);
+            return s * turn.x + t * turn.y;
+        }
+        let x = (0..self.len).map(|i| w[i] * self.weights[i]).sum::<DVec3>();
+        let mut curvature = DMat2::from_diagonal(DVec2::splat(n.dot(x)));
+        for i in 0..self.len {
+            for bend in self.a.bends(i, -n).into_iter().chain(self.b.bends(i, n)).map(across) {
+                curvature += DMat2::from_cols(bend * bend.x, bend * bend.y) * self.weights[i];
+            }
+        }
+        let inverse = curvature.inverse();
+        let mut turn = inverse * across(x);
+        if self.len == 2 {
+            let along = inverse * e;
+            let shift = -(e_rises + e.dot(turn)) / e.dot(along);
+            self.weights[0] -= shift;
+            self.weights[1] += shift;
+            turn += along * shift;
+        }
+        s * turn.x + t * turn.y
     }
 }
 
@@ -93,79 +173,112 @@ where
     B: Support + ?Sized,
 {
     let (simplex, v) = begun(points)?;
-    let (mut len, mut weights) = (0, [0.0; 3]);
-    let mut points = [[DVec3::ZERO; 3]; 2];
-    for (p, weight) in simplex.weighted() {
-        (points[0][len], points[1][len], weights[len]) = (p.a, p.b, weight);
-        len += 1;
-    }
-    let ((object_a, object_b), [linear_a, linear_b]) = (difference.objects(), difference.linear());
-    let mut a = Loci::new(object_a, linear_a, points[0], len);
-    let mut b = Loci::new(object_b, linear_b, points[1], len);
-    let mut kept = 0;
-    for i in 0..len {
-        if let Some(same) = (0..kept).find(|&j| a.are_one(i, j) && b.are_one(i, j)) {
-            weights[same] += weights[i];
-        } else {
-            a.put(kept, i);
-            b.put(kept, i);
-            weights[kept] = weights[i];
-            kept += 1;
-        }
-    }
-    len = kept;
-    if a.loci[..len].iter().chain(&b.loci[..len]).all(|locus| *locus == Locus::Point) {
+    let mut span = Span::new(difference, &simplex);
+    if !span.bends() {
         return None;
     }
     let mut n = v.normalize();
     for _ in 0..STEPS_MAX {
-        a.slide(-n, len);
-        b.slide(n, len);
+        span.slide(n);
         let mut w = [DVec3::ZERO; 3];
-        (0..len).for_each(|i| w[i] = difference.point(a.points[i], b.points[i]).w);
-        // Along two axes across n.
-        let (s, t) = n.any_orthonormal_pair();
-        let across = |w: DVec3| DVec2::new(s.dot(w), t.dot(w));
-        let edges = [1, 2].map(|i| (across(w[i] - w[0]), n.dot(w[i] - w[0])));
-        let turn = if len == 3 {
-            // The normal of the face.
-            let [(e, e_rises), (f, f_rises)] = edges;
-            DVec2::new(e_rises * f.y - f_rises * e.y, f_rises * e.x - e_rises * f.x) / -e.perp_dot(f)
-        } else {
-            let x = (0..len).map(|i| w[i] * weights[i]).sum::<DVec3>();
-            let distance = n.dot(x);
-            let (mut xx, mut xy, mut yy) = (distance, 0.0, distance);
-            for i in 0..len {
-                for bend in a.bends(i, -n).into_iter().chain(b.bends(i, n)).map(across) {
-                    xx += weights[i] * bend.x * bend.x;
-                    xy += weights[i] * bend.x * bend.y;
-                    yy += weights[i] * bend.y * bend.y;
-                }
-            }
-            let determinant = xx * yy - xy * xy;
-            let solved = |y: DVec2| DVec2::new(yy * y.x - xy * y.y, xx * y.y - xy * y.x) / determinant;
-            let of_x = solved(across(x));
-            if len == 1 {
-                of_x
-            } else {
-                let (e, rises) = edges[0];
-                let of_e = solved(e);
-                let shift = -(rises + e.dot(of_x)) / e.dot(of_e);
-                weights[0] -= shift;
-                weights[1] += shift;
-                of_x + of_e * shift
-            }
-        };
-        // Neither what is too far nor what is no number.
-        if !(turn.length_squared() < TURN_MAX * TURN_MAX) {
+        (0..span.len).for_each(|i| w[i] = difference.point(span.a.points[i], span.b.points[i]).w);
+        let turn = span.turn(n, &w);
+        let square = turn.length_squared();
+        if square.is_nan() || square > TURN_MAX * TURN_MAX {
             return None;
         }
-        n = (n + s * turn.x + t * turn.y).normalize();
-        if turn.length_squared() < TURN_MIN * TURN_MIN {
+        n = (n + turn).normalize();
+        if square < TURN_MIN * TURN_MIN {
             break;
         }
     }
-    a.slide(-n, len);
-    b.slide(n, len);
-    Some(([0, 1, 2].map(|i| Pair { a: a.points[i], b: b.points[i], indices: [NO_VERTEX; 2] }), len))
+    span.slide(n);
+    let pair = |i: usize| Pair { a: span.a.points[i], b: span.b.points[i], indices: [NO_VERTEX; 2] };
+    Some(([0, 1, 2].map(pair), span.len))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use glam::{DAffine3, DQuat};
+    use rand::Rng;
+    use rand::rngs::StdRng;
+    use solid_oracle::generate::seeded;
+
+    use super::super::descent::{Goal, descend_robustly};
+    use super::super::distance::{DISTANCE_TOLERANCE, closest_points};
+    use crate::testing::in_cube;
+    use crate::{Capsule, Cone, Cuboid, Cylinder, Locus, Sphere, Support};
+
+    use super::*;
+
+    /// Counts the support points that are asked for.
+    struct Counted<'a> {
+        object: Box<dyn Support>,
+        count: &'a AtomicUsize,
+    }
+
+    impl Support for Counted<'_> {
+        fn support(&self, direction: DVec3) -> DVec3 {
+            self.count.fetch_add(1, Ordering::Relaxed);
+            self.object.support(direction)
+        }
+
+        fn reach(&self) -> DVec3 {
+            self.object.reach()
+        }
+
+        fn is_polytope(&self) -> bool {
+            self.object.is_polytope()
+        }
+
+        fn locus(&self, point: DVec3) -> Locus {
+            self.object.locus(point)
+        }
+    }
+
+    /// As stretched as 1 to 10 and more, so that what is round is so no longer.
+    fn placement(rng: &mut StdRng) -> DAffine3 {
+        let mut turned = || DAffine3::from_quat(DQuat::from_vec4(in_cube(rng).extend(0.5).normalize()));
+        let (first, then) = (turned(), turned());
+        let stretched = then * DAffine3::from_scale(in_cube(rng).exp()) * first;
+        DAffine3 { translation: in_cube(rng) * 3.0, ..stretched }
+    }
+
+    /// Law: distances are those of the robust descent, for little more than half of its support points.
+    #[test]
+    fn it_finds_what_the_descent_finds() {
+        let mut rng = seeded(152);
+        let counts = [AtomicUsize::new(0), AtomicUsize::new(0)];
+        let mut apart = 0;
+        for case in 0..6_000 {
+            let mut size = || rng.random_range(0.1..1.5);
+            let mut object = |kind| -> Box<dyn Support> {
+                match kind {
+                    0 => Box::new(Cylinder::new(size(), size()).unwrap()),
+                    1 => Box::new(Cone::new(size(), size()).unwrap()),
+                    2 => Box::new(Sphere::new(size()).unwrap()),
+                    3 => Box::new(Capsule::new(size(), size()).unwrap()),
+                    _ => Box::new(Cuboid::new(DVec3::new(size(), size(), size())).unwrap()),
+                }
+            };
+            let objects = [object(case % 4), object(case / 4 % 5)];
+            let [at_a, at_b] = [placement(&mut rng), placement(&mut rng)];
+            let [a, b] = objects.map(|object| Counted { object, count: &counts[0] });
+            let found = closest_points(&a, &at_a, &b, &at_b);
+            let [a, b] = [a, b].map(|counted| Counted { count: &counts[1], ..counted });
+            let difference = Difference::new(&a, &at_a, &b, &at_b);
+            let goal = Goal::DistanceWithin { tolerance: DISTANCE_TOLERANCE, bound: f64::INFINITY };
+            let expected = descend_robustly(&difference, goal).v.length() / difference.scale();
+            let error = 2.0 * DISTANCE_TOLERANCE * expected + 1e-14;
+            assert!((found.distance - expected).abs() <= error, "case {case}: {found:?}, {expected}");
+            let way = difference.point(found.points.on_a, found.points.on_b).w.length() / difference.scale();
+            assert!((way - found.distance).abs() <= error, "case {case}: {found:?}, {way}");
+            apart += usize::from(found.distance > 0.0);
+        }
+        let [with, without] = counts.map(AtomicUsize::into_inner);
+        println!("{apart} apart, {with} and {without} support points");
+        assert!(apart > 4_000 && 5 * with < 3 * without, "{apart}, {with}, {without}");
+    }
 }
