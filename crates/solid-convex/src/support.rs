@@ -51,7 +51,7 @@ pub trait Support: Send + Sync {
         None
     }
 
-    /// Where the support point moves to that is this one for a direction, as the direction turns a little.
+    /// Where a support point moves as its direction turns a little. Of what says so, closest points are found in fewer steps.
     fn locus(&self, _point: DVec3) -> Locus {
         Locus::Point
     }
@@ -67,7 +67,15 @@ pub trait Support: Send + Sync {
     }
 }
 
-/// Where a support point moves as its direction turns a little: a smooth piece of the surface. Space: local.
+/// Where a support point moves as its direction turns a little: within the object, and where it is the furthest support points are. Space: local.
+///
+/// ```
+/// use solid_convex::{Cone, Locus, Support, glam::DVec3};
+/// let cone = Cone::new(1.0, 2.0)?;
+/// assert_eq!(cone.locus(cone.support(DVec3::Y)), Locus::Point);
+/// assert_eq!(cone.locus(cone.support(DVec3::X)), Locus::Circle { radius: 1.0 });
+/// # Ok::<(), solid_convex::SizeError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Locus {
     /// It stays, as a vertex, or nothing is known of how it moves.

@@ -22,7 +22,7 @@ pub struct Closest {
 }
 
 /// The relative error of a distance, as far as the rounding error of positions allows: polytopes reach it in their last
-/// iteration anyway, and for quadrics each digit costs some four iterations.
+/// iteration anyway, and next to what is curved Newton's method does in one step more than for half of the digits.
 pub(crate) const DISTANCE_TOLERANCE: f64 = 1e-12;
 
 /// The closest points of two placed convex objects, and their distance. Algorithm 4.1 of the thesis.
