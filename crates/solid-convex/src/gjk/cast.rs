@@ -274,8 +274,8 @@ impl Known {
     #[inline(always)]
     fn keep<'p>(&mut self, points: impl IntoIterator<Item = &'p SupportPoint>) {
         self.len = 0;
-        for (pair, &SupportPoint { a, b, indices, .. }) in self.pairs.iter_mut().zip(points) {
-            *pair = Pair { a, b, indices };
+        for (pair, point) in self.pairs.iter_mut().zip(points) {
+            *pair = Pair::from(point);
             self.len += 1;
         }
     }

@@ -137,8 +137,7 @@ impl Lean {
 
     /// The first three as pairs of points to begin with, and how many they are.
     fn pairs(&self) -> ([Pair; 3], usize) {
-        let pair = |p: SupportPoint| Pair { a: p.a, b: p.b, indices: p.indices };
-        ([0, 1, 2].map(|i| pair(self.points[i])), self.points().len().min(3))
+        ([0, 1, 2].map(|i| Pair::from(&self.points[i])), self.points().len().min(3))
     }
 
     /// The same as a simplex that is not reduced.

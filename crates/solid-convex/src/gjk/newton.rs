@@ -35,22 +35,25 @@ struct Loci<'a> {
     linear: &'a DMat3,
     points: [DVec3; 3],
     loci: [Locus; 3],
+    /// Along which the points are furthest, once they slid.
+    direction: DVec3,
 }
 
 impl<'a> Loci<'a> {
     /// Of up to three support points of an object.
     fn new<S: Support + ?Sized>(object: &S, linear: &'a DMat3, points: [DVec3; 3], len: usize) -> Self {
-        let mut loci = points.map(|point| object.locus(point));
+        let each = points.map(|point| object.locus(point));
+        let mut loci = each;
         // Those around a face stay.
         for (i, j) in [(0, 1), (0, 2), (1, 2)].into_iter().filter(|&(_, j)| j < len) {
-            if let Locus::Circle { radius } = object.locus(points[i])
+            if let Locus::Circle { radius } = each[i]
                 && points[i].y == points[j].y
                 && points[i].with_y(0.0).dot(points[j].with_y(0.0)) < SPREAD_COSINE * radius * radius
             {
                 (loci[i], loci[j]) = (Locus::Point, Locus::Point);
             }
         }
-        Loci { linear, points, loci }
+        Loci { linear, points, loci, direction: DVec3::ZERO }
     }
 
     /// Whether two points move as one.
@@ -70,16 +73,16 @@ impl<'a> Loci<'a> {
 
     /// Moves the first points to where they are furthest along a direction of the difference.
     fn slide(&mut self, direction: DVec3, len: usize) {
-        let local = self.linear.mul_transpose_vec3(direction);
+        self.direction = self.linear.mul_transpose_vec3(direction);
         for (point, locus) in self.points[..len].iter_mut().zip(&self.loci) {
-            *point = locus.furthest(*point, local);
+            *point = locus.furthest(*point, self.direction);
         }
     }
 
-    /// How much a point bends at a direction: up to two vectors, of which the curvature is the sum of squares. Space: that of the difference.
-    fn bends(&self, i: usize, direction: DVec3) -> [DVec3; 2] {
-        let local = self.linear.mul_transpose_vec3(direction);
-        self.loci[i].bends(local).map(|bend| *self.linear * bend)
+    /// How much the locus of a point bends where the point is: up to two vectors, of which the curvature is the sum of squares. Space: that of
+    /// the difference.
+    fn bends(&self, i: usize) -> [DVec3; 2] {
+        self.loci[i].bends(self.direction).map(|bend| *self.linear * bend)
     }
 }
 
@@ -120,7 +123,7 @@ impl<'a> Span<'a> {
     }
 
     /// Whether any of its points moves.
-    fn bends(&self) -> bool {
+    fn is_curved(&self) -> bool {
         self.a.loci[..self.len].iter().chain(&self.b.loci[..self.len]).any(|locus| *locus != Locus::Point)
     }
 
@@ -130,7 +133,7 @@ impl<'a> Span<'a> {
         self.b.slide(n, self.len);
     }
 
-    /// The turn of a normal by a step of Newton's method, where the points are at `w` for it; the weights go along.
+    /// The turn of a normal by a step of Newton's method, where the points slid to `w` for it; the weights go along.
     fn turn(&mut self, n: DVec3, w: &[DVec3; 3]) -> DVec3 {
         // Along two axes across n.
         let (s, t) = n.any_orthonormal_pair();
@@ -144,7 +147,7 @@ impl<'a> Span<'a> {
         let x = (0..self.len).map(|i| w[i] * self.weights[i]).sum::<DVec3>();
         let mut curvature = DMat2::from_diagonal(DVec2::splat(n.dot(x)));
         for i in 0..self.len {
-            for bend in self.a.bends(i, -n).into_iter().chain(self.b.bends(i, n)).map(across) {
+            for bend in self.a.bends(i).into_iter().chain(self.b.bends(i)).map(across) {
                 curvature += DMat2::from_cols(bend * bend.x, bend * bend.y) * self.weights[i];
             }
         }
@@ -174,7 +177,7 @@ where
 {
     let (simplex, v) = begun(points)?;
     let mut span = Span::new(difference, &simplex);
-    if !span.bends() {
+    if !span.is_curved() {
         return None;
     }
     let mut n = v.normalize();

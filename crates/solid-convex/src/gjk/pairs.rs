@@ -19,6 +19,14 @@ impl Pair {
     pub const ZERO: Pair = Pair { a: DVec3::ZERO, b: DVec3::ZERO, indices: [0; 2] };
 }
 
+/// The points that one of the difference is made of.
+impl From<&SupportPoint> for Pair {
+    #[inline(always)]
+    fn from(&SupportPoint { a, b, indices, .. }: &SupportPoint) -> Pair {
+        Pair { a, b, indices }
+    }
+}
+
 /// Four points of an object by coordinate, for vector instructions. Space: local.
 pub(super) type Points = [[f64; 4]; 3];
 

@@ -130,7 +130,7 @@ impl Task for Renew<'_> {
                 if is_clear(*axis, axis.dot(p.w)) {
                     return Renewed::Same;
                 }
-                start[0] = Pair { a: p.a, b: p.b, indices: p.indices };
+                start[0] = Pair::from(&p);
                 len = 1;
             }
             Proof::Common(vertices) => {

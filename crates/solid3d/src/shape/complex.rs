@@ -226,6 +226,11 @@ impl Complex {
         self.primitives.get(primitive)
     }
 
+    /// The vertices that stand for those of the primitive and all at their positions.
+    pub fn welded(&self, primitive: u32) -> impl Iterator<Item = u32> + '_ {
+        self.primitive(primitive).iter().map(|&i| self.topology().welded(i))
+    }
+
     /// The points whose hull the primitive is.
     #[inline(always)]
     pub fn points_of(&self, primitive: u32) -> impl Iterator<Item = DVec3> + Clone + '_ {

@@ -131,8 +131,7 @@ fn corners(part: &Part, primitive: u32) -> Vec<u32> {
     match part {
         Part::Body(..) => vec![0],
         Part::Soup(complex) => {
-            let mut corners: Vec<u32> =
-                complex.primitive(primitive).iter().map(|&i| complex.topology().welded(i)).collect();
+            let mut corners: Vec<u32> = complex.welded(primitive).collect();
             corners.sort_unstable();
             corners.dedup();
             corners

@@ -51,7 +51,7 @@ impl<'a> Stars<'a> {
 
     /// Where the corners of a primitive are.
     pub fn corners(&self, primitive: u32) -> SmallVec<[DVec3; 4]> {
-        self.complex.primitive(primitive).iter().map(|&i| self.place(i)).collect()
+        self.complex.points_of(primitive).map(|point| self.map.point(point)).collect()
     }
 
     /// Where a vertex is.
@@ -83,7 +83,7 @@ impl<'a> Stars<'a> {
         let is_touched = |vertex: &u32| height(*vertex) >= highest - LEVEL;
         let touched: SmallVec<[u32; 4]> = vertices.iter().copied().filter(is_touched).collect();
         let is_below =
-            |primitive| self.complex.primitive(primitive).iter().all(|&i| height(i) <= highest + LEVEL);
+            |primitive| self.complex.points_of(primitive).all(|point| local.dot(point) <= highest + LEVEL);
         let star = (touched.len() == 1).then(|| (touched[0], local));
         if star.is_some() && star == self.last.get() {
             return true;
@@ -151,13 +151,12 @@ impl<'a> Stars<'a> {
 
     /// The vertices that stand for those of a primitive and all at their positions.
     pub fn welded(&self, primitive: u32) -> SmallVec<[u32; 4]> {
-        self.complex.primitive(primitive).iter().map(|&i| self.complex.topology().welded(i)).collect()
+        self.complex.welded(primitive).collect()
     }
 
     /// Whether a primitive has a vertex that stands for all at its position.
     pub fn has(&self, primitive: u32, welded: u32) -> bool {
-        let topology = self.complex.topology();
-        self.complex.primitive(primitive).iter().any(|&i| topology.welded(i) == welded)
+        self.complex.welded(primitive).any(|vertex| vertex == welded)
     }
 }
 
