@@ -109,28 +109,20 @@ impl<'a> Side<'a> {
         let vertices = stars.welded(self.body.primitive);
         let [depth, _] = other.depths(corners, own);
         let mut shortest = Shortest { depth: depth - LEVEL, normal: None };
-        for (i, &vertex) in vertices.iter().enumerate() {
-            if stars.is_hub(vertex) {
-                let found = stars.shortest_at(vertex, &other);
-                if found.depth < shortest.depth
-                    && found.normal.is_some_and(|normal| !is_parallel(normal, own))
-                {
-                    shortest = found;
-                }
-            } else {
-                let is_new = |&triangle: &u32| {
-                    vertices[..i].iter().all(|&before| stars.is_hub(before) || !stars.has(triangle, before))
-                };
-                for triangle in stars.around(vertex).iter().copied().filter(is_new) {
-                    stars.shorten(&mut shortest, triangle, &vertices, corners, Some(own), &other);
-                }
+        for (i, &vertex) in vertices.iter().enumerate().filter(|(_, vertex)| !stars.is_hub(**vertex)) {
+            let is_new = |&triangle: &u32| {
+                vertices[..i].iter().all(|&before| stars.is_hub(before) || !stars.has(triangle, before))
+            };
+            for triangle in stars.around(vertex).iter().copied().filter(is_new) {
+                stars.shorten(&mut shortest, triangle, &vertices, corners, Some(own), &other);
             }
         }
-        // Between two hubs.
-        for edge in [[0, 1], [1, 2], [2, 0]].map(|edge| edge.map(|i| vertices[i])) {
-            if edge.iter().all(|&vertex| stars.is_hub(vertex)) {
-                for triangle in stars.around_all(&edge) {
-                    stars.shorten(&mut shortest, triangle, &vertices, corners, Some(own), &other);
+        // At hubs, and between two.
+        for part in [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]].map(|part| part.map(|i| vertices[i])) {
+            if part.iter().all(|&vertex| stars.is_hub(vertex)) {
+                let found = stars.shortest_at(part, own, &other);
+                if found.depth < shortest.depth {
+                    shortest = found;
                 }
             }
         }
@@ -150,7 +142,7 @@ mod tests {
     use super::*;
     use crate::shape::{Body, Class, Shape};
 
-    /// Triangles around one vertex, and some on top of the last of these; bent at random, or but for a few spokes flat.
+    /// Triangles around one vertex, some beside the last of these, and some on a spoke that they share; bent at random, or but for a few spokes flat.
     fn fan(rng: &mut StdRng, is_flat: bool) -> Shape {
         let count = rng.random_range(3..40);
         let mut points = vec![DVec3::ZERO];
@@ -162,6 +154,8 @@ mod tests {
         points.push(DVec3::new(1.5, 0.0, rng.random_range(-0.5..0.5)));
         let mut triangles: Vec<_> = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
         triangles.extend([[1, count, count + 1], [0, 1, count + 1]]);
+        points.extend([(); 3].map(|()| in_cube(rng)));
+        triangles.extend((2..5).map(|i| [0, 1, count + i]));
         Shape::mesh(points, triangles).unwrap()
     }
 

@@ -28,8 +28,9 @@ pub(super) struct Stars<'a> {
     pub orientation: f64,
     /// Vertices with more primitives around them are hubs: their triangles do not each look at all others.
     pub hub_min: usize,
-    /// What was found at a vertex beside a primitive of the other shape: all around it ask for the same.
-    shortest: RefCell<HashMap<[u32; 2], Shortest>>,
+    /// What was found at a hub, or at an edge from one vertex to another, beside a primitive of the other shape: all around it ask for the same.
+    /// Two of them, along normals that are not parallel, for whom one is that of its own.
+    shortest: RefCell<HashMap<[u32; 3], [Shortest; 2]>>,
     /// The last vertex that had a normal, and that in local space: a face lies on all around it.
     last: Cell<Option<(u32, DVec3)>>,
 }
@@ -105,16 +106,26 @@ impl<'a> Stars<'a> {
         self.around(vertex).len() > self.hub_min
     }
 
-    /// The shortest way out at a vertex along one of the normals of the triangles there, of those that the surface has there.
-    pub fn shortest_at(&self, vertex: u32, other: &Other) -> Shortest {
-        *self.shortest.borrow_mut().entry([vertex, other.primitive]).or_insert_with(|| {
-            let at = self.place(vertex);
-            let mut shortest = Shortest { depth: f64::INFINITY, normal: None };
-            for &triangle in self.around(vertex) {
-                self.shorten(&mut shortest, triangle, &[vertex], &[at], None, other);
-            }
-            shortest
-        })
+    /// The shortest way out at a vertex, or at an edge between two, along one of the normals of the triangles there, of those that the surface
+    /// has there. Not along one that is known.
+    pub fn shortest_at(&self, vertices: [u32; 2], known: DVec3, other: &Other) -> Shortest {
+        let [from, to] = [vertices[0].min(vertices[1]), vertices[0].max(vertices[1])];
+        let kept = &mut *self.shortest.borrow_mut();
+        let [first, second] = *kept.entry([from, to, other.primitive]).or_insert_with(|| {
+            let all = [from, to];
+            let vertices = if from == to { &all[..1] } else { &all };
+            let corners: SmallVec<[DVec3; 2]> = vertices.iter().map(|&vertex| self.place(vertex)).collect();
+            let besides = |known: Option<DVec3>| {
+                let mut shortest = Shortest { depth: f64::INFINITY, normal: None };
+                for triangle in self.around_all(vertices) {
+                    self.shorten(&mut shortest, triangle, vertices, &corners, known, other);
+                }
+                shortest
+            };
+            let first = besides(None);
+            [first, first.normal.map_or(first, |normal| besides(Some(normal)))]
+        });
+        if first.normal.is_some_and(|normal| is_parallel(normal, known)) { second } else { first }
     }
 
     /// Takes the way out along the normal of a triangle, or its opposite, where it is shorter and the surface has that at what the
