@@ -23,7 +23,6 @@ use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 
 pub use builder::ComplexShapeBuilder;
 pub(crate) use complex::Complex;
-pub(crate) use facets::Facets;
 pub(crate) use hulled::Hulled;
 pub use kind::ShapeKind;
 pub(crate) use simple::{Round, Simple};
@@ -83,8 +82,7 @@ pub(crate) enum Body<'a> {
     Capsule(&'a Capsule),
     /// A convex hull.
     Hull {
-        points: Cow<'a, [DVec3]>,
-        facets: Cow<'a, Facets>,
+        hull: Cow<'a, Hulled>,
         /// What its points are called, when not by their places.
         names: Option<&'a [u32]>,
     },
@@ -96,11 +94,6 @@ pub(crate) enum Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// `names` says what its points are called, when not by their places.
-    pub fn of_hull(hull: &'a Hulled, names: Option<&'a [u32]>) -> Body<'a> {
-        Body::Hull { points: Cow::Borrowed(hull.points()), facets: Cow::Borrowed(hull.facets()), names }
-    }
-
     /// A primitive of a complex shape. Cost: O(n log n) for one of more than three vertices.
     pub fn of_primitive(complex: &'a Complex, primitive: u32) -> Body<'a> {
         let (vertices, indices) = (complex.vertices(), complex.primitive(primitive));
@@ -108,8 +101,8 @@ impl<'a> Body<'a> {
             return Body::Simplex { vertices, indices };
         }
         let points: Vec<DVec3> = indices.iter().map(|&i| vertices[i as usize]).collect();
-        let facets = Cow::Owned(Facets::of(&points));
-        Body::Hull { points: Cow::Owned(points), facets, names: Some(indices) }
+        let hull = Hulled::new(points).expect("a primitive has a vertex");
+        Body::Hull { hull: Cow::Owned(hull), names: Some(indices) }
     }
 }
 
@@ -354,7 +347,7 @@ impl Shape {
             Geometry::Cone(shape) => Some(Body::Cone(shape)),
             Geometry::Cylinder(shape) => Some(Body::Cylinder(shape)),
             Geometry::Capsule(shape) => Some(Body::Capsule(shape)),
-            Geometry::Polytope(shape) => Some(Body::of_hull(shape, None)),
+            Geometry::Polytope(shape) => Some(Body::Hull { hull: Cow::Borrowed(shape), names: None }),
             Geometry::Complex(_) => None,
         }
     }

@@ -213,6 +213,20 @@ impl Polytope {
     pub fn points(&self) -> &[DVec3] {
         &self.points
     }
+
+    /// Which of the [`points`](Polytope::points) is the furthest along a direction, the first of equals: the index of the support point, at the same
+    /// cost.
+    ///
+    /// ```
+    /// use solid_convex::Polytope;
+    /// use glam::DVec3;
+    /// let corner = Polytope::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
+    /// assert_eq!(corner.support_index(DVec3::new(1.0, 2.0, 3.0)), 3);
+    /// ```
+    pub fn support_index(&self, direction: DVec3) -> usize {
+        let in_rows = || dispatch!(simd => self.rows.furthest(simd, direction));
+        self.furthest_mapped(direction).unwrap_or_else(in_rows).min(self.points.len() - 1)
+    }
 }
 
 impl Support for Polytope {
@@ -298,13 +312,14 @@ mod tests {
                 for direction in directions(count as u64) {
                     if direction.is_finite() {
                         let found = polytope.support(direction);
-                        assert_eq!(
-                            found,
-                            scan.support(direction),
-                            "{count} of kind {kind}, along {direction}"
-                        );
+                        let context = format!("{count} of kind {kind}, along {direction}");
+                        assert_eq!(found, scan.support(direction), "{context}");
+                        let index = polytope.support_index(direction);
+                        let is_first = |&i: &usize| points[i].dot(direction) == found.dot(direction);
+                        assert_eq!(Some(index), (0..points.len()).find(is_first), "{context}");
                     } else {
                         assert!(points.contains(&polytope.support(direction)));
+                        assert!(polytope.support_index(direction) < points.len());
                     }
                 }
             }

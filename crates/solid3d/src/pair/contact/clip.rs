@@ -1,14 +1,12 @@
-//! What two convex polygons in a plane have in common, and where each of its corners comes from (Sutherland and Hodgman, *Reentrant
-//! polygon clipping*, 1974).
+//! What two convex polygons in a plane have in common, and where each of its corners comes from.
 
 use glam::DVec2;
-use smallvec::{SmallVec, smallvec};
+use smallvec::SmallVec;
+
+use super::ring::against;
 
 /// Coordinates are below some units: a point this far outside an edge is on it.
-const ON_EDGE: f64 = 1e-9;
-
-/// The same where a polygon is so thin that its edges, moved by that, would meet far from where they do: above rounding.
-const ON_EDGE_MIN: f64 = 1e-14;
+pub(super) const ON_EDGE: f64 = 1e-9;
 
 /// Segments whose directions have a lesser sine between them run side by side.
 const PARALLEL_SINE: f64 = 0.01;
@@ -42,7 +40,7 @@ pub(super) struct Clipped {
 }
 
 /// Two faces of four corners have at most eight in common.
-type Corners = SmallVec<[Clipped; 8]>;
+pub(super) type Corners = SmallVec<[Clipped; 8]>;
 
 /// The corners of the intersection of two convex polygons, either way around, segments or points. Of two segments or points only where
 /// they run side by side.
@@ -58,62 +56,6 @@ pub(super) fn clip(a: &[DVec2], b: &[DVec2]) -> Corners {
 
 fn swapped(mut corners: Corners) -> Corners {
     corners.iter_mut().for_each(|corner| corner.origin = corner.origin.swapped());
-    corners
-}
-
-/// The line on which an edge of the working polygon lies.
-#[derive(Clone, Copy)]
-enum On {
-    Subject(usize),
-    Clip(usize),
-}
-
-/// The subject cut by each edge of a polygon of area.
-fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
-    let area = area(by);
-    let turn = area.signum();
-    let extent_squared = by.iter().map(|p| p.distance_squared(by[0])).fold(0.0, f64::max);
-    let slack = (ON_EDGE * area.abs() / extent_squared).clamp(ON_EDGE_MIN, ON_EDGE);
-    let mut left: SmallVec<[(Clipped, On); 8]> = subject
-        .iter()
-        .enumerate()
-        .map(|(i, &at)| (Clipped { at, origin: Origin::OfA(i) }, On::Subject(i)))
-        .collect();
-    let mut next = smallvec![];
-    for j in 0..by.len() {
-        let (from, to) = (by[j], by[(j + 1) % by.len()]);
-        let Some(along) = (to - from).try_normalize() else { continue };
-        let inside = |p: DVec2| turn * along.perp_dot(p - from);
-        for (i, &(corner, on)) in left.iter().enumerate() {
-            let following = left[(i + 1) % left.len()].0;
-            let (here, there) = (inside(corner.at), inside(following.at));
-            let (in_here, in_there) = (here >= -slack, there >= -slack);
-            if in_here {
-                next.push((corner, on));
-            }
-            if in_here != in_there {
-                let at = corner.at.lerp(following.at, (here / (here - there)).clamp(0.0, 1.0));
-                let crossing = match on {
-                    On::Subject(i) => Clipped { at, origin: Origin::Crossing(i, j) },
-                    On::Clip(k) => {
-                        let shared = if (j + 1) % by.len() == k { k } else { j };
-                        let adjacent = shared == k || (k + 1) % by.len() == j;
-                        // What is not a corner is beyond an edge that is still to come.
-                        Clipped { at: if adjacent { by[shared] } else { at }, origin: Origin::OfB(shared) }
-                    }
-                };
-                next.push((crossing, if in_here { On::Clip(j) } else { on }));
-            }
-        }
-        std::mem::swap(&mut left, &mut next);
-        next.clear();
-    }
-    let mut corners = Corners::new();
-    for (corner, _) in left {
-        if corners.iter().all(|other| other.at.distance_squared(corner.at) > ON_EDGE * ON_EDGE) {
-            corners.push(corner);
-        }
-    }
     corners
 }
 

@@ -8,7 +8,7 @@ use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Line, Sphere, Support, unit_
 
 use super::map::Map;
 use crate::placement::direction;
-use crate::shape::{Body, Facets};
+use crate::shape::{Body, Hulled};
 
 /// Corners of the polygon that stands for a circle: what is cut off is 2 % of the radius.
 const RIM: u32 = 16;
@@ -114,7 +114,7 @@ impl<'a> Placed<'a> {
             Body::Cone(cone) => self.cone(cone, direction, local),
             Body::Cylinder(cylinder) => self.cylinder(cylinder, direction, local),
             Body::Capsule(capsule) => self.capsule(capsule, direction, local),
-            Body::Hull { points, facets, names } => self.facet(points, facets, *names, direction, local),
+            Body::Hull { hull, names } => self.facet(hull, *names, direction, local),
             Body::Simplex { vertices, indices } => self.simplex(vertices, indices, direction),
         }
     }
@@ -283,21 +283,14 @@ impl<'a> Placed<'a> {
             .collect()
     }
 
-    fn facet(
-        &self,
-        points: &[DVec3],
-        facets: &Facets,
-        names: Option<&[u32]>,
-        direction: DVec3,
-        local: DVec3,
-    ) -> Face {
-        let along = |i: usize| points[i].dot(local);
-        let highest = (0..points.len()).max_by(|&i, &j| along(i).total_cmp(&along(j)).then(j.cmp(&i)));
+    fn facet(&self, hull: &Hulled, names: Option<&[u32]>, direction: DVec3, local: DVec3) -> Face {
+        let (points, facets) = (hull.points(), hull.facets());
+        let highest = hull.polytope().support_index(local);
         let cosine = |face: u32| self.normal(facets.get(face).normal).dot(direction);
         let better = |x: &u32, y: &u32| cosine(*x).total_cmp(&cosine(*y)).then(y.cmp(x));
-        let here = highest.map_or(&[][..], |i| facets.at(i));
         // The furthest point may have been flattened out of an edge.
-        let best = here.iter().copied().max_by(better).or_else(|| (0..facets.len()).max_by(better));
+        let at_highest = facets.at(highest).iter().copied().max_by(better);
+        let best = at_highest.or_else(|| (0..facets.len()).max_by(better));
         let named = |i: u32| names.map_or(i, |names| names[i as usize]);
         let corner = |&i: &u32| self.corner(points[i as usize], named(i));
         match best {

@@ -15,9 +15,12 @@ mod face;
 mod map;
 mod other;
 mod region;
+mod ring;
 mod side;
 mod soup;
 mod stars;
+
+use std::borrow::Cow;
 
 use glam::{DVec2, DVec3};
 use smallvec::{SmallVec, smallvec};
@@ -186,7 +189,10 @@ fn part<'a>(placed: Placed<'a>) -> Part<'a> {
     match placed.shape.class() {
         Class::Convex(support) => Part::Body(placed.shape.body().expect("a convex shape is a body"), support),
         Class::Complex(complex) => match complex.topology().convex() {
-            Some((hull, vertices)) => Part::Body(Body::of_hull(hull, Some(vertices)), hull.polytope()),
+            Some((hull, vertices)) => {
+                let body = Body::Hull { hull: Cow::Borrowed(hull), names: Some(vertices) };
+                Part::Body(body, hull.polytope())
+            }
             None => Part::Soup(complex),
         },
     }

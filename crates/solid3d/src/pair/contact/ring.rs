@@ -1,0 +1,271 @@
+//! A convex polygon from which the edges of another cut what is beyond them, one after the other (Sutherland and Hodgman, *Reentrant polygon
+//! clipping*, 1974), in linear time: an edge does not look at all corners, but from where the last one cut.
+
+use glam::DVec2;
+use smallvec::SmallVec;
+
+use super::clip::{Clipped, Corners, ON_EDGE, Origin, area};
+
+/// What stands for [`ON_EDGE`] where a polygon is so thin that its edges, moved by that, would meet far from where they do: above rounding.
+const ON_EDGE_MIN: f64 = 1e-14;
+
+/// The line on which an edge of the working polygon lies.
+#[derive(Clone, Copy)]
+enum On {
+    Subject(usize),
+    Clip(usize),
+}
+
+impl On {
+    /// What is at the place where edge `j` of a polygon cuts the edge.
+    fn cut(self, at: DVec2, by: &[DVec2], j: usize) -> Clipped {
+        match self {
+            On::Subject(i) => Clipped { at, origin: Origin::Crossing(i, j) },
+            On::Clip(k) => {
+                let shared = if (j + 1) % by.len() == k { k } else { j };
+                let adjacent = shared == k || (k + 1) % by.len() == j;
+                // What is not a corner is beyond an edge that is still to come.
+                Clipped { at: if adjacent { by[shared] } else { at }, origin: Origin::OfB(shared) }
+            }
+        }
+    }
+}
+
+/// The subject cut by each edge of a polygon of area. Cost: linear in the corners of both.
+pub(super) fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
+    let area = area(by);
+    let turn = area.signum();
+    let extent_squared = by.iter().map(|p| p.distance_squared(by[0])).fold(0.0, f64::max);
+    let slack = (ON_EDGE * area.abs() / extent_squared).clamp(ON_EDGE_MIN, ON_EDGE);
+    let mut left = Ring::new(subject);
+    for j in 0..by.len() {
+        let (from, to) = (by[j], by[(j + 1) % by.len()]);
+        let Some(along) = (to - from).try_normalize() else { continue };
+        left.cut(by, j, slack, |p| turn * along.perp_dot(p - from));
+    }
+    left.corners()
+}
+
+/// A corner of the working polygon, and the edge from it to the next.
+struct Node {
+    corner: Clipped,
+    on: On,
+    before: usize,
+    after: usize,
+}
+
+/// The working polygon, convex up to rounding: what an edge cuts off is in one piece, around the corner furthest beyond it, and that is near the one
+/// of the edge before.
+struct Ring {
+    nodes: SmallVec<[Node; 16]>,
+    /// The first corner; `None` when nothing is left.
+    first: Option<usize>,
+    /// The corner that was furthest beyond the last edge.
+    furthest: usize,
+}
+
+impl Ring {
+    fn new(polygon: &[DVec2]) -> Ring {
+        let count = polygon.len();
+        let node = |(i, &at): (usize, &DVec2)| Node {
+            corner: Clipped { at, origin: Origin::OfA(i) },
+            on: On::Subject(i),
+            before: (i + count - 1) % count,
+            after: (i + 1) % count,
+        };
+        Ring { nodes: polygon.iter().enumerate().map(node).collect(), first: Some(0), furthest: 0 }
+    }
+
+    /// Cuts off what is beyond edge `j` of a polygon by more than a slack; `inside` tells how far within it a point is.
+    fn cut(&mut self, by: &[DVec2], j: usize, slack: f64, inside: impl Fn(DVec2) -> f64) {
+        let Some(first) = self.first else { return };
+        let height = |ring: &Ring, i: usize| inside(ring.nodes[i].corner.at);
+        self.climb(slack, |ring, i| -height(ring, i));
+        let is_out = |ring: &Ring, i: usize| height(ring, i) < -slack;
+        if !is_out(self, self.furthest) {
+            return;
+        }
+        // The corners cut off, from the one to the other.
+        let [mut from, mut to] = [self.furthest; 2];
+        let mut has_first = from == first;
+        while is_out(self, self.nodes[from].before) {
+            from = self.nodes[from].before;
+            has_first |= from == first;
+            if from == self.furthest {
+                self.first = None;
+                return;
+            }
+        }
+        while is_out(self, self.nodes[to].after) {
+            to = self.nodes[to].after;
+            has_first |= to == first;
+        }
+        let crossing = |ring: &Ring, start: usize, end: usize| {
+            let (here, there) = (height(ring, start), height(ring, end));
+            let (start, end) = (&ring.nodes[start], &ring.nodes[end]);
+            let at = start.corner.at.lerp(end.corner.at, (here / (here - there)).clamp(0.0, 1.0));
+            start.on.cut(at, by, j)
+        };
+        let (before, after) = (self.nodes[from].before, self.nodes[to].after);
+        let (out, back) = (crossing(self, before, from), crossing(self, to, after));
+        let next = self.nodes.len();
+        let on = self.nodes[to].on;
+        self.nodes.push(Node { corner: out, on: On::Clip(j), before, after: next + 1 });
+        self.nodes.push(Node { corner: back, on, before: next, after });
+        self.nodes[before].after = next;
+        self.nodes[after].before = next + 1;
+        self.furthest = next;
+        if has_first {
+            self.first = Some(next + 1);
+        }
+    }
+
+    /// Goes to the highest corner, from that of the last time on; past lower ones, if by no more than a slack.
+    fn climb(&mut self, slack: f64, height: impl Fn(&Ring, usize) -> f64) {
+        let start = self.furthest;
+        let mut highest = height(self, start);
+        for step in [|node: &Node| node.after, |node: &Node| node.before] {
+            let mut at = step(&self.nodes[start]);
+            while at != start {
+                let here = height(self, at);
+                if here < highest - slack {
+                    break;
+                }
+                if here > highest {
+                    (highest, self.furthest) = (here, at);
+                }
+                at = step(&self.nodes[at]);
+            }
+        }
+    }
+
+    /// The corners in order, of those at one place the first.
+    fn corners(&self) -> Corners {
+        let mut corners = Corners::new();
+        let Some(first) = self.first else { return corners };
+        let is_new = |corner: &Clipped, other: Option<&Clipped>| {
+            other.is_none_or(|other| other.at.distance_squared(corner.at) > ON_EDGE * ON_EDGE)
+        };
+        let mut at = first;
+        loop {
+            let Node { corner, after, .. } = &self.nodes[at];
+            if is_new(corner, corners.last()) && is_new(corner, corners.first()) {
+                corners.push(*corner);
+            }
+            at = *after;
+            if at == first {
+                return corners;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use rand::Rng;
+    use rand::rngs::StdRng;
+    use solid_oracle::generate::seeded;
+
+    use super::*;
+
+    /// The slow twin of [`against`]: each edge looks at each corner.
+    fn against_all(subject: &[DVec2], by: &[DVec2]) -> Vec<Clipped> {
+        let area = area(by);
+        let extent_squared = by.iter().map(|p| p.distance_squared(by[0])).fold(0.0, f64::max);
+        let slack = (ON_EDGE * area.abs() / extent_squared).clamp(ON_EDGE_MIN, ON_EDGE);
+        let corner = |(i, &at)| (Clipped { at, origin: Origin::OfA(i) }, On::Subject(i));
+        let mut left: Vec<_> = subject.iter().enumerate().map(corner).collect();
+        for j in 0..by.len() {
+            let (from, to) = (by[j], by[(j + 1) % by.len()]);
+            let Some(along) = (to - from).try_normalize() else { continue };
+            let inside = |p: DVec2| area.signum() * along.perp_dot(p - from);
+            let mut next = Vec::new();
+            for (i, &(corner, on)) in left.iter().enumerate() {
+                let following = left[(i + 1) % left.len()].0;
+                let (here, there) = (inside(corner.at), inside(following.at));
+                let (in_here, in_there) = (here >= -slack, there >= -slack);
+                if in_here {
+                    next.push((corner, on));
+                }
+                if in_here != in_there {
+                    let at = corner.at.lerp(following.at, (here / (here - there)).clamp(0.0, 1.0));
+                    let crossing = on.cut(at, by, j);
+                    next.push((crossing, if in_here { On::Clip(j) } else { on }));
+                }
+            }
+            left = next;
+        }
+        let mut corners: Vec<Clipped> = Vec::new();
+        for (corner, _) in left {
+            if corners.iter().all(|other| other.at.distance_squared(corner.at) > ON_EDGE * ON_EDGE) {
+                corners.push(corner);
+            }
+        }
+        corners
+    }
+
+    /// Points on a stretched circle, either way around, in order or reversed; perhaps one, two, or all in the place of others.
+    fn round(rng: &mut StdRng) -> Vec<DVec2> {
+        let count = if rng.random_bool(0.8) { rng.random_range(1..9) } else { rng.random_range(9..200) };
+        let thin = if rng.random_bool(0.2) { 10f64.powi(rng.random_range(-4..0)) } else { 1.0 };
+        let size = rng.random_range(0.2..1.5);
+        let (middle, turn) = (
+            DVec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)),
+            rng.random_range(0.0..6.0),
+        );
+        let mut angles: Vec<f64> = (0..count).map(|_| rng.random_range(0.0..6.28)).collect();
+        if rng.random_bool(0.3) {
+            angles = (0..count).map(|i| f64::from(i) / f64::from(count) * 6.283).collect();
+        }
+        angles.sort_by(f64::total_cmp);
+        if rng.random_bool(0.5) {
+            angles.reverse();
+        }
+        let place = |angle: &f64| {
+            DVec2::from_angle(turn).rotate(DVec2::from_angle(*angle) * size * DVec2::new(1.0, thin))
+        };
+        angles.iter().map(|angle| middle + place(angle)).collect()
+    }
+
+    /// Law: what is kept of where an edge cut changes no corner.
+    #[test]
+    fn as_if_each_edge_looked_at_each_corner() {
+        let mut rng = seeded(152);
+        let mut of_both = 0;
+        for case in 0..20_000 {
+            let a = round(&mut rng);
+            let b = if case % 10 == 0 { a.clone() } else { round(&mut rng) };
+            if b.len() < 3 {
+                continue;
+            }
+            let (found, expected) = (against(&a, &b), against_all(&a, &b));
+            let all = |corners: &[Clipped]| format!("{corners:?}");
+            assert_eq!(all(&found), all(&expected), "case {case}: {a:?}, {b:?}");
+            of_both += usize::from(found.len() > 3);
+        }
+        assert!(of_both > 4_000, "{of_both}");
+    }
+
+    /// Law: the corners that edges look at are in proportion to those of both polygons.
+    #[test]
+    fn few_corners_are_looked_at() {
+        for count in [100, 1_000, 10_000] {
+            let step = std::f64::consts::TAU / f64::from(count);
+            let polygon = |middle: DVec2| -> Vec<DVec2> {
+                (0..count).map(|i| middle + DVec2::from_angle(step * f64::from(i))).collect()
+            };
+            let (a, b) = (polygon(DVec2::new(0.3, 0.1)), polygon(DVec2::ZERO));
+            let (mut left, looks) = (Ring::new(&a), Cell::new(0));
+            for j in 0..b.len() {
+                let along = (b[(j + 1) % b.len()] - b[j]).normalize();
+                left.cut(&b, j, ON_EDGE_MIN, |p| {
+                    looks.set(looks.get() + 1);
+                    along.perp_dot(p - b[j])
+                });
+            }
+            assert!(left.corners().len() > a.len() / 2 && looks.get() < 12 * count, "{looks:?} of {count}");
+        }
+    }
+}
