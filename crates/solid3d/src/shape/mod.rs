@@ -82,7 +82,7 @@ pub(crate) enum Body<'a> {
     Capsule(&'a Capsule),
     /// A convex hull.
     Hull {
-        hull: Cow<'a, Hulled>,
+        hull: Cow<'a, Arc<Hulled>>,
         /// What its points are called, when not by their places.
         names: Option<&'a [u32]>,
     },
@@ -102,7 +102,7 @@ impl<'a> Body<'a> {
         }
         let points: Vec<DVec3> = indices.iter().map(|&i| vertices[i as usize]).collect();
         let hull = Hulled::new(points).expect("a primitive has a vertex");
-        Body::Hull { hull: Cow::Owned(hull), names: Some(indices) }
+        Body::Hull { hull: Cow::Owned(Arc::new(hull)), names: Some(indices) }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Which primitives of a soup lie next to each other, for contacts.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 use solid_convex::unit_scale;
@@ -24,15 +25,16 @@ pub(crate) struct Topology {
     /// 1 when the triangles of a closed mesh run around counter-clockwise seen from outside, -1 when clockwise, 0 when not closed.
     orientation: f64,
     /// The body that a closed convex mesh bounds, and which vertices its points are.
-    convex: Option<(Hulled, Vec<u32>)>,
+    convex: Option<(Arc<Hulled>, Vec<u32>)>,
 }
 
 impl Topology {
     /// The memory that it owns, in bytes.
     pub fn bytes(&self) -> usize {
         let Topology { welded, starts, around, flat, orientation: _, convex } = self;
-        let of_convex =
-            |(hull, names): &(Hulled, Vec<u32>)| hull.bytes() + names.capacity() * size_of::<u32>();
+        let of_convex = |(hull, names): &(Arc<Hulled>, Vec<u32>)| {
+            size_of::<Hulled>() + hull.bytes() + names.capacity() * size_of::<u32>()
+        };
         let indices = welded.capacity() + starts.capacity() + around.capacity();
         indices * size_of::<u32>() + flat.capacity() + convex.as_ref().map_or(0, of_convex)
     }
@@ -94,7 +96,7 @@ impl Topology {
     }
 
     /// The body that a closed convex mesh bounds, and which vertices its points are.
-    pub fn convex(&self) -> Option<(&Hulled, &[u32])> {
+    pub fn convex(&self) -> Option<(&Arc<Hulled>, &[u32])> {
         self.convex.as_ref().map(|(hull, vertices)| (hull, vertices.as_slice()))
     }
 
@@ -169,7 +171,7 @@ impl Topology {
         );
         if sphere && parts.len() == 1 && !triangles.iter().map(welded).any(|t| rises(&t)) {
             let hull = Hulled::new(corners.iter().map(|&i| vertices[i as usize]).collect());
-            self.convex = hull.map(|hull| (hull, corners));
+            self.convex = hull.map(|hull| (Arc::new(hull), corners));
         }
     }
 }

@@ -163,6 +163,7 @@ impl Ring {
 #[cfg(test)]
 mod tests {
     use std::cell::Cell;
+    use std::f64::consts::TAU;
 
     use rand::Rng;
     use rand::rngs::StdRng;
@@ -213,11 +214,11 @@ mod tests {
         let size = rng.random_range(0.2..1.5);
         let (middle, turn) = (
             DVec2::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)),
-            rng.random_range(0.0..6.0),
+            rng.random_range(0.0..TAU),
         );
-        let mut angles: Vec<f64> = (0..count).map(|_| rng.random_range(0.0..6.28)).collect();
+        let mut angles: Vec<f64> = (0..count).map(|_| rng.random_range(0.0..TAU)).collect();
         if rng.random_bool(0.3) {
-            angles = (0..count).map(|i| f64::from(i) / f64::from(count) * 6.283).collect();
+            angles = (0..count).map(|i| f64::from(i) / f64::from(count) * TAU).collect();
         }
         angles.sort_by(f64::total_cmp);
         if rng.random_bool(0.5) {
@@ -252,7 +253,7 @@ mod tests {
     #[test]
     fn few_corners_are_looked_at() {
         for count in [100, 1_000, 10_000] {
-            let step = std::f64::consts::TAU / f64::from(count);
+            let step = TAU / f64::from(count);
             let polygon = |middle: DVec2| -> Vec<DVec2> {
                 (0..count).map(|i| middle + DVec2::from_angle(step * f64::from(i))).collect()
             };
