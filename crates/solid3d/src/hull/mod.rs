@@ -112,7 +112,8 @@ impl Hull {
 
     /// The surface, as triangles of indices into the input, counter-clockwise seen from outside.
     ///
-    /// Flat facets are triangulated as fans. A polygon (dimension 2) has both its sides; points and segments have
+    /// Of a flat facet every second corner is cut off, again and again: few of its triangles lie side by side, whatever line is drawn
+    /// across them. A polygon (dimension 2) has both its sides; points and segments have
     /// no triangles.
     ///
     /// ```
@@ -158,9 +159,16 @@ impl Hull {
             let smallest = (0..polygon.len()).min_by_key(|&i| polygon[i]).unwrap_or(0);
             polygon.rotate_left(smallest);
             vertices.extend_from_slice(&polygon);
-            triangles.extend((2..polygon.len()).map(|i| [polygon[0], polygon[i - 1], polygon[i]]));
             let next = polygon.iter().cycle().skip(1);
             edges.extend(polygon.iter().copied().zip(next.copied()).filter(|(a, b)| a != b));
+            triangulate(&mut polygon, &mut triangles);
+        }
+        if dimension == 2 {
+            let (fronts, rim) = (triangles.len(), edges.len());
+            triangles.extend_from_within(..);
+            triangles[fronts..].iter_mut().for_each(|[_, q, r]| std::mem::swap(q, r));
+            edges.extend_from_within(..);
+            edges[rim..].iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
         }
         vertices.sort_unstable();
         vertices.dedup();
@@ -179,8 +187,25 @@ impl Hull {
     }
 }
 
-/// The facets of the hull, whatever its dimension: a polygon counts as two facets, one for each side; a segment as one
-/// facet of two corners, a point as one of one corner.
+/// Cuts every second corner off a polygon until nothing is left.
+fn triangulate(polygon: &mut Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
+    while let [first, _, _, ..] = polygon[..] {
+        let ears = polygon.chunks_exact(2).zip(polygon.iter().skip(2).step_by(2).chain([&first]));
+        triangles.extend(ears.map(|(ear, &next)| smallest_first([ear[0], ear[1], next])));
+        let mut is_kept = [true, false].into_iter().cycle();
+        polygon.retain(|_| is_kept.next() == Some(true));
+    }
+}
+
+/// The same triangle, from its smallest corner on.
+fn smallest_first(mut triangle: [u32; 3]) -> [u32; 3] {
+    let smallest = (0..3).min_by_key(|&i| triangle[i]).unwrap_or(0);
+    triangle.rotate_left(smallest);
+    triangle
+}
+
+/// The facets of the hull, whatever its dimension: of a polygon, which has two, the one side; a segment counts as one facet of two corners, a
+/// point as one of one corner.
 fn polygons_of(sites: &Sites) -> (u8, Polygons) {
     let first = 0;
     let last = sites.len() - 1;
@@ -192,9 +217,7 @@ fn polygons_of(sites: &Sites) -> (u8, Polygons) {
         return (1, Polygons::from_iter([vec![first, last]]));
     };
     let Some(fourth) = sites.farthest_from_plane([first, last, third]) else {
-        let front = planar::convex_polygon(sites, dropped_axis);
-        let back = front.iter().rev().copied().collect();
-        return (2, Polygons::from_iter([front, back]));
+        return (2, Polygons::from_iter([planar::convex_polygon(sites, dropped_axis)]));
     };
     let surface = quickhull::surface(sites, [first, last, third, fourth]);
     (3, facets::merge(sites, &surface))

@@ -72,6 +72,26 @@ fn assert_climbs(hull: &Hull, points: &[DVec3], rng: &mut StdRng) {
     }
 }
 
+/// Law: a line across a flat facet meets few of its triangles, however many corners it has.
+#[test]
+fn facets_are_cut_in_depth() {
+    for count in [5, 64, 1001] {
+        let corner = |i: u32| {
+            let (sin, cos) = (TAU * f64::from(i) / f64::from(count)).sin_cos();
+            [DVec3::new(cos, sin, 0.0), DVec3::new(cos, sin, 1.0)]
+        };
+        let points: Vec<DVec3> = (0..count).flat_map(corner).collect();
+        let hull = hull_of(&points);
+        let lids = hull.triangles().iter().map(|t| t.map(|i| points[i as usize]));
+        let lids: Vec<_> = lids.filter(|t| t.iter().all(|p| p.z == 0.0)).collect();
+        assert_eq!(lids.len(), count as usize - 2);
+        for x in [-0.9, -0.3, 0.01, 0.5, 0.99] {
+            let met = lids.iter().filter(|t| t.iter().any(|p| p.x < x) && t.iter().any(|p| p.x > x)).count();
+            assert!(met <= 2 * count.ilog2() as usize, "{met} of {count} at {x}");
+        }
+    }
+}
+
 #[test]
 fn random_clouds() {
     let mut rng = StdRng::seed_from_u64(1);
