@@ -241,7 +241,8 @@ impl Distance {
 /// - Where more than two segments meet, polylines end.
 ///
 /// For meshes, and complex shapes of points, segments and triangles, the curve is empty if and only if [`intersects`] is
-/// false. Cost: follows the number of pairs of primitives whose boxes overlap, n log n; for a convex hull also of its facets.
+/// false. Cost: follows the number of pairs of primitives whose boxes overlap, n log n; for a
+/// convex hull also, at the first call, of its facets.
 ///
 /// ```
 /// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};

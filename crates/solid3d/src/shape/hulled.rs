@@ -5,7 +5,9 @@ use std::sync::OnceLock;
 use glam::DVec3;
 use solid_convex::Polytope;
 
+use super::Complex;
 use super::facets::Facets;
+use super::surface::of_hull;
 use crate::hull::Hull;
 
 /// A polytope, with its faces once they were needed.
@@ -13,12 +15,13 @@ use crate::hull::Hull;
 pub(crate) struct Hulled {
     polytope: Polytope,
     facets: OnceLock<Facets>,
+    surface: OnceLock<Box<Complex>>,
 }
 
 impl Hulled {
     /// The hull of points; `None` for none.
     pub fn new(points: Vec<DVec3>) -> Option<Hulled> {
-        Some(Hulled { polytope: Polytope::new(points)?, facets: OnceLock::new() })
+        Some(Polytope::new(points)?.into())
     }
 
     /// A hull, of the points that it was made from.
@@ -28,8 +31,7 @@ impl Hulled {
         let faces: Vec<[u32; 3]> =
             hull.triangles().iter().map(|corners| corners.map(|i| slots[i as usize])).collect();
         let extreme = hull.vertices().iter().map(|&i| points[i as usize]).collect();
-        let polytope = Polytope::new(extreme).expect("a hull has a vertex").with_faces(&faces);
-        Hulled { polytope, facets: OnceLock::new() }
+        Polytope::new(extreme).expect("a hull has a vertex").with_faces(&faces).into()
     }
 
     pub fn polytope(&self) -> &Polytope {
@@ -38,7 +40,8 @@ impl Hulled {
 
     /// The memory that it owns, in bytes.
     pub fn bytes(&self) -> usize {
-        self.polytope.bytes() + self.facets.get().map_or(0, Facets::bytes)
+        let of_surface = self.surface.get().map_or(0, |surface| surface.memory());
+        self.polytope.bytes() + self.facets.get().map_or(0, Facets::bytes) + of_surface
     }
 
     pub fn points(&self) -> &[DVec3] {
@@ -48,5 +51,16 @@ impl Hulled {
     /// The faces. Cost: O(n log n) at the first call.
     pub fn facets(&self) -> &Facets {
         self.facets.get_or_init(|| Facets::of(self.points()))
+    }
+
+    /// Its surface as a mesh of exactly flat triangles. Cost: O(n log n) at the first call.
+    pub fn surface(&self) -> &Complex {
+        self.surface.get_or_init(|| Box::new(of_hull(self.points().to_vec())))
+    }
+}
+
+impl From<Polytope> for Hulled {
+    fn from(polytope: Polytope) -> Self {
+        Hulled { polytope, facets: OnceLock::new(), surface: OnceLock::new() }
     }
 }

@@ -1,12 +1,9 @@
 //! A shape as a surface of facets.
 
-use std::borrow::Cow;
-
 use glam::DVec3;
 use solid_convex::Cuboid;
 
 use super::{Complex, Geometry, Shape};
-use crate::error::Result;
 use crate::hull::Hull;
 use crate::threads::alone;
 
@@ -14,15 +11,17 @@ use crate::threads::alone;
 pub(crate) enum Surface<'a> {
     /// A mesh or complex shape is its own.
     Own(&'a Complex),
-    /// The facets of a convex shape, which is one primitive.
-    OfConvex(Box<Complex>),
+    /// That of a convex hull, which is one primitive and keeps it.
+    OfHull(&'a Complex),
+    /// That of a box, which is one primitive.
+    OfBox(Box<Complex>),
 }
 
 impl Surface<'_> {
     pub fn complex(&self) -> &Complex {
         match self {
-            Surface::Own(complex) => complex,
-            Surface::OfConvex(complex) => complex,
+            Surface::Own(complex) | Surface::OfHull(complex) => complex,
+            Surface::OfBox(complex) => complex,
         }
     }
 
@@ -30,27 +29,28 @@ impl Surface<'_> {
     pub fn primitive(&self, primitive: u32) -> u32 {
         match self {
             Surface::Own(complex) => complex.owner(primitive),
-            Surface::OfConvex(_) => 0,
+            Surface::OfHull(_) | Surface::OfBox(_) => 0,
         }
     }
 }
 
 impl Shape {
-    /// The surface; `None` for a shape that is round. Cost: nothing for a mesh or complex shape, O(n log n) for a convex hull.
-    pub(crate) fn surface(&self) -> Result<Option<Surface<'_>>> {
-        let corners = match &self.geometry {
-            Geometry::Complex(complex) => return Ok(Some(Surface::Own(complex))),
-            Geometry::Polytope(polytope) => Cow::Borrowed(polytope.points()),
-            Geometry::Cuboid(cuboid) => Cow::Owned(corners_of(cuboid)),
-            Geometry::Sphere(_) | Geometry::Cone(_) | Geometry::Cylinder(_) | Geometry::Capsule(_) => {
-                return Ok(None);
-            }
-        };
-        let facets = hull_facets(&corners);
-        // A world asks this of pairs that it tests on several threads.
-        let complex = alone(|| Complex::mesh(corners.into_owned(), facets))?;
-        Ok(Some(Surface::OfConvex(Box::new(complex))))
+    /// The surface; `None` for a shape that is round. Cost: nothing for a mesh or complex shape, O(n log n) at the first call for a convex hull.
+    pub(crate) fn surface(&self) -> Option<Surface<'_>> {
+        match &self.geometry {
+            Geometry::Complex(complex) => Some(Surface::Own(complex)),
+            Geometry::Polytope(hulled) => Some(Surface::OfHull(hulled.surface())),
+            Geometry::Cuboid(cuboid) => Some(Surface::OfBox(Box::new(of_hull(corners_of(cuboid))))),
+            Geometry::Sphere(_) | Geometry::Cone(_) | Geometry::Cylinder(_) | Geometry::Capsule(_) => None,
+        }
     }
+}
+
+/// The surface of the hull of points, which are good for a shape.
+pub(super) fn of_hull(points: Vec<DVec3>) -> Complex {
+    let facets = hull_facets(&points);
+    // A world asks this of pairs that it tests on several threads.
+    alone(|| Complex::mesh(points, facets)).expect("what is good for a hull is good for a mesh")
 }
 
 /// The facets of a primitive, as indices into the vertices: its own triangle, or the surface of its hull. Segments and points
@@ -102,6 +102,7 @@ mod tests {
             (vec![x], 1),
             (vec![x, 2.0 * x, 3.0 * x], 1),
             (vec![DVec3::ZERO, x, y, x + y], 2),
+            (vec![DVec3::ZERO, 2.0 * x, 2.0 * x + y, x + 2.0 * y, y], 3),
             (vec![DVec3::ZERO, x, y, z, 0.1 * DVec3::ONE], 4),
         ] {
             assert_eq!(hull_facets(&points).len(), count, "{points:?}");
@@ -110,10 +111,20 @@ mod tests {
 
     #[test]
     fn round_shapes_have_no_surface_of_facets() {
-        assert!(Shape::sphere(1.0).unwrap().surface().unwrap().is_none());
+        assert!(Shape::sphere(1.0).unwrap().surface().is_none());
         let cuboid = Shape::cuboid([1.0, 2.0, 3.0]).unwrap();
-        let surface = cuboid.surface().unwrap().unwrap();
+        let surface = cuboid.surface().unwrap();
         assert_eq!((surface.complex().primitive_count(), surface.primitive(11)), (12, 0));
         assert_eq!(surface.complex().bounds().max, DVec3::new(0.5, 1.0, 1.5));
+    }
+
+    /// The second question finds what the first made, and it counts as the shape's memory.
+    #[test]
+    fn a_hull_keeps_its_surface() {
+        let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let hull = Shape::convex_hull(&corner).unwrap();
+        let before = hull.memory();
+        let [first, second] = [hull.surface().unwrap(), hull.surface().unwrap()];
+        assert!(std::ptr::eq(first.complex(), second.complex()) && hull.memory() > before);
     }
 }

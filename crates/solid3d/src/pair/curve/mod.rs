@@ -43,8 +43,8 @@ use join::Chain;
 /// The curve; an error for a shape without facets.
 pub(crate) fn intersection_curve(a: Placed, b: Placed, scratch: &mut Scratch) -> Result<IntersectionCurve> {
     let refusal = |argument, placed: Placed| Error::NoFacets { argument, kind: placed.shape.kind() };
-    let on_a = a.shape.surface()?.ok_or_else(|| refusal("a", a))?;
-    let on_b = b.shape.surface()?.ok_or_else(|| refusal("b", b))?;
+    let on_a = a.shape.surface().ok_or_else(|| refusal("a", a))?;
+    let on_b = b.shape.surface().ok_or_else(|| refusal("b", b))?;
     let (complex_a, complex_b) = (on_a.complex(), on_b.complex());
     let frame = Frame::new(a.placement, complex_a.reach(), b.placement, complex_b.reach());
     let candidates = candidates(complex_a, complex_b, &frame, scratch);
