@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
-use solid_convex::IndexedPoints;
+use solid_convex::{IndexedPoints, Support};
 
 use super::parts::parts;
 use super::solid::Solid;
@@ -28,6 +28,8 @@ pub(crate) struct Complex {
     parts: Arc<OnceLock<Vec<u32>>>,
     /// What lies next to what, at these positions, found when first asked for.
     topology: OnceLock<Arc<Topology>>,
+    /// The mean of all corners, at these positions, found when first asked for.
+    center: OnceLock<DVec3>,
     /// How flat it is, at these positions, found when first asked for.
     slabs: OnceLock<Arc<Slabs>>,
     /// Images of the triangles of a mesh, found when first asked for.
@@ -127,6 +129,7 @@ impl Complex {
             solid: None,
             parts: Arc::default(),
             topology: OnceLock::new(),
+            center: OnceLock::new(),
             slabs: OnceLock::new(),
             images: OnceLock::new(),
             is_deformed: false,
@@ -248,9 +251,10 @@ impl Complex {
         self.primitives.bounds(primitive, &self.vertices)
     }
 
-    /// The convex hull of all primitives; vertices that none of them names have no part in it.
+    /// The convex hull of all primitives; vertices that none of them names have no part in it. Cost: O(n) at the first call since the last
+    /// deformation, for its middle.
     pub fn hull(&self) -> SoupHull<'_> {
-        SoupHull::new(self, self.corners())
+        SoupHull::new(self, *self.center.get_or_init(|| self.corners().center()))
     }
 
     /// The corners of all primitives, one after the other.
@@ -316,6 +320,7 @@ impl Complex {
         let refit = || tree.refit_points(points, positions);
         both(positions.len() >= validate::VERTICES_MANY, refit, copy);
         self.topology = OnceLock::new();
+        self.center = OnceLock::new();
         self.slabs = OnceLock::new();
         self.images = OnceLock::new();
         self.is_deformed = !self.tree.degraded();

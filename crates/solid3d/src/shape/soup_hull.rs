@@ -1,7 +1,7 @@
 //! The convex hull of a soup, known by its support mapping alone.
 
 use glam::DVec3;
-use solid_convex::{IndexedPoints, Support};
+use solid_convex::Support;
 
 use super::complex::Complex;
 
@@ -13,9 +13,9 @@ pub(crate) struct SoupHull<'a> {
 }
 
 impl<'a> SoupHull<'a> {
-    /// Cost: O(n), for the mean of all corners.
-    pub fn new(soup: &'a Complex, corners: IndexedPoints) -> Self {
-        SoupHull { soup, center: corners.center() }
+    /// `center` is the mean of all corners.
+    pub fn new(soup: &'a Complex, center: DVec3) -> Self {
+        SoupHull { soup, center }
     }
 }
 
