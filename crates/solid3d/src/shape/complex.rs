@@ -8,7 +8,7 @@ use solid_convex::{IndexedPoints, Support};
 use super::parts::parts;
 use super::solid::Solid;
 use super::soup_hull::SoupHull;
-use super::topology::Topology;
+use super::topology::{Positioned, Topology};
 use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
@@ -157,6 +157,7 @@ impl Complex {
         if let (Primitives::Triangles(triangles), None) = (&*self.primitives, &self.solid) {
             self.solid = Some(Arc::new(Solid::of(&self.vertices, triangles)?));
             self.parts = Arc::default();
+            self.topology = OnceLock::new();
         }
         Ok(())
     }
@@ -178,9 +179,23 @@ impl Complex {
     /// What lies next to what. Cost: O(n) at the first call since the last deformation, O(n log n) for a closed convex mesh.
     pub fn topology(&self) -> &Topology {
         self.topology.get_or_init(|| {
-            let primitives = (0..self.primitives.len() as u32).map(|i| self.primitives.get(i));
-            Arc::new(Topology::of(&self.vertices, primitives, self.triangles()))
+            Arc::new(match self.positioned() {
+                Some(mesh) => Topology::of_mesh(mesh, &self.bounds(), self.is_solid()),
+                None => {
+                    let primitives = (0..self.primitives.len() as u32).map(|i| self.primitives.get(i));
+                    Topology::of(&self.vertices, primitives)
+                }
+            })
         })
+    }
+
+    /// Whether a primitive is a triangle whose surroundings are in its plane on all sides.
+    pub fn is_flat(&self, primitive: u32) -> bool {
+        self.positioned().is_some_and(|mesh| self.topology().is_flat(mesh, primitive))
+    }
+
+    fn positioned(&self) -> Option<Positioned<'_>> {
+        Some(Positioned { vertices: &self.vertices, triangles: self.triangles()? })
     }
 
     /// How flat the surface is below each lane of the tree. Cost: O(n) at the first call since the last deformation.

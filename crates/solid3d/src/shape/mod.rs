@@ -3,6 +3,7 @@
 mod builder;
 mod chord;
 mod complex;
+mod enclosed;
 mod facets;
 mod hulled;
 mod kind;

@@ -1,51 +1,53 @@
 //! Which primitives of a soup lie next to each other, for contacts.
 
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
 
+use foldhash::fast::RandomState;
 use glam::DVec3;
-use solid_convex::unit_scale;
+use smallvec::SmallVec;
 
-use super::hulled::Hulled;
+use super::enclosed::Enclosed;
 use crate::bounds::Aabb;
 
-/// How far a neighbour may rise above the plane of a triangle in a surface that is convex, relative to its extent.
+/// How far a neighbour may rise above the plane of a triangle in a surface that is flat, relative to the way to it.
 const FLATNESS: f64 = 1e-9;
 
 /// What lies next to what in a soup. Vertices at exactly the same position are one, whatever their indices.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Topology {
     /// The first vertex at the position of each.
     welded: Vec<u32>,
     /// The primitives at welded vertex `i` are `around[starts[i]..starts[i + 1]]`, ascending.
     starts: Vec<u32>,
     around: Vec<u32>,
-    /// Whether the surface around a welded vertex is flat, and without an edge there.
-    flat: Vec<bool>,
-    /// 1 when the triangles of a closed mesh run around counter-clockwise seen from outside, -1 when clockwise, 0 when not closed.
-    orientation: f64,
-    /// The body that a closed convex mesh bounds, and which vertices its points are.
-    convex: Option<(Arc<Hulled>, Vec<u32>)>,
+    /// What is known of the surface around each welded vertex of a mesh: whether it [is flat](FLAT), or [not](BENT).
+    known: Vec<AtomicU8>,
+    enclosed: Enclosed,
+}
+
+const UNKNOWN: u8 = 0;
+const BENT: u8 = 1;
+const FLAT: u8 = 2;
+
+/// A mesh at some positions, whose primitives are its triangles.
+#[derive(Clone, Copy)]
+pub(crate) struct Positioned<'a> {
+    pub vertices: &'a [DVec3],
+    pub triangles: &'a [[u32; 3]],
 }
 
 impl Topology {
     /// The memory that it owns, in bytes.
     pub fn bytes(&self) -> usize {
-        let Topology { welded, starts, around, flat, orientation: _, convex } = self;
-        let of_convex = |(hull, names): &(Arc<Hulled>, Vec<u32>)| {
-            size_of::<Hulled>() + hull.bytes() + names.capacity() * size_of::<u32>()
-        };
+        let Topology { welded, starts, around, known, enclosed } = self;
         let indices = welded.capacity() + starts.capacity() + around.capacity();
-        indices * size_of::<u32>() + flat.capacity() + convex.as_ref().map_or(0, of_convex)
+        indices * size_of::<u32>() + known.capacity() + enclosed.bytes()
     }
 
-    /// Cost: O(n), and O(n log n) for a closed convex mesh.
-    pub fn of<'a>(
-        vertices: &[DVec3],
-        primitives: impl Iterator<Item = &'a [u32]> + Clone,
-        triangles: Option<&[[u32; 3]]>,
-    ) -> Topology {
-        let mut first_at = HashMap::new();
+    /// Cost: O(n).
+    pub fn of<'a>(vertices: &[DVec3], primitives: impl Iterator<Item = &'a [u32]> + Clone) -> Topology {
+        let mut first_at = HashMap::with_capacity_and_hasher(vertices.len(), RandomState::default());
         // 0 and -0 are the same.
         let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
         let welded: Vec<u32> =
@@ -65,12 +67,14 @@ impl Topology {
                 next[corner] += 1;
             }
         }
-        let mut topology =
-            Topology { welded, starts, around, flat: Vec::new(), orientation: 0.0, convex: None };
-        if let Some(triangles) = triangles {
-            topology.flatten(vertices, triangles);
-            topology.close(vertices, triangles);
-        }
+        Topology { welded, starts, around, known: Vec::new(), enclosed: Enclosed::default() }
+    }
+
+    /// The same of a mesh. Cost: O(n), and O(n log n) for a closed convex one.
+    pub fn of_mesh(mesh: Positioned, bounds: &Aabb, is_solid: bool) -> Topology {
+        let mut topology = Topology::of(mesh.vertices, mesh.triangles.iter().map(<[u32; 3]>::as_slice));
+        topology.known = mesh.vertices.iter().map(|_| AtomicU8::new(UNKNOWN)).collect();
+        topology.enclosed = Enclosed::of(&topology, mesh, bounds, is_solid).unwrap_or_default();
         topology
     }
 
@@ -85,93 +89,69 @@ impl Topology {
         &self.around[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
-    /// Whether a primitive is a triangle whose surroundings are in its plane on all sides: such a surface has no other normal there.
-    pub fn is_flat(&self, corners: &[u32]) -> bool {
-        !self.flat.is_empty() && corners.iter().all(|&corner| self.flat[self.welded(corner) as usize])
+    /// What a closed mesh bounds.
+    pub fn enclosed(&self) -> &Enclosed {
+        &self.enclosed
     }
 
-    /// 1, -1 or 0; see the field.
-    pub fn orientation(&self) -> f64 {
-        self.orientation
+    /// Whether the surroundings of a triangle are in its plane on all sides: such a surface has no other normal there.
+    pub fn is_flat(&self, mesh: Positioned, triangle: u32) -> bool {
+        mesh.triangles[triangle as usize].iter().all(|&corner| self.is_flat_around(mesh, self.welded(corner)))
     }
 
-    /// The body that a closed convex mesh bounds, and which vertices its points are.
-    pub fn convex(&self) -> Option<(&Arc<Hulled>, &[u32])> {
-        self.convex.as_ref().map(|(hull, vertices)| (hull, vertices.as_slice()))
+    /// Whether the surface around a welded vertex is flat, and without an edge there. It is looked at once.
+    fn is_flat_around(&self, mesh: Positioned, vertex: u32) -> bool {
+        let known = &self.known[vertex as usize];
+        match known.load(Ordering::Relaxed) {
+            UNKNOWN => {
+                let is_flat = self.look_around(mesh, vertex);
+                known.store(if is_flat { FLAT } else { BENT }, Ordering::Relaxed);
+                is_flat
+            }
+            state => state == FLAT,
+        }
     }
 
-    /// Finds out where the surface is flat.
-    fn flatten(&mut self, vertices: &[DVec3], triangles: &[[u32; 3]]) {
-        let (mut before, mut after) = (Vec::new(), Vec::new());
-        let flat = (0u32..).zip(vertices).map(|(vertex, &here)| {
-            if self.welded(vertex) != vertex || self.around(vertex).is_empty() {
+    fn look_around(&self, Positioned { vertices, triangles }: Positioned, vertex: u32) -> bool {
+        let here = vertices[vertex as usize];
+        let (mut before, mut after) = (SmallVec::<[u32; 8]>::new(), SmallVec::<[u32; 8]>::new());
+        let mut plane = None;
+        for &triangle in self.around(vertex) {
+            let corners = triangles[triangle as usize].map(|i| self.welded(i));
+            // The triangle from this vertex on.
+            let Some(first) = corners.iter().position(|&corner| corner == vertex) else { return false };
+            let [next, last] = [1, 2].map(|step| corners[(first + step) % 3]);
+            after.push(next);
+            before.push(last);
+            let arms = [next, last].map(|corner| vertices[corner as usize] - here);
+            let across = arms[0].cross(arms[1]).normalize_or_zero();
+            let normal = *plane.get_or_insert(across);
+            let rises = |arm: &DVec3| normal.dot(*arm).abs() > FLATNESS * arm.length();
+            if normal.dot(across) <= 0.0 || arms.iter().any(rises) {
                 return false;
             }
-            before.clear();
-            after.clear();
-            let mut plane = None;
-            for &triangle in self.around(vertex) {
-                let corners = triangles[triangle as usize].map(|i| self.welded(i));
-                // The triangle from this vertex on.
-                let Some(first) = corners.iter().position(|&corner| corner == vertex) else { return false };
-                let [next, last] = [1, 2].map(|step| corners[(first + step) % 3]);
-                after.push(next);
-                before.push(last);
-                let arms = [next, last].map(|corner| vertices[corner as usize] - here);
-                let across = arms[0].cross(arms[1]).normalize_or_zero();
-                let normal = *plane.get_or_insert(across);
-                let rises = |arm: &DVec3| normal.dot(*arm).abs() > FLATNESS * arm.length();
-                if normal.dot(across) <= 0.0 || arms.iter().any(rises) {
-                    return false;
-                }
-            }
-            // All around: what one triangle ends with another begins with.
-            before.sort_unstable();
-            after.sort_unstable();
-            before == after && before.windows(2).all(|pair| pair[0] != pair[1])
-        });
-        self.flat = flat.collect();
+        }
+        // All around: what one triangle ends with another begins with.
+        before.sort_unstable();
+        after.sort_unstable();
+        before == after && before.windows(2).all(|pair| pair[0] != pair[1])
     }
 
-    /// Finds out whether a mesh is closed, and convex.
-    fn close(&mut self, vertices: &[DVec3], triangles: &[[u32; 3]]) {
-        let welded = |triangle: &[u32; 3]| triangle.map(|i| self.welded[i as usize]);
-        let mut beyond = HashMap::new();
-        let mut manifold = true;
-        for triangle in triangles.iter().map(welded) {
-            let [i, j, k] = triangle;
-            for (edge, third) in [([i, j], k), ([j, k], i), ([k, i], j)] {
-                manifold &= i != j && j != k && k != i && beyond.insert(edge, third).is_none();
+    /// The third corner of the triangle on the other side of an edge, where there is one on each side, and the one runs through it as the other
+    /// does not. Cost: follows the triangles around the end that has fewer.
+    pub(super) fn beyond(&self, triangles: &[[u32; 3]], [from, to]: [u32; 2]) -> Option<u32> {
+        let star = [self.around(from), self.around(to)].into_iter().min_by_key(|star| star.len())?;
+        let (mut along, mut against, mut third) = (0, 0, None);
+        for &triangle in star {
+            let [i, j, k] = triangles[triangle as usize].map(|i| self.welded(i));
+            for (edge, other) in [([i, j], k), ([j, k], i), ([k, i], j)] {
+                along += i32::from(edge == [from, to]);
+                if edge == [to, from] {
+                    against += 1;
+                    third = Some(other);
+                }
             }
         }
-        if !manifold || !beyond.keys().all(|&[i, j]| beyond.contains_key(&[j, i])) {
-            return;
-        }
-        let bounds = Aabb::of_points(triangles.as_flattened().iter().map(|&i| vertices[i as usize]));
-        let (center, scale) = (bounds.center(), unit_scale(bounds.half_extents().max_element()));
-        let at = |i: u32| (vertices[i as usize] - center) * scale;
-        let volume: f64 = triangles.iter().map(|&[i, j, k]| at(i).dot(at(j).cross(at(k)))).sum();
-        self.orientation = if volume < 0.0 { -1.0 } else { 1.0 };
-        let rises = |&triangle: &[u32; 3]| {
-            let [i, j, k] = triangle;
-            let normal = (at(j) - at(i)).cross(at(k) - at(i)).normalize_or_zero() * self.orientation;
-            [[i, j], [j, k], [k, i]].iter().any(|&[from, to]| {
-                beyond.get(&[to, from]).is_none_or(|&third| normal.dot(at(third) - at(i)) > FLATNESS)
-            })
-        };
-        // A closed surface of one part that is a sphere and nowhere rises is convex. Euler's formula tells the sphere.
-        let mut corners: Vec<u32> = triangles.iter().flat_map(welded).collect();
-        corners.sort_unstable();
-        corners.dedup();
-        let sphere = corners.len() + triangles.len() == beyond.len() / 2 + 2;
-        let parts = super::parts::parts(
-            vertices.len(),
-            triangles.iter().map(|triangle| triangle.as_slice()),
-            &(0u32..).zip(&self.welded).map(|(i, &j)| [i, j]).collect::<Vec<_>>(),
-        );
-        if sphere && parts.len() == 1 && !triangles.iter().map(welded).any(|t| rises(&t)) {
-            let hull = Hulled::new(corners.iter().map(|&i| vertices[i as usize]).collect());
-            self.convex = hull.map(|hull| (Arc::new(hull), corners));
-        }
+        third.filter(|_| along == 1 && against == 1)
     }
 }

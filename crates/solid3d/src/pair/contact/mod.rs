@@ -188,7 +188,7 @@ pub(crate) fn contacts(
 fn part<'a>(placed: Placed<'a>) -> Part<'a> {
     match placed.shape.class() {
         Class::Convex(support) => Part::Body(placed.shape.body().expect("a convex shape is a body"), support),
-        Class::Complex(complex) => match complex.topology().convex() {
+        Class::Complex(complex) => match &complex.topology().enclosed().convex {
             Some((hull, vertices)) => {
                 let body = Body::Hull { hull: Cow::Borrowed(hull), names: Some(vertices) };
                 Part::Body(body, hull.polytope())

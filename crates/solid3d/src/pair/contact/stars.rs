@@ -45,7 +45,8 @@ pub(super) struct Shortest {
 impl<'a> Stars<'a> {
     pub fn new(complex: &'a Complex, map: &'a Map) -> Stars<'a> {
         let turned = map.linear().determinant().signum();
-        let orientation = if complex.is_solid() { complex.topology().orientation() * turned } else { 0.0 };
+        let orientation =
+            if complex.is_solid() { complex.topology().enclosed().orientation * turned } else { 0.0 };
         let (shortest, last) = (RefCell::default(), Cell::new(None));
         Stars { complex, map, orientation, hub_min: HUB_MIN, shortest, last }
     }
@@ -98,7 +99,7 @@ impl<'a> Stars<'a> {
 
     /// Whether the surface is flat all around a triangle.
     pub fn is_flat(&self, triangle: u32) -> bool {
-        self.complex.topology().is_flat(self.complex.primitive(triangle))
+        self.complex.is_flat(triangle)
     }
 
     /// Whether so many primitives are around a vertex that what was found there is kept.

@@ -1,0 +1,141 @@
+//! What a closed mesh bounds.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use solid_convex::unit_scale;
+
+use super::hulled::Hulled;
+use super::parts::parts;
+use super::topology::{Positioned, Topology};
+use crate::bounds::Aabb;
+
+/// How far a neighbour may rise above the plane of a triangle in a surface that is convex, relative to its extent.
+const FLATNESS: f64 = 1e-9;
+
+/// What was found out about a mesh of which each edge has one triangle on either side.
+#[derive(Debug, Default)]
+pub(crate) struct Enclosed {
+    /// Of a solid, and of what is convex: 1 when the triangles run around counter-clockwise seen from outside, -1 when clockwise. Else 0.
+    pub orientation: f64,
+    /// The body that a convex mesh bounds, and which vertices its points are.
+    pub convex: Option<(Arc<Hulled>, Vec<u32>)>,
+}
+
+impl Enclosed {
+    /// The memory that it owns, in bytes.
+    pub fn bytes(&self) -> usize {
+        let of_convex = |(hull, names): &(Arc<Hulled>, Vec<u32>)| {
+            size_of::<Hulled>() + hull.bytes() + names.capacity() * size_of::<u32>()
+        };
+        self.convex.as_ref().map_or(0, of_convex)
+    }
+
+    /// `None` of a mesh that is not closed, and of one that is neither solid nor convex. That it is not convex is mostly seen at the first few triangles.
+    pub fn of(topology: &Topology, mesh: Positioned, bounds: &Aabb, is_solid: bool) -> Option<Enclosed> {
+        let Positioned { vertices, triangles } = mesh;
+        let welded = || triangles.iter().map(|triangle| triangle.map(|i| topology.welded(i)));
+        let (center, scale) = (bounds.center(), unit_scale(bounds.half_extents().max_element()));
+        let at = |i: u32| (vertices[i as usize] - center) * scale;
+        // Whether some neighbour is above the plane of a triangle, and some below, on the side from which its corners run clockwise.
+        let [mut above, mut below] = [false; 2];
+        for [i, j, k] in welded() {
+            if i == j || j == k || k == i {
+                return None;
+            }
+            let normal = (at(j) - at(i)).cross(at(k) - at(i)).normalize_or_zero();
+            for edge in [[i, j], [j, k], [k, i]] {
+                let third = topology.beyond(triangles, edge)?;
+                let height = normal.dot(at(third) - at(i));
+                above |= height > FLATNESS;
+                below |= height < -FLATNESS;
+            }
+            if above && below && !is_solid {
+                return None;
+            }
+        }
+        let volume: f64 = triangles.iter().map(|&[i, j, k]| at(i).dot(at(j).cross(at(k)))).sum();
+        let orientation = if volume < 0.0 { -1.0 } else { 1.0 };
+        let rises = if orientation > 0.0 { above } else { below };
+        let convex = if rises { None } else { convex(topology, mesh) };
+        Some(Enclosed { orientation, convex })
+    }
+}
+
+/// The body that a closed surface which nowhere rises bounds, if it is of one part that is a sphere. Euler's formula tells the sphere.
+fn convex(
+    topology: &Topology,
+    Positioned { vertices, triangles }: Positioned,
+) -> Option<(Arc<Hulled>, Vec<u32>)> {
+    let mut corners: Vec<u32> = triangles.as_flattened().iter().map(|&i| topology.welded(i)).collect();
+    corners.sort_unstable();
+    corners.dedup();
+    let edges = 3 * triangles.len() / 2;
+    let twins: Vec<_> = (0..vertices.len() as u32).map(|i| [i, topology.welded(i)]).collect();
+    let is_one = || parts(vertices.len(), triangles.iter().map(|t| t.as_slice()), &twins).len() == 1;
+    if corners.len() + triangles.len() != edges + 2 || !is_one() {
+        return None;
+    }
+    let points: Vec<DVec3> = corners.iter().map(|&i| vertices[i as usize]).collect();
+    Hulled::new(points).map(|hull| (Arc::new(hull), corners))
+}
+
+#[cfg(test)]
+mod tests {
+    use solid_oracle::generate::{in_cube, seeded};
+
+    use super::*;
+    use crate::hull::Hull;
+    use crate::shape::Complex;
+
+    /// Law: a hull is convex, whichever way around, and whether triangles share vertices or positions; what is open, bent inward, of two parts, or has an
+    /// edge that all its triangles run through alike is not. A solid has an orientation, convex or not.
+    #[test]
+    fn what_is_convex_is_known() {
+        let mut rng = seeded(241);
+        for case in 0..200 {
+            let points: Vec<DVec3> = (0..5 + case % 20).map(|_| in_cube(&mut rng)).collect();
+            let triangles = Hull::of(&points).unwrap().triangles().to_vec();
+            let turned: Vec<_> = triangles.iter().map(|&[i, j, k]| [i, k, j]).collect();
+            let apart = |triangles: &[[u32; 3]]| -> (Vec<DVec3>, Vec<[u32; 3]>) {
+                let corners = triangles.as_flattened().iter().map(|&i| points[i as usize]).collect();
+                (corners, (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+            };
+            let found = |vertices: &[DVec3], triangles: &[[u32; 3]], solid: bool| {
+                let mut mesh = Complex::mesh(vertices.to_vec(), triangles.to_vec()).unwrap();
+                if solid {
+                    mesh.solidify().unwrap();
+                }
+                let Enclosed { orientation, convex } = mesh.topology().enclosed();
+                (*orientation, convex.is_some())
+            };
+            let (split, of_split) = apart(&triangles);
+            assert_eq!(found(&points, &triangles, false), (1.0, true), "case {case}");
+            assert_eq!(found(&points, &turned, case % 2 == 0), (-1.0, true), "case {case}");
+            assert_eq!(found(&split, &of_split, case % 2 == 0), (1.0, true), "case {case}");
+
+            assert_eq!(found(&points, &triangles[1..], false), (0.0, false), "open, case {case}");
+            let one_turned: Vec<_> = turned[..1].iter().chain(&triangles[1..]).copied().collect();
+            assert_eq!(found(&points, &one_turned, false), (0.0, false), "one turned, case {case}");
+            let twice: Vec<DVec3> = split.iter().copied().chain(split.iter().map(|p| *p + 3.0)).collect();
+            let count = split.len() as u32;
+            let of_twice: Vec<_> = of_split.iter().flat_map(|t| [*t, t.map(|i| i + count)]).collect();
+            assert!(!found(&twice, &of_twice, false).1, "two parts, case {case}");
+            // A corner is pulled in, through the middle of the others.
+            let mut bent = points.clone();
+            let corner = triangles[0][0] as usize;
+            let rest: Vec<DVec3> = triangles
+                .as_flattened()
+                .iter()
+                .map(|&i| points[i as usize])
+                .filter(|p| *p != points[corner])
+                .collect();
+            bent[corner] = rest.iter().sum::<DVec3>() / rest.len() as f64;
+            let is_bent = triangles.len() > 4;
+            if is_bent {
+                assert!(!found(&bent, &triangles, false).1, "bent, case {case}");
+                assert!(found(&bent, &triangles, true).0 != 0.0, "bent solid, case {case}");
+            }
+        }
+    }
+}
