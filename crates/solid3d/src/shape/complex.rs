@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec3;
 use solid_convex::{IndexedPoints, Support};
 
+use super::hulled::Hulled;
 use super::parts::parts;
 use super::solid::Solid;
 use super::soup_hull::SoupHull;
@@ -30,6 +31,8 @@ pub(crate) struct Complex {
     topology: OnceLock<Arc<Topology>>,
     /// The mean of all corners, at these positions, found when first asked for.
     center: OnceLock<DVec3>,
+    /// The hulls of primitives of more than three vertices, at these positions, each made when first asked for.
+    hulls: OnceLock<Arc<PrimitiveHulls>>,
     /// How flat it is, at these positions, found when first asked for.
     slabs: OnceLock<Arc<Slabs>>,
     /// Images of the triangles of a mesh, found when first asked for.
@@ -40,6 +43,9 @@ pub(crate) struct Complex {
     /// What a refit reads, of this tree at any positions, found at the first deformation.
     leaf_points: OnceLock<Arc<LeafPoints>>,
 }
+
+/// By primitive.
+type PrimitiveHulls = Vec<OnceLock<Box<Hulled>>>;
 
 /// Which vertices make up each primitive: its hull is the primitive. Invariant: there is at least one, each names at
 /// least one vertex, and every index is in range.
@@ -130,6 +136,7 @@ impl Complex {
             parts: Arc::default(),
             topology: OnceLock::new(),
             center: OnceLock::new(),
+            hulls: OnceLock::new(),
             slabs: OnceLock::new(),
             images: OnceLock::new(),
             is_deformed: false,
@@ -261,6 +268,14 @@ impl Complex {
             .expect("a primitive has a vertex, and its indices were checked")
     }
 
+    /// The hull of a primitive, with its faces. Cost: O(n log n) at the first call since the last deformation.
+    pub fn hull_of(&self, primitive: u32) -> &Hulled {
+        let none = || Arc::new(vec![OnceLock::new(); self.primitives.len()]);
+        self.hulls.get_or_init(none)[primitive as usize].get_or_init(|| {
+            Box::new(Hulled::new(self.points_of(primitive).collect()).expect("a primitive has a vertex"))
+        })
+    }
+
     /// The box around a primitive.
     pub fn primitive_bounds(&self, primitive: u32) -> Aabb {
         self.primitives.bounds(primitive, &self.vertices)
@@ -288,10 +303,11 @@ impl Complex {
             |parts: &OnceLock<Vec<u32>>| parts.get().map_or(0, |parts| parts.capacity() * size_of::<u32>());
         let solid = self.solid.as_ref().map_or(0, |solid| solid.memory());
         let topology = self.topology.get().map_or(0, |it| shared(it, Topology::bytes));
+        let hulls = self.hulls.get().map_or(0, |it| shared(it, bytes_of));
         let slabs = self.slabs.get().map_or(0, |it| shared(it, Slabs::bytes));
         let images = self.images.get().and_then(Option::as_ref).map_or(0, |it| shared(it, LeafImages::bytes));
         let leaf_points = self.leaf_points.get().map_or(0, |it| shared(it, LeafPoints::bytes));
-        let found = shared(&self.parts, parts) + topology + slabs + images + leaf_points;
+        let found = shared(&self.parts, parts) + topology + hulls + slabs + images + leaf_points;
         let vertices = self.vertices.capacity() * size_of::<DVec3>();
         size_of::<Complex>() + primitives + vertices + self.tree.bytes() + solid + found
     }
@@ -336,6 +352,7 @@ impl Complex {
         both(positions.len() >= validate::VERTICES_MANY, refit, copy);
         self.topology = OnceLock::new();
         self.center = OnceLock::new();
+        self.hulls = OnceLock::new();
         self.slabs = OnceLock::new();
         self.images = OnceLock::new();
         self.is_deformed = !self.tree.degraded();
@@ -344,6 +361,13 @@ impl Complex {
             self.leaf_points = OnceLock::new();
         }
     }
+}
+
+/// The memory that hulls own, in bytes.
+fn bytes_of(hulls: &PrimitiveHulls) -> usize {
+    let of_made: usize =
+        hulls.iter().filter_map(OnceLock::get).map(|hull| size_of::<Hulled>() + hull.bytes()).sum();
+    hulls.capacity() * size_of::<OnceLock<Box<Hulled>>>() + of_made
 }
 
 fn build(primitives: &Primitives, vertices: &[DVec3]) -> Tree {

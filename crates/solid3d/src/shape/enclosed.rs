@@ -1,7 +1,5 @@
 //! What a closed mesh bounds.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 use solid_convex::unit_scale;
 
@@ -19,15 +17,14 @@ pub(crate) struct Enclosed {
     /// Of a solid, and of what is convex: 1 when the triangles run around counter-clockwise seen from outside, -1 when clockwise. Else 0.
     pub orientation: f64,
     /// The body that a convex mesh bounds, and which vertices its points are.
-    pub convex: Option<(Arc<Hulled>, Vec<u32>)>,
+    pub convex: Option<(Hulled, Vec<u32>)>,
 }
 
 impl Enclosed {
     /// The memory that it owns, in bytes.
     pub fn bytes(&self) -> usize {
-        let of_convex = |(hull, names): &(Arc<Hulled>, Vec<u32>)| {
-            size_of::<Hulled>() + hull.bytes() + names.capacity() * size_of::<u32>()
-        };
+        let of_convex =
+            |(hull, names): &(Hulled, Vec<u32>)| hull.bytes() + names.capacity() * size_of::<u32>();
         self.convex.as_ref().map_or(0, of_convex)
     }
 
@@ -63,10 +60,7 @@ impl Enclosed {
 }
 
 /// The body that a closed surface which nowhere rises bounds, if it is of one part that is a sphere. Euler's formula tells the sphere.
-fn convex(
-    topology: &Topology,
-    Positioned { vertices, triangles }: Positioned,
-) -> Option<(Arc<Hulled>, Vec<u32>)> {
+fn convex(topology: &Topology, Positioned { vertices, triangles }: Positioned) -> Option<(Hulled, Vec<u32>)> {
     let mut corners: Vec<u32> = triangles.as_flattened().iter().map(|&i| topology.welded(i)).collect();
     corners.sort_unstable();
     corners.dedup();
@@ -77,7 +71,7 @@ fn convex(
         return None;
     }
     let points: Vec<DVec3> = corners.iter().map(|&i| vertices[i as usize]).collect();
-    Hulled::new(points).map(|hull| (Arc::new(hull), corners))
+    Hulled::new(points).map(|hull| (hull, corners))
 }
 
 #[cfg(test)]

@@ -16,7 +16,6 @@ mod surface;
 mod topology;
 mod validate;
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -83,7 +82,7 @@ pub(crate) enum Body<'a> {
     Capsule(&'a Capsule),
     /// A convex hull.
     Hull {
-        hull: Cow<'a, Arc<Hulled>>,
+        hull: &'a Hulled,
         /// What its points are called, when not by their places.
         names: Option<&'a [u32]>,
     },
@@ -95,15 +94,13 @@ pub(crate) enum Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// A primitive of a complex shape. Cost: O(n log n) for one of more than three vertices.
+    /// A primitive of a complex shape. Cost: O(n log n) at the first call for one of more than three vertices.
     pub fn of_primitive(complex: &'a Complex, primitive: u32) -> Body<'a> {
-        let (vertices, indices) = (complex.vertices(), complex.primitive(primitive));
+        let indices = complex.primitive(primitive);
         if indices.len() <= 3 {
-            return Body::Simplex { vertices, indices };
+            return Body::Simplex { vertices: complex.vertices(), indices };
         }
-        let points: Vec<DVec3> = indices.iter().map(|&i| vertices[i as usize]).collect();
-        let hull = Hulled::new(points).expect("a primitive has a vertex");
-        Body::Hull { hull: Cow::Owned(Arc::new(hull)), names: Some(indices) }
+        Body::Hull { hull: complex.hull_of(primitive), names: Some(indices) }
     }
 }
 
@@ -348,7 +345,7 @@ impl Shape {
             Geometry::Cone(shape) => Some(Body::Cone(shape)),
             Geometry::Cylinder(shape) => Some(Body::Cylinder(shape)),
             Geometry::Capsule(shape) => Some(Body::Capsule(shape)),
-            Geometry::Polytope(shape) => Some(Body::Hull { hull: Cow::Borrowed(shape), names: None }),
+            Geometry::Polytope(shape) => Some(Body::Hull { hull: shape, names: None }),
             Geometry::Complex(_) => None,
         }
     }

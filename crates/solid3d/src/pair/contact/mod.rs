@@ -20,8 +20,6 @@ mod side;
 mod soup;
 mod stars;
 
-use std::borrow::Cow;
-
 use glam::{DVec2, DVec3};
 use smallvec::{SmallVec, smallvec};
 use solid_convex::{Penetration, Support, epa, gjk};
@@ -189,10 +187,7 @@ fn part<'a>(placed: Placed<'a>) -> Part<'a> {
     match placed.shape.class() {
         Class::Convex(support) => Part::Body(placed.shape.body().expect("a convex shape is a body"), support),
         Class::Complex(complex) => match &complex.topology().enclosed().convex {
-            Some((hull, vertices)) => {
-                let body = Body::Hull { hull: Cow::Borrowed(hull), names: Some(vertices) };
-                Part::Body(body, hull.polytope())
-            }
+            Some((hull, vertices)) => Part::Body(Body::Hull { hull, names: Some(vertices) }, hull.polytope()),
             None => Part::Soup(complex),
         },
     }
