@@ -55,14 +55,14 @@ pub(super) fn of_hull(points: Vec<DVec3>) -> Complex {
 
 /// The facets of a primitive, as indices into the vertices: its own triangle, or the surface of its hull. Segments and points
 /// are degenerate triangles.
-pub(crate) fn boundary(vertices: &[DVec3], primitive: &[u32]) -> Vec<[u32; 3]> {
-    match *primitive {
+pub(crate) fn boundary(complex: &Complex, primitive: u32) -> Vec<[u32; 3]> {
+    match *complex.primitive(primitive) {
         [i, j, k] => vec![[i, j, k]],
         [i, j] => vec![[i, j, j]],
-        _ => {
-            let points: Vec<DVec3> = primitive.iter().map(|&i| vertices[i as usize]).collect();
-            let named = |facet: [u32; 3]| facet.map(|i| primitive[i as usize]);
-            hull_facets(&points).into_iter().map(named).collect()
+        [i] => vec![[i; 3]],
+        ref corners => {
+            let facets = complex.hull_of(primitive).surface().triangles().unwrap_or_default();
+            facets.iter().map(|facet| facet.map(|i| corners[i as usize])).collect()
         }
     }
 }

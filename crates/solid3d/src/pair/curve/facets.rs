@@ -72,8 +72,7 @@ impl Corners {
         let (mut starts, mut triangles) = (vec![0], Vec::new());
         for &primitive in &primitives {
             let placed = |vertex: u32| map.transform_point3(complex.vertices()[vertex as usize]);
-            let facets = boundary(complex.vertices(), complex.primitive(primitive));
-            triangles.extend(facets.into_iter().map(|facet| facet.map(placed)));
+            triangles.extend(boundary(complex, primitive).into_iter().map(|facet| facet.map(placed)));
             starts.push(triangles.len());
         }
         Corners { primitives, starts, triangles }
