@@ -134,6 +134,9 @@ fn corners(part: &Part, primitive: u32) -> Vec<u32> {
             let mut corners: Vec<u32> = complex.welded(primitive).collect();
             corners.sort_unstable();
             corners.dedup();
+            // One that no other primitive has connects it with itself alone: of these the first of its corners will do.
+            let first = corners[0];
+            corners.retain(|&corner| corner == first || complex.topology().around(corner).len() > 1);
             corners
         }
     }
