@@ -112,8 +112,7 @@ impl Hull {
 
     /// The surface, as triangles of indices into the input, counter-clockwise seen from outside.
     ///
-    /// Of a flat facet every second corner is cut off, again and again: few of its triangles lie side by side, whatever line is drawn
-    /// across them. A polygon (dimension 2) has both its sides; points and segments have
+    /// Flat facets are cut into triangles by taking off every second corner, again and again, so that a line meets few of them. A polygon (dimension 2) has both its sides; points and segments have
     /// no triangles.
     ///
     /// ```

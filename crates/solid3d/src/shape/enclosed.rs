@@ -28,7 +28,8 @@ impl Enclosed {
         self.convex.as_ref().map_or(0, of_convex)
     }
 
-    /// `None` of a mesh that is not closed, and of one that is neither solid nor convex. That it is not convex is mostly seen at the first few triangles.
+    /// `None` of a mesh that is not closed, and of one that is neither solid nor convex, which is mostly seen at the first few triangles. Cost: O(n), and
+    /// O(n log n) of what is convex.
     pub fn of(topology: &Topology, mesh: Positioned, bounds: &Aabb, is_solid: bool) -> Option<Enclosed> {
         let Positioned { vertices, triangles } = mesh;
         let welded = || triangles.iter().map(|triangle| triangle.map(|i| topology.welded(i)));
@@ -125,8 +126,7 @@ mod tests {
                 .filter(|p| *p != points[corner])
                 .collect();
             bent[corner] = rest.iter().sum::<DVec3>() / rest.len() as f64;
-            let is_bent = triangles.len() > 4;
-            if is_bent {
+            if triangles.len() > 4 {
                 assert!(!found(&bent, &triangles, false).1, "bent, case {case}");
                 assert!(found(&bent, &triangles, true).0 != 0.0, "bent solid, case {case}");
             }
