@@ -155,8 +155,7 @@ impl Hull {
         for corners in polygons.iter() {
             polygon.clear();
             polygon.extend(corners.iter().map(|&site| sites.input(site)));
-            let smallest = (0..polygon.len()).min_by_key(|&i| polygon[i]).unwrap_or(0);
-            polygon.rotate_left(smallest);
+            begin_with_smallest(&mut polygon);
             vertices.extend_from_slice(&polygon);
             let next = polygon.iter().cycle().skip(1);
             edges.extend(polygon.iter().copied().zip(next.copied()).filter(|(a, b)| a != b));
@@ -190,17 +189,20 @@ impl Hull {
 fn triangulate(polygon: &mut Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
     while let [first, _, _, ..] = polygon[..] {
         let ears = polygon.chunks_exact(2).zip(polygon.iter().skip(2).step_by(2).chain([&first]));
-        triangles.extend(ears.map(|(ear, &next)| smallest_first([ear[0], ear[1], next])));
+        triangles.extend(ears.map(|(ear, &next)| {
+            let mut triangle = [ear[0], ear[1], next];
+            begin_with_smallest(&mut triangle);
+            triangle
+        }));
         let mut is_kept = [true, false].into_iter().cycle();
         polygon.retain(|_| is_kept.next() == Some(true));
     }
 }
 
-/// The same triangle, from its smallest corner on.
-fn smallest_first(mut triangle: [u32; 3]) -> [u32; 3] {
-    let smallest = (0..3).min_by_key(|&i| triangle[i]).unwrap_or(0);
-    triangle.rotate_left(smallest);
-    triangle
+/// Turns a polygon, so that its smallest corner comes first.
+fn begin_with_smallest(polygon: &mut [u32]) {
+    let smallest = (0..polygon.len()).min_by_key(|&i| polygon[i]).unwrap_or(0);
+    polygon.rotate_left(smallest);
 }
 
 /// The facets of the hull, whatever its dimension: of a polygon, which has two, the one side; a segment counts as one facet of two corners, a

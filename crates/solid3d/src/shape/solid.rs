@@ -75,7 +75,7 @@ impl Solid {
 }
 
 /// The position as a key; 0 and -0 are the same.
-fn bits(position: DVec3) -> [u64; 3] {
+pub(super) fn bits(position: DVec3) -> [u64; 3] {
     (position + DVec3::ZERO).to_array().map(f64::to_bits)
 }
 

@@ -61,7 +61,7 @@ pub(crate) fn boundary(complex: &Complex, primitive: u32) -> Vec<[u32; 3]> {
         [i, j] => vec![[i, j, j]],
         [i] => vec![[i; 3]],
         ref corners => {
-            let facets = complex.hull_of(primitive).surface().triangles().unwrap_or_default();
+            let facets = complex.hull_of(primitive).surface().triangles().expect("a surface is a mesh");
             facets.iter().map(|facet| facet.map(|i| corners[i as usize])).collect()
         }
     }

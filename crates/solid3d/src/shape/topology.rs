@@ -8,6 +8,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use super::enclosed::Enclosed;
+use super::solid::bits;
 use crate::bounds::Aabb;
 
 /// How far a neighbour may rise above the plane of a triangle in a surface that is flat, relative to the way to it.
@@ -48,10 +49,8 @@ impl Topology {
     /// Cost: O(n).
     pub fn of<'a>(vertices: &[DVec3], primitives: impl Iterator<Item = &'a [u32]> + Clone) -> Topology {
         let mut first_at = HashMap::with_capacity_and_hasher(vertices.len(), RandomState::default());
-        // 0 and -0 are the same.
-        let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
         let welded: Vec<u32> =
-            (0u32..).zip(vertices).map(|(i, &p)| *first_at.entry(key(p)).or_insert(i)).collect();
+            (0u32..).zip(vertices).map(|(i, &p)| *first_at.entry(bits(p)).or_insert(i)).collect();
         let corners =
             primitives.clone().map(|primitive| primitive.iter().map(|&i| welded[i as usize] as usize));
         let mut starts = vec![0u32; vertices.len() + 1];

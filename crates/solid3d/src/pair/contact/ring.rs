@@ -34,9 +34,7 @@ impl On {
 /// The subject cut by each edge of a polygon of area. Cost: linear in the corners of both.
 pub(super) fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
     let area = area(by);
-    let turn = area.signum();
-    let extent_squared = by.iter().map(|p| p.distance_squared(by[0])).fold(0.0, f64::max);
-    let slack = (ON_EDGE * area.abs() / extent_squared).clamp(ON_EDGE_MIN, ON_EDGE);
+    let (turn, slack) = (area.signum(), slack(by, area));
     let mut left = Ring::new(subject);
     for j in 0..by.len() {
         let (from, to) = (by[j], by[(j + 1) % by.len()]);
@@ -44,6 +42,12 @@ pub(super) fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
         left.cut(by, j, slack, |p| turn * along.perp_dot(p - from));
     }
     left.corners()
+}
+
+/// How far outside an edge of a polygon, which has this area, a point is on it.
+fn slack(by: &[DVec2], area: f64) -> f64 {
+    let extent_squared = by.iter().map(|p| p.distance_squared(by[0])).fold(0.0, f64::max);
+    (ON_EDGE * area.abs() / extent_squared).clamp(ON_EDGE_MIN, ON_EDGE)
 }
 
 /// A corner of the working polygon, and the edge from it to the next.
@@ -174,8 +178,7 @@ mod tests {
     /// The slow twin of [`against`]: each edge looks at each corner.
     fn against_all(subject: &[DVec2], by: &[DVec2]) -> Vec<Clipped> {
         let area = area(by);
-        let extent_squared = by.iter().map(|p| p.distance_squared(by[0])).fold(0.0, f64::max);
-        let slack = (ON_EDGE * area.abs() / extent_squared).clamp(ON_EDGE_MIN, ON_EDGE);
+        let slack = slack(by, area);
         let corner = |(i, &at)| (Clipped { at, origin: Origin::OfA(i) }, On::Subject(i));
         let mut left: Vec<_> = subject.iter().enumerate().map(corner).collect();
         for j in 0..by.len() {
