@@ -5,13 +5,14 @@
 //! the surfaces overlap there along the normal. The deepest point is always among them.
 //!
 //! Of meshes and complex shapes: the contacts of all pairs of primitives, each with a normal that the surface around the
-//! primitive has ([`side`]), put together where the surface is connected and the normal the same ([`region`]).
+//! primitive has ([`side`]), put together where the surface is connected and the normal the same ([`joining`], [`region`]).
 //!
 //! Everything is computed in a common frame around the pair: lengths near 1, so that tolerances are relative to the shapes.
 
 mod ball;
 mod clip;
 mod face;
+mod joining;
 mod map;
 mod other;
 mod region;

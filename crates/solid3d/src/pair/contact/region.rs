@@ -4,11 +4,9 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 
+use super::joining::Joining;
 use super::{Part, Patch, Touch};
 use crate::hull::outline;
-
-/// Normals that differ by less than this angle, in radians, are one.
-const SAME_NORMAL: f64 = 1e-3;
 
 /// Points nearer to each other than this are one, in the unit of the pair.
 const SAME_POINT: f64 = 1e-8;
@@ -44,102 +42,6 @@ pub(super) fn regions(a: &Part, b: &Part, patches: Vec<Patch>) -> Vec<Region> {
         Region { normal, points: thinned(touches.collect(), normal, members.len() > 1) }
     };
     joined.into_iter().map(region).collect()
-}
-
-/// Patches, and by which vertices they are connected.
-struct Joining<'p> {
-    patches: &'p [Patch],
-    is_taken: Vec<bool>,
-    /// Patches by the vertices that connect them, a vertex of each surface: those of patch `i` are in the groups
-    /// `groups_of[starts[i]..starts[i + 1]]`.
-    groups: Vec<Neighbours>,
-    groups_of: Vec<usize>,
-    starts: Vec<usize>,
-}
-
-/// Patches that have a vertex of either surface in common.
-#[derive(Default)]
-struct Neighbours {
-    /// Those of no region yet, and perhaps some that are of one.
-    patches: Vec<usize>,
-    /// The seed of the region that looked at them last.
-    seen_by: Option<usize>,
-}
-
-impl<'p> Joining<'p> {
-    fn new(a: &Part, b: &Part, patches: &'p [Patch]) -> Self {
-        let (mut vertices, mut starts) = (Vec::new(), vec![0]);
-        for patch in patches {
-            vertices.extend(connections(a, b, patch));
-            starts.push(vertices.len());
-        }
-        let mut order: Vec<usize> = (0..vertices.len()).collect();
-        order.sort_unstable_by_key(|&place| (vertices[place], place));
-        let mut groups_of = vec![0; vertices.len()];
-        let mut groups: Vec<Neighbours> = Vec::new();
-        for same in order.chunk_by(|&x, &y| vertices[x] == vertices[y]) {
-            same.iter().for_each(|&place| groups_of[place] = groups.len());
-            let patch = |&place: &usize| starts.partition_point(|&start| start <= place) - 1;
-            groups.push(Neighbours { patches: same.iter().map(patch).collect(), seen_by: None });
-        }
-        Joining { patches, is_taken: vec![false; patches.len()], groups, groups_of, starts }
-    }
-
-    /// Takes a patch, and all of its normal that are connected with it; `None` when it is taken already. In ascending order.
-    fn grow(&mut self, seed: usize) -> Option<Vec<usize>> {
-        let Joining { patches, is_taken, groups, groups_of, starts } = self;
-        if std::mem::replace(&mut is_taken[seed], true) {
-            return None;
-        }
-        let mut members = vec![seed];
-        let mut next = 0;
-        while let Some(&member) = members.get(next) {
-            next += 1;
-            for &group in &groups_of[starts[member]..starts[member + 1]] {
-                let neighbours = &mut groups[group];
-                if neighbours.seen_by.replace(seed) == Some(seed) {
-                    continue;
-                }
-                neighbours.patches.retain(|&i| {
-                    if !is_taken[i] && is_same(patches[i].normal, patches[seed].normal) {
-                        is_taken[i] = true;
-                        members.push(i);
-                    }
-                    !is_taken[i]
-                });
-            }
-        }
-        members.sort_unstable();
-        Some(members)
-    }
-}
-
-/// Whether two unit normals are one.
-fn is_same(normal: DVec3, other: DVec3) -> bool {
-    normal.dot(other) > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL
-}
-
-/// By which a patch is connected to others: a vertex of each surface.
-fn connections(a: &Part, b: &Part, patch: &Patch) -> Vec<[u32; 2]> {
-    let [i, j] = patch.touches[0].primitives;
-    let (of_a, of_b) = (corners(a, i), corners(b, j));
-    of_a.iter().flat_map(|&x| of_b.iter().map(move |&y| [x, y])).collect()
-}
-
-/// The vertices of a primitive by which it is connected to others; a body is connected to itself.
-fn corners(part: &Part, primitive: u32) -> Vec<u32> {
-    match part {
-        Part::Body(..) => vec![0],
-        Part::Soup(complex) => {
-            let mut corners: Vec<u32> = complex.welded(primitive).collect();
-            corners.sort_unstable();
-            corners.dedup();
-            // One that no other primitive has connects it with itself alone: of these the first of its corners will do.
-            let first = corners[0];
-            corners.retain(|&corner| corner == first || complex.topology().around(corner).len() > 1);
-            corners
-        }
-    }
 }
 
 /// Points without duplicates; of flat surfaces of several primitives, those at the outline, which say all of the others.
