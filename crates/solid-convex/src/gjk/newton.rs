@@ -274,7 +274,7 @@ mod tests {
             let difference = Difference::new(&a, &at_a, &b, &at_b);
             let goal = Goal::DistanceWithin { tolerance: DISTANCE_TOLERANCE, bound: f64::INFINITY };
             let expected = descend_robustly(&difference, goal).v.length() / difference.scale();
-            let error = 2.0 * DISTANCE_TOLERANCE * expected + 1e-14;
+            let error = 2.0 * DISTANCE_TOLERANCE * expected + 1e-13; // what touches, of objects as large as 4, is so within rounding
             assert!((found.distance - expected).abs() <= error, "case {case}: {found:?}, {expected}");
             let way = difference.point(found.points.on_a, found.points.on_b).w.length() / difference.scale();
             assert!((way - found.distance).abs() <= error, "case {case}: {found:?}, {way}");

@@ -30,13 +30,15 @@ type Block<T> = Vec<(PairKey, T)>;
 
 #[derive(Debug)]
 struct Spare<T> {
+    /// With room for all that were made, so that what becomes empty allocates nothing.
     blocks: Vec<Block<T>>,
+    blocks_made: usize,
     shelves: Vec<Shelf<T>>,
 }
 
 impl<T> Default for Ordered<T> {
     fn default() -> Self {
-        let spare = Spare { blocks: Vec::new(), shelves: Vec::new() };
+        let spare = Spare { blocks: Vec::new(), blocks_made: 0, shelves: Vec::new() };
         Ordered { shelves: Vec::new(), spare, len: 0 }
     }
 }
@@ -196,7 +198,11 @@ impl<T: Copy> Shelf<T> {
 impl<T> Spare<T> {
     /// A block that is empty.
     fn block(&mut self) -> Block<T> {
-        self.blocks.pop().unwrap_or_else(|| Vec::with_capacity(BLOCK_MAX))
+        self.blocks.pop().unwrap_or_else(|| {
+            self.blocks_made += 1;
+            self.blocks.reserve(self.blocks_made);
+            Vec::with_capacity(BLOCK_MAX)
+        })
     }
 
     /// Keeps the memory of a block.
