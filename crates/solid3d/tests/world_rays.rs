@@ -88,6 +88,35 @@ fn a_world_sees_what_its_objects_show() {
     }
 }
 
+/// Of a ray without an end, too, only the objects are asked whose boxes it meets; in either broad phase, whether they were tested or not.
+#[test]
+fn objects_beside_a_ray_are_not_asked() {
+    let ball = solid3d::Shape::sphere(0.3).unwrap();
+    for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+        let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
+        for i in 0..1000 {
+            let at = glam::DVec3::new(f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i / 100));
+            world.add(&ball, DAffine3::from_translation(at)).unwrap();
+        }
+        for tested in [false, true] {
+            let ray = Ray::new(glam::DVec3::new(-2.0, 5.0, 5.0), glam::DVec3::X);
+            let mut asked = 0;
+            let mut count = |_| {
+                asked += 1;
+                true
+            };
+            let options = RayOptions::default();
+            assert_eq!(world.cast_ray_all(&ray, &options, &mut count).unwrap().len(), 10);
+            assert!(world.cast_ray(&ray, &options, &mut count).unwrap().is_some());
+            assert!(world.ray_meets(&ray, &options, &mut count).unwrap());
+            let aside = Ray::new(ray.origin + 0.5, ray.direction);
+            assert!(!world.ray_meets(&aside, &options, &mut count).unwrap());
+            assert!(asked <= 30, "{broad_phase:?}, tested: {tested}: {asked} asked");
+            world.test();
+        }
+    }
+}
+
 #[test]
 fn bad_input_is_refused() {
     let world = World::new();

@@ -299,6 +299,12 @@ impl BroadPhaseKind {
     }
 }
 
+/// Whether a box of some bound is visited by [`BroadPhase::for_each_nearest`]; that of infinity never is, not even without end.
+#[inline]
+pub(crate) fn matters(bound: f64, until: f64) -> bool {
+    bound <= until && bound < f64::INFINITY
+}
+
 /// The contract of [`BroadPhase::insert`] and [`BroadPhase::update`].
 #[inline]
 fn assert_valid(proxy: Proxy, bounds: &Aabb) {

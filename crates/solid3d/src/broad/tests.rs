@@ -50,22 +50,25 @@ impl Trial {
             engine.validate();
             assert_eq!(engine.sorted_pairs(), truth, "{kind:?}, {what}");
             for region in all.iter().map(|(_, region)| **region).step_by(1 + all.len() / 4) {
-                let mut found = visited(engine.as_ref(), &region);
-                found.sort_unstable();
-                let there = all.iter().filter(|(_, b)| region.overlaps(b)).map(|(a, _)| **a);
-                assert_eq!(found, there.collect::<Vec<_>>(), "{kind:?}, {what}, in {region:?}");
+                let there: Vec<_> =
+                    all.iter().filter(|(_, b)| region.overlaps(b)).map(|(a, _)| **a).collect();
+                for until in [0.0, f64::INFINITY] {
+                    let mut found = visited(engine.as_ref(), &region, until);
+                    found.sort_unstable();
+                    assert_eq!(found, there, "{kind:?}, {what}, in {region:?}, until {until}");
+                }
             }
         }
     }
 }
 
 /// The boxes that overlap a region, as they are visited by a bound.
-fn visited(engine: &dyn BroadPhase, region: &Aabb) -> Vec<Proxy> {
+fn visited(engine: &dyn BroadPhase, region: &Aabb, until: f64) -> Vec<Proxy> {
     let bound = |b: &Aabb| if b.overlaps(region) { 0.0 } else { f64::INFINITY };
     let mut found = Vec::new();
-    engine.for_each_nearest(&bound, 0.0, &mut |proxy| {
+    engine.for_each_nearest(&bound, until, &mut |proxy| {
         found.push(proxy);
-        0.0
+        until
     });
     found
 }
@@ -258,7 +261,7 @@ fn far_boxes_cost_what_near_ones_cost() {
             broad.validate();
         }
         assert!(broad.sorted_pairs().is_empty());
-        assert_eq!(visited(&broad, &bounds(555, offset)), [555]);
+        assert_eq!(visited(&broad, &bounds(555, offset), 0.0), [555]);
         broad.counters().node_visits
     };
     let near = visits(4.0);

@@ -2,6 +2,7 @@
 
 use super::{ObjectId, World};
 use crate::bounds::Aabb;
+use crate::broad::matters;
 use crate::error::Result;
 use crate::pair::{Hits, Ray, RayHit, RayOptions, Scratch, Wanted, entry, ray_hits, world_bounds};
 
@@ -130,7 +131,7 @@ impl World {
         let mut until = until;
         for &slot in self.stirred.slots().iter().filter(|&&slot| self.stirred.is_elsewhere(slot)) {
             let object = self.objects.at(slot).expect("what is elsewhere is in the world");
-            if bound(&world_bounds(object.placed())) <= until {
+            if matters(bound(&world_bounds(object.placed())), until) {
                 until = visit(self.objects.id_of(slot), until);
             }
         }

@@ -6,7 +6,7 @@ use super::node::Kind;
 use super::status::Status;
 use super::tree::ROOT;
 use crate::bounds::Aabb;
-use crate::broad::Proxy;
+use crate::broad::{Proxy, matters};
 use glam::DVec3;
 
 impl DynamicTree {
@@ -19,7 +19,7 @@ impl DynamicTree {
     ) {
         // What waits for the next flush is not in the tree, or not where it is.
         for &proxy in &self.notes.queue {
-            if self.is_alive(proxy) && bound(&self.tight.get(proxy)) <= until {
+            if self.is_alive(proxy) && matters(bound(&self.tight.get(proxy)), until) {
                 until = visit(proxy);
             }
         }
@@ -31,7 +31,7 @@ impl DynamicTree {
             match kind {
                 Kind::Leaf(proxy) => {
                     let here = self.is_alive(proxy) && !self.status[proxy as usize].is(Status::QUEUED);
-                    if here && bound(&self.tight.get(proxy)) <= until {
+                    if here && matters(bound(&self.tight.get(proxy)), until) {
                         until = visit(proxy);
                     }
                 }
@@ -41,7 +41,7 @@ impl DynamicTree {
                     let lanes = (0..node.count()).map(|lane| {
                         (bound(&self.origin.world(&unclamped(&node.lane_box(lane)))), node.child(lane))
                     });
-                    stack.extend(lanes.filter(|(least, _)| *least <= until));
+                    stack.extend(lanes.filter(|(least, _)| matters(*least, until)));
                     stack[from..].sort_by(|(x, _), (y, _)| y.total_cmp(x));
                 }
             }

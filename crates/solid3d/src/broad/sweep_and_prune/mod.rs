@@ -16,7 +16,7 @@
 mod endpoint;
 mod pair_set;
 
-use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid};
+use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid, matters};
 use crate::bounds::Aabb;
 use endpoint::{Endpoint, Sequence, Side};
 use pair_set::PairSet;
@@ -312,7 +312,7 @@ impl BroadPhase for SweepAndPrune {
         visit: &mut dyn FnMut(Proxy) -> f64,
     ) {
         for (proxy, (bounds, state)) in (0..).zip(self.boxes.iter().zip(&self.states)) {
-            if !matches!(state, State::Absent | State::Gone) && bound(bounds) <= until {
+            if !matches!(state, State::Absent | State::Gone) && matters(bound(bounds), until) {
                 until = visit(proxy);
             }
         }
