@@ -34,6 +34,9 @@ fn a_world_sees_what_its_objects_show() {
             if round % 3 > 0 {
                 world.test();
             }
+            if round % 5 == 2 {
+                world.refresh();
+            }
             for _ in 0..6 {
                 let id = ids[rng.random_range(0..ids.len())];
                 world.set_placement(id, placement(&mut rng, 4.5)).unwrap();
@@ -106,7 +109,7 @@ fn objects_beside_a_ray_are_not_asked() {
                 true
             };
             let options = RayOptions::default();
-            assert_eq!(world.cast_ray_all(&ray, &options, &mut count).unwrap().len(), 10);
+            assert_eq!(world.cast_ray_all(&ray, &options, &mut count).unwrap().len(), 20);
             assert!(world.cast_ray(&ray, &options, &mut count).unwrap().is_some());
             assert!(world.ray_meets(&ray, &options, &mut count).unwrap());
             let aside = Ray::new(ray.origin + 0.5, ray.direction);

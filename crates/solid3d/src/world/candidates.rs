@@ -222,8 +222,24 @@ impl Candidates {
 }
 
 impl World {
-    /// Brings the candidates up to date, and queues those about which something changed.
-    pub(super) fn refresh(&mut self) {
+    /// Places what was added, moved or deformed in the broad phase, as a [`test`](World::test) and a search for what is
+    /// [near](World::near) do first. Until then [rays](World::cast_ray) and [regions](World::objects_in) look at each such object; answers
+    /// are the same before and after. For worlds that are seldom tested, or asked between a motion and the test.
+    ///
+    /// Cost: that of a test of which no pair is examined; nothing when nothing changed.
+    ///
+    /// ```
+    /// use solid3d::{Shape, World, glam::{DAffine3, DVec3}, query::{Ray, RayOptions}};
+    /// let (mut world, ball) = (World::new(), Shape::sphere(0.5)?);
+    /// for i in 0..1000 {
+    ///     world.add(&ball, DAffine3::from_translation(2.0 * DVec3::new(f64::from(i % 100), f64::from(i / 100), 0.0)))?;
+    /// }
+    /// world.refresh();
+    /// let hit = world.cast_ray(&Ray::new(DVec3::X * -2.0, DVec3::X), &RayOptions::default(), |_| true)?;
+    /// assert_eq!(hit.unwrap().hit.t, 1.5);
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
+    pub fn refresh(&mut self) {
         if !std::mem::replace(&mut self.stale, false) {
             return;
         }
@@ -238,13 +254,14 @@ impl World {
                 candidates.end(pair);
             }
         }
-        if MANY * stirred.slots().len() >= objects.len() {
+        let stale = stirred.sorted();
+        if MANY * stale.iter().map(|slots| slots.len()).sum::<usize>() >= objects.len() {
             candidates.enqueue_where(|candidate| {
                 let [a, b] = [candidate.a, candidate.b].map(|id| stirred.of(slot_of(id)));
                 candidate.depends_on(a.max(b), findings)
             });
         } else {
-            for &slot in stirred.slots() {
+            for &slot in stale.into_iter().flatten() {
                 let staleness = stirred.of(slot);
                 broad.for_each_pair_of(slot, &mut |pair, _| {
                     candidates.enqueue_if(pair, |candidate| candidate.depends_on(staleness, findings));
@@ -263,7 +280,7 @@ impl World {
     fn update_broad(&mut self) {
         let Self { broad, objects, stirred, clearances, .. } = self;
         stirred.sort();
-        broad.update_with(stirred.elsewhere(), &|boxes| {
+        broad.update_with(stirred.sorted()[0], &|boxes| {
             dispatch!(simd => for (slot, bounds) in &mut *boxes {
                 let object = objects.at(*slot).expect("what is elsewhere is in the world");
                 object.bounds_into(simd, bounds);

@@ -23,8 +23,8 @@ impl World {
     /// Of objects that are met at the same `t`, the one that comes first in the order of pairs.
     ///
     /// See [`query::cast_ray`](crate::query::cast_ray) for what a hit is. Objects are met where they are now, whatever their
-    /// response. Cost: follows the objects whose boxes the ray meets; those that were moved since the last test are looked at
-    /// one by one.
+    /// response. Cost: follows the objects whose boxes the ray meets; those that were added or moved since the last test or
+    /// [`refresh`](World::refresh) are looked at one by one.
     ///
     /// ```
     /// use solid3d::{Shape, World, glam::{DAffine3, DVec3}, query::{Ray, RayOptions}};
@@ -129,7 +129,7 @@ impl World {
         mut visit: impl FnMut(ObjectId, f64) -> f64,
     ) {
         let mut until = until;
-        for &slot in self.stirred.slots().iter().filter(|&&slot| self.stirred.is_elsewhere(slot)) {
+        for slot in self.stirred.elsewhere() {
             let object = self.objects.at(slot).expect("what is elsewhere is in the world");
             if matters(bound(&world_bounds(object.placed())), until) {
                 until = visit(self.objects.id_of(slot), until);

@@ -14,8 +14,8 @@ impl World {
     /// order of pairs.
     ///
     /// As [`query::intersects`](crate::query::intersects) says for each, where the objects are now, whatever their response. Cost:
-    /// follows the objects whose boxes overlap that of the region; those that were moved since the last test are looked at one by
-    /// one.
+    /// follows the objects whose boxes overlap that of the region; those that were added or moved since the last test or
+    /// [`refresh`](World::refresh) are looked at one by one.
     ///
     /// ```
     /// use solid3d::{Shape, World, glam::{DAffine3, DVec3}};
