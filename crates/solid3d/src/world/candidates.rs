@@ -285,7 +285,7 @@ impl World {
                 let object = objects.at(*slot).expect("what is elsewhere is in the world");
                 object.bounds_into(simd, bounds);
             });
-            clearances.grow(boxes.iter_mut().map(|(_, bounds)| bounds));
+            clearances.grow(boxes.iter_mut().map(|(slot, bounds)| (objects.id_of(*slot), bounds)));
         });
         broad.flush();
     }

@@ -25,8 +25,9 @@ pub(super) struct Clearances {
     pairs: HashMap<(ObjectId, ObjectId), f64>,
     /// How many pairs there may be before those of objects that are gone are dropped: twice as many as were left then.
     sweep_at: usize,
-    /// No less than any clearance: what the boxes are grown for.
-    most: f64,
+    /// Of objects that have one, the greatest clearance that was set for a pair with it: their boxes are grown for that, if it is more than
+    /// the default.
+    greatest: HashMap<ObjectId, f64>,
 }
 
 impl Clearances {
@@ -38,13 +39,22 @@ impl Clearances {
         self.pairs.get(&(a.min(b), a.max(b))).copied().unwrap_or(self.default)
     }
 
+    /// What the box of an object is grown for.
+    fn of_box(&self, id: ObjectId) -> f64 {
+        self.greatest.get(&id).map_or(self.default, |greatest| greatest.max(self.default))
+    }
+
     /// Grows boxes so that each overlaps that of another object wherever the two are nearer than their clearance.
-    pub fn grow<'a>(&self, boxes: impl IntoIterator<Item = &'a mut Aabb>) {
-        if self.most == 0.0 {
+    pub fn grow<'a>(&self, boxes: impl IntoIterator<Item = (ObjectId, &'a mut Aabb)>) {
+        if self.default == 0.0 && self.greatest.is_empty() {
             return;
         }
-        for bounds in boxes {
-            let Aabb { min, max } = bounds.inflated(self.most * (0.5 + GROWTH_ERROR));
+        for (id, bounds) in boxes {
+            let clearance = self.of_box(id);
+            if clearance == 0.0 {
+                continue;
+            }
+            let Aabb { min, max } = bounds.inflated(clearance * (0.5 + GROWTH_ERROR));
             // To the next numbers outside, for the sums are rounded.
             *bounds = Aabb::new(min.map(f64::next_down), max.map(f64::next_up));
         }
@@ -57,6 +67,11 @@ impl Clearances {
         }
         self.pairs.insert((a.min(b), a.max(b)), clearance);
     }
+
+    /// Forgets an object that is gone.
+    pub fn forget(&mut self, id: ObjectId) {
+        self.greatest.remove(&id);
+    }
 }
 
 /// # Clearances
@@ -64,9 +79,9 @@ impl World {
     /// Sets how near two objects may come that have no clearance of their own, in world units; 0 at first. See
     /// [`near`](World::near).
     ///
-    /// The boxes of all objects in the broad phase are grown by half of the greatest clearance that was set; so a clearance costs
-    /// tests of pairs that are apart, and no answer of a test changes. They shrink again when this clearance is set. Cost of setting one: as
-    /// if everything had moved.
+    /// The box of an object in the broad phase is grown by half of this, or of the greatest clearance that was set for a pair with it; so a
+    /// clearance costs tests of pairs that are apart, and no answer of a test changes. It shrinks again when this clearance is set. Cost of
+    /// setting one: as if everything had moved.
     ///
     /// Errors: a clearance that is not from 0 to [`MAGNITUDE_MAX`].
     ///
@@ -81,9 +96,15 @@ impl World {
     /// ```
     pub fn set_clearance(&mut self, clearance: f64) -> Result<()> {
         self.clearances.default = checked(clearance)?;
-        let most = self.clearances.pairs.values().copied().fold(clearance, f64::max);
-        self.clearances.most = most;
-        self.stir_all();
+        self.clearances.greatest.clear();
+        for (&(a, b), &clearance) in &self.clearances.pairs {
+            for id in [a, b].into_iter().filter(|&id| self.objects.contains_key(id)) {
+                let greatest = self.clearances.greatest.entry(id).or_insert(clearance);
+                *greatest = clearance.max(*greatest);
+            }
+        }
+        let ids: Vec<_> = self.objects.keys().collect();
+        ids.into_iter().for_each(|id| self.stir(id, Staleness::Bounds));
         Ok(())
     }
 
@@ -93,6 +114,8 @@ impl World {
     }
 
     /// Sets how near two objects may come, in whichever order, in place of [`clearance`](World::clearance).
+    ///
+    /// Cost: as if the two objects had moved.
     ///
     /// Errors: as [`set_clearance`](World::set_clearance); an object that is not in the world, or twice the same.
     ///
@@ -113,9 +136,11 @@ impl World {
         checked(clearance)?;
         let Self { clearances, objects, .. } = self;
         clearances.set(a, b, clearance, |id| objects.contains_key(id));
-        if clearance > clearances.most {
-            clearances.most = clearance;
-            self.stir_all();
+        for id in [a, b] {
+            if clearance > self.clearances.of_box(id) {
+                self.clearances.greatest.insert(id, clearance);
+                self.stir(id, Staleness::Bounds);
+            }
         }
         self.stir_pair(a, b);
         Ok(())
@@ -134,12 +159,6 @@ impl World {
         self.check_pair(a, b)?;
         Ok(self.clearances.of(a, b))
     }
-
-    /// Notes that no box is up to date.
-    fn stir_all(&mut self) {
-        let ids: Vec<_> = self.objects.keys().collect();
-        ids.into_iter().for_each(|id| self.stir(id, Staleness::Bounds));
-    }
 }
 
 fn checked(clearance: f64) -> Result<f64> {
@@ -157,6 +176,22 @@ mod tests {
     use super::*;
     use crate::Shape;
 
+    /// What is set for a pair costs nothing elsewhere.
+    #[test]
+    fn boxes_of_a_pair_alone_are_grown_for_it() -> Result<()> {
+        let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        let at = |i: i32| DAffine3::from_translation(3.0 * glam::DVec3::X * f64::from(i));
+        let ids: Vec<_> = (0..100).map(|i| world.add(&ball, at(i)).unwrap()).collect();
+        world.near();
+        world.set_pair_clearance(ids[1], ids[3], 4.5)?;
+        let before = world.statistics().examined;
+        let near = world.near();
+        assert_eq!((near.len(), near[0].a, near[0].b, near[0].distance), (1, ids[1], ids[3], 4.0));
+        // The two, and each with those beside it.
+        assert_eq!(world.statistics().examined - before, 5);
+        Ok(())
+    }
+
     /// Objects that come and go leave no more pairs behind than there are.
     #[test]
     fn what_removed_objects_leave_is_bounded() -> Result<()> {
@@ -168,7 +203,7 @@ mod tests {
             assert_eq!(world.pair_clearance(goes, stays), Ok(1.0));
             world.remove(goes)?;
         }
-        assert!(world.clearances.pairs.len() <= SWEEP_MIN);
+        assert!(world.clearances.pairs.len() <= SWEEP_MIN && world.clearances.greatest.len() == 1);
         Ok(())
     }
 }

@@ -172,8 +172,8 @@ impl World {
         }
         let object = Object::new(rank, self.added, shape.clone(), placement, self.motion, self.boxes);
         let mut bounds = object.bounds();
-        self.clearances.grow([&mut bounds]);
         let id = self.objects.insert(object);
+        self.clearances.grow([(id, &mut bounds)]);
         self.added += 1;
         self.stale = true;
         self.broad.insert(proxy(id), bounds);
@@ -184,6 +184,7 @@ impl World {
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         let object = self.objects.remove(id).ok_or(Error::UnknownObject { argument: "object", id })?;
         self.forget_responses(id, object.pair_responses);
+        self.clearances.forget(id);
         let Self { broad, candidates, findings, stirred, .. } = self;
         broad.for_each_pair_of(proxy(id), &mut |pair, _| candidates.end(pair));
         candidates.lapsed.take_of(id, findings);

@@ -78,7 +78,8 @@ impl World {
         self.look_at_all(&places);
         self.to_examine = places;
         let mut near: Vec<Near> = self.candidates.near().copied().collect();
-        near.sort_unstable_by_key(|near| self.key(near.a, near.b));
+        // Each key waits for the memory of two objects.
+        near.sort_by_cached_key(|near| self.key(near.a, near.b));
         near
     }
 

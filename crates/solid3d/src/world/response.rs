@@ -116,8 +116,9 @@ fn ordered(a: ObjectId, b: ObjectId) -> (ObjectId, ObjectId) {
 impl World {
     /// Sets the response for pairs that have none of their own.
     pub fn set_default_response(&mut self, response: Response) {
-        self.responses.default = response;
-        (self.stale, self.default_changed) = (true, true);
+        if std::mem::replace(&mut self.responses.default, response) != response {
+            (self.stale, self.default_changed) = (true, true);
+        }
     }
 
     /// Makes pairs without a response of their own be ignored.
