@@ -43,6 +43,7 @@ impl Origin {
     }
 
     /// A box that holds all that a box from the origin holds. To the next numbers outside: sums and differences are rounded.
+    #[inline]
     pub fn world(self, bounds: &Aabb) -> Aabb {
         let Some(origin) = self.0 else { return *bounds };
         let outward = |local: DVec3, next: fn(f64) -> f64| {
