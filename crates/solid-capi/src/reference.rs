@@ -1,11 +1,20 @@
 //! Pointers of the client as the values they are compared by.
 
+use std::collections::{HashMap, HashSet};
 use std::ffi::c_void;
 use std::fmt;
+
+use foldhash::fast::RandomState;
 
 /// A pointer that is compared and handed back, and never followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct Reference(usize);
+
+/// What is known by a reference, or by several.
+pub(crate) type ByReference<K, T> = HashMap<K, T, RandomState>;
+
+/// References, each once.
+pub(crate) type References = HashSet<Reference, RandomState>;
 
 impl Reference {
     /// The reference of a number that the library gives out.

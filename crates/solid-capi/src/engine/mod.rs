@@ -5,14 +5,14 @@ mod responses;
 mod shapes;
 mod test;
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use slotmap::SecondaryMap;
 use solid3d::{ObjectId, Response, World, WorldOptions};
 
-use crate::reference::Reference;
-use objects::Object;
+use crate::reference::{ByReference, Reference};
+use objects::{Name, Object};
 pub(crate) use responses::Callback;
 use responses::Responses;
 use shapes::Shapes;
@@ -23,9 +23,9 @@ pub(crate) use test::{Event, Nesting, Points};
 pub(crate) struct Engine {
     world: World,
     shapes: Shapes,
-    objects: HashMap<Reference, Object>,
-    /// The client's reference of each object in the world.
-    references: SecondaryMap<ObjectId, Reference>,
+    objects: ByReference<Reference, Object>,
+    /// What the client knows each object in the world by.
+    names: SecondaryMap<ObjectId, Name>,
     responses: Responses,
     /// How many objects were ever created.
     created: u64,
@@ -43,8 +43,8 @@ impl Engine {
         Engine {
             world: World::with_options(&options),
             shapes: Shapes::default(),
-            objects: HashMap::new(),
-            references: SecondaryMap::new(),
+            objects: ByReference::default(),
+            names: SecondaryMap::new(),
             responses: Responses::default(),
             created: 0,
             fresh: BTreeSet::new(),

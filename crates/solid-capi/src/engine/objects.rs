@@ -22,10 +22,16 @@ thread_local! {
 #[derive(Debug)]
 pub(super) struct Object {
     pub id: ObjectId,
-    /// Its place in the creation order.
-    pub serial: u64,
     /// Its shape, which may have been deleted since.
     shape: Reference,
+}
+
+/// What an object is called.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Name {
+    pub reference: Reference,
+    /// Its place in the creation order.
+    pub serial: u64,
 }
 
 impl Engine {
@@ -41,8 +47,8 @@ impl Engine {
         if let Some(deformable) = self.shapes.deformable_mut(shape) {
             deformable.objects.insert(id);
         }
-        self.objects.insert(object, Object { id, serial: self.created, shape });
-        self.references.insert(id, object);
+        self.objects.insert(object, Object { id, shape });
+        self.names.insert(id, Name { reference: object, serial: self.created });
         self.created += 1;
         self.fresh.insert(id);
         self.make_current(id);
@@ -55,7 +61,7 @@ impl Engine {
         if let Some(deformable) = self.shapes.deformable_mut(shape) {
             deformable.objects.remove(&id);
         }
-        self.references.remove(id);
+        self.names.remove(id);
         self.fresh.remove(&id);
         self.responses.forget(object);
         if self.objects.is_empty() {

@@ -3,14 +3,12 @@
 //! Which response a pair has is decided here, and again by the world's own table, which holds the kinds of the responses of
 //! the objects that there are.
 
-use std::collections::{HashMap, HashSet};
-
 use solid3d::{ObjectId, Response};
 
 use super::Engine;
 use crate::abi::ResponseFunction;
 use crate::fault::{Code, Fault, Result};
-use crate::reference::Reference;
+use crate::reference::{ByReference, Reference, References};
 
 /// A function of the client's, and what it wants to be told. The engine only keeps it.
 #[derive(Clone, Copy, Debug)]
@@ -28,11 +26,11 @@ type Definition = Option<Callback>;
 #[derive(Debug, Default)]
 pub(super) struct Responses {
     default: Definition,
-    objects: HashMap<Reference, Definition>,
+    objects: ByReference<Reference, Definition>,
     /// The lesser reference first.
-    pairs: HashMap<(Reference, Reference), Definition>,
+    pairs: ByReference<(Reference, Reference), Definition>,
     /// The references with which a reference has a pair response.
-    partners: HashMap<Reference, HashSet<Reference>>,
+    partners: ByReference<Reference, References>,
 }
 
 impl Responses {

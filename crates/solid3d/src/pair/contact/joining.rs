@@ -14,7 +14,7 @@ const SAME_NORMAL: f64 = 1e-3;
 /// So many pairs of vertices are kept of each patch, on average: two boxes have 64.
 const MOST_CONNECTIONS: usize = 100;
 
-/// Patches, and by which vertices they are connected: two are, when their primitives have a vertex of either surface in common.
+/// Patches, and by which vertices they are connected: two are, when their primitives have a vertex in common, on each of the surfaces.
 pub(super) struct Joining<'p> {
     patches: &'p [Patch],
     is_taken: Vec<bool>,
@@ -33,7 +33,7 @@ enum Connections {
     Any(Vec<usize>),
 }
 
-/// Patches that have a vertex of either surface in common.
+/// Patches that have a vertex of each surface in common.
 struct Neighbours {
     /// Those of no region yet, and perhaps some that are of one.
     patches: Vec<usize>,
@@ -129,7 +129,7 @@ fn is_same(normal: DVec3, other: DVec3) -> bool {
     normal.dot(other) > 1.0 - 0.5 * SAME_NORMAL * SAME_NORMAL
 }
 
-/// Whether the primitives of two patches have a vertex of either surface in common.
+/// Whether the primitives of two patches have a vertex in common, on each of the surfaces.
 fn are_connected(corners: &[Corners; 2], x: &Patch, y: &Patch) -> bool {
     let [x, y] = [x.touches[0].primitives, y.touches[0].primitives];
     (0..2).all(|side| have_common(&corners[side][&x[side]], &corners[side][&y[side]]))
