@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use slotmap::SecondaryMap;
 use solid_convex::MAGNITUDE_MAX;
 
 use super::stirred::Staleness;
@@ -27,7 +28,7 @@ pub(super) struct Clearances {
     sweep_at: usize,
     /// Of objects that have one, the greatest clearance that was set for a pair with it: their boxes are grown for that, if it is more than
     /// the default.
-    greatest: HashMap<ObjectId, f64>,
+    greatest: SecondaryMap<ObjectId, f64>,
 }
 
 impl Clearances {
@@ -41,7 +42,7 @@ impl Clearances {
 
     /// What the box of an object is grown for.
     fn of_box(&self, id: ObjectId) -> f64 {
-        self.greatest.get(&id).map_or(self.default, |greatest| greatest.max(self.default))
+        self.greatest.get(id).map_or(self.default, |greatest| greatest.max(self.default))
     }
 
     /// Grows boxes so that each overlaps that of another object wherever the two are nearer than their clearance.
@@ -70,7 +71,7 @@ impl Clearances {
 
     /// Forgets an object that is gone.
     pub fn forget(&mut self, id: ObjectId) {
-        self.greatest.remove(&id);
+        self.greatest.remove(id);
     }
 }
 
@@ -96,11 +97,12 @@ impl World {
     /// ```
     pub fn set_clearance(&mut self, clearance: f64) -> Result<()> {
         self.clearances.default = checked(clearance)?;
-        self.clearances.greatest.clear();
-        for (&(a, b), &clearance) in &self.clearances.pairs {
-            for id in [a, b].into_iter().filter(|&id| self.objects.contains_key(id)) {
-                let greatest = self.clearances.greatest.entry(id).or_insert(clearance);
-                *greatest = clearance.max(*greatest);
+        let Self { clearances: Clearances { pairs, greatest, .. }, objects, .. } = self;
+        greatest.clear();
+        for (&(a, b), &clearance) in &*pairs {
+            for id in [a, b].into_iter().filter(|&id| objects.contains_key(id)) {
+                let before = greatest.get(id).copied().unwrap_or_default();
+                greatest.insert(id, clearance.max(before));
             }
         }
         let ids: Vec<_> = self.objects.keys().collect();
