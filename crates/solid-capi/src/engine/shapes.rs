@@ -1,19 +1,19 @@
 //! Shapes by reference.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 use solid3d::convex::MAGNITUDE_MIN;
 use solid3d::{ObjectId, Shape};
 
 use super::Engine;
 use crate::fault::{Code, Fault, Result};
-use crate::reference::Reference;
+use crate::reference::{ByReference, Reference};
 use crate::soup::{MAGNITUDE_MAX, Soup};
 
 /// The shapes that there are.
 #[derive(Debug, Default)]
 pub(super) struct Shapes {
-    entries: HashMap<Reference, Entry>,
+    entries: ByReference<Reference, Entry>,
     /// How many references were ever given out: the last one's number. None is given out twice.
     given: usize,
 }

@@ -26,8 +26,7 @@ pub(super) struct Clearances {
     pairs: HashMap<(ObjectId, ObjectId), f64>,
     /// How many pairs there may be before those of objects that are gone are dropped: twice as many as were left then.
     sweep_at: usize,
-    /// Of objects that have one, the greatest clearance that was set for a pair with it: their boxes are grown for that, if it is more than
-    /// the default.
+    /// Of objects whose boxes are grown for more than the default: the greatest clearance that was set for a pair with it.
     greatest: SecondaryMap<ObjectId, f64>,
 }
 
@@ -69,6 +68,15 @@ impl Clearances {
         self.pairs.insert((a.min(b), a.max(b)), clearance);
     }
 
+    /// Has the box of an object grown for a clearance too; whether it was for less.
+    fn raise(&mut self, id: ObjectId, clearance: f64) -> bool {
+        let is_more = clearance > self.of_box(id);
+        if is_more {
+            self.greatest.insert(id, clearance);
+        }
+        is_more
+    }
+
     /// Forgets an object that is gone.
     pub fn forget(&mut self, id: ObjectId) {
         self.greatest.remove(id);
@@ -97,14 +105,14 @@ impl World {
     /// ```
     pub fn set_clearance(&mut self, clearance: f64) -> Result<()> {
         self.clearances.default = checked(clearance)?;
-        let Self { clearances: Clearances { pairs, greatest, .. }, objects, .. } = self;
-        greatest.clear();
-        for (&(a, b), &clearance) in &*pairs {
-            for id in [a, b].into_iter().filter(|&id| objects.contains_key(id)) {
-                let before = greatest.get(id).copied().unwrap_or_default();
-                greatest.insert(id, clearance.max(before));
+        self.clearances.greatest.clear();
+        let pairs = std::mem::take(&mut self.clearances.pairs);
+        for (&(a, b), &clearance) in &pairs {
+            for id in [a, b].into_iter().filter(|&id| self.objects.contains_key(id)) {
+                self.clearances.raise(id, clearance);
             }
         }
+        self.clearances.pairs = pairs;
         let ids: Vec<_> = self.objects.keys().collect();
         ids.into_iter().for_each(|id| self.stir(id, Staleness::Bounds));
         Ok(())
@@ -139,8 +147,7 @@ impl World {
         let Self { clearances, objects, .. } = self;
         clearances.set(a, b, clearance, |id| objects.contains_key(id));
         for id in [a, b] {
-            if clearance > self.clearances.of_box(id) {
-                self.clearances.greatest.insert(id, clearance);
+            if self.clearances.raise(id, clearance) {
                 self.stir(id, Staleness::Bounds);
             }
         }

@@ -83,7 +83,9 @@ impl Stirred {
         elsewhere.retain(|&slot| {
             let staleness = &mut staleness[slot as usize];
             let is_there = *staleness == Staleness::Bounds;
-            *staleness = if is_there { Staleness::Bounds } else { Staleness::Fresh };
+            if !is_there {
+                *staleness = Staleness::Fresh;
+            }
             is_there
         });
         elsewhere.sort_unstable();
