@@ -1,7 +1,8 @@
 //! The capsule.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
+use super::image::{reach, symmetric};
 use super::sphere::ball_support;
 use crate::gjk::Balls;
 use crate::size::positive;
@@ -49,6 +50,12 @@ impl Support for Capsule {
 
     fn locus(&self, point: DVec3) -> Locus {
         Locus::Sphere { center: DVec3::Y * with_sign(self.half_height, point.y), radius: self.radius }
+    }
+
+    #[inline]
+    fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
+        let ends = reach([linear.x_axis, linear.y_axis, linear.z_axis]) * self.radius;
+        symmetric(linear.y_axis.abs() * self.half_height + ends)
     }
 
     fn balls(&self) -> Option<Balls> {

@@ -1,7 +1,8 @@
 //! The capped cone.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
+use super::image::reach;
 use crate::gjk::{Ball, Balls};
 use crate::size::positive;
 use crate::support::rim;
@@ -49,6 +50,13 @@ impl Support for Cone {
 
     fn locus(&self, point: DVec3) -> Locus {
         if point.y < 0.0 { Locus::Circle { radius: self.radius } } else { Locus::Point }
+    }
+
+    #[inline]
+    fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
+        let base = reach([linear.x_axis, linear.z_axis]) * self.radius;
+        let apex = linear.y_axis * self.half_height;
+        [apex.min(-apex - base), apex.max(base - apex)]
     }
 
     fn balls(&self) -> Option<Balls> {

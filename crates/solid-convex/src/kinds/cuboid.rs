@@ -1,7 +1,8 @@
 //! The box.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
+use super::image::symmetric;
 use crate::gjk::Balls;
 use crate::size::positive;
 use crate::support::with_sign;
@@ -38,6 +39,12 @@ impl Support for Cuboid {
 
     fn reach(&self) -> DVec3 {
         self.half
+    }
+
+    #[inline]
+    fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
+        let half = self.half;
+        symmetric(linear.x_axis.abs() * half.x + linear.y_axis.abs() * half.y + linear.z_axis.abs() * half.z)
     }
 
     fn balls(&self) -> Option<Balls> {

@@ -1,7 +1,8 @@
 //! The capped cylinder.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
+use super::image::{reach, symmetric};
 use crate::gjk::Balls;
 use crate::size::positive;
 use crate::support::{rim, with_sign};
@@ -43,6 +44,12 @@ impl Support for Cylinder {
 
     fn locus(&self, _point: DVec3) -> Locus {
         Locus::Circle { radius: self.radius }
+    }
+
+    #[inline]
+    fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
+        let discs = reach([linear.x_axis, linear.z_axis]) * self.radius;
+        symmetric(linear.y_axis.abs() * self.half_height + discs)
     }
 
     fn balls(&self) -> Option<Balls> {

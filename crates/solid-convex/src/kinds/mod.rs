@@ -4,6 +4,7 @@ mod capsule;
 mod cone;
 mod cuboid;
 mod cylinder;
+mod image;
 mod points;
 mod polytope;
 mod sphere;

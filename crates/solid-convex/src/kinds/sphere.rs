@@ -1,7 +1,8 @@
 //! The ball.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
+use super::image::{reach, symmetric};
 use crate::gjk::Balls;
 use crate::size::positive;
 use crate::{Locus, SizeError, Support};
@@ -46,6 +47,11 @@ impl Support for Sphere {
 
     fn locus(&self, _point: DVec3) -> Locus {
         Locus::Sphere { center: DVec3::ZERO, radius: self.radius }
+    }
+
+    #[inline]
+    fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
+        symmetric(reach([linear.x_axis, linear.y_axis, linear.z_axis]) * self.radius)
     }
 
     fn balls(&self) -> Option<Balls> {

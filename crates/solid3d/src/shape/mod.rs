@@ -18,7 +18,8 @@ mod validate;
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use fearless_simd::Simd;
+use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 
 pub use builder::ComplexShapeBuilder;
@@ -363,6 +364,23 @@ impl Shape {
         match &self.geometry {
             Geometry::Polytope(shape) => Some(shape.polytope()),
             _ => None,
+        }
+    }
+
+    /// The least and the greatest coordinates of its image under a linear map, up to rounding; of a complex shape, those of the image of its box.
+    #[inline(always)]
+    pub(crate) fn image_bounds<S: Simd>(&self, simd: S, linear: &DMat3) -> [DVec3; 2] {
+        match &self.geometry {
+            Geometry::Sphere(shape) => shape.image_bounds(linear),
+            Geometry::Cuboid(shape) => shape.image_bounds(linear),
+            Geometry::Cone(shape) => shape.image_bounds(linear),
+            Geometry::Cylinder(shape) => shape.image_bounds(linear),
+            Geometry::Capsule(shape) => shape.image_bounds(linear),
+            Geometry::Polytope(shape) => shape.polytope().image_bounds_by(simd, linear),
+            Geometry::Complex(shape) => {
+                let image = shape.bounds().transformed(&DAffine3::from_mat3(*linear));
+                [image.min, image.max]
+            }
         }
     }
 

@@ -1,0 +1,78 @@
+//! How far the images of what the kinds consist of reach, under linear maps: closed forms of [`image_bounds`](crate::Support::image_bounds).
+
+use std::ops::RangeInclusive;
+
+use glam::DVec3;
+
+use crate::unit_scale;
+
+/// Squares of lengths that lose no digits.
+const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
+
+/// How far the image of a segment, disc or ball of radius 1 reaches along each axis, from the images of one, two or three unit vectors that
+/// span it at right angles: the lengths of the rows of the map. Rows are right up to a rounding error of the longest.
+#[inline]
+pub(super) fn reach<const N: usize>(spanning: [DVec3; N]) -> DVec3 {
+    let rows = |scale: f64| {
+        let squares: DVec3 = spanning.iter().map(|&column| (column * scale) * (column * scale)).sum();
+        (squares.max_element(), DVec3::new(squares.x.sqrt(), squares.y.sqrt(), squares.z.sqrt()))
+    };
+    let (longest, lengths) = rows(1.0);
+    if PLAIN.contains(&longest) {
+        return lengths;
+    }
+    let scale =
+        unit_scale(spanning.iter().fold(0.0, |largest, column| largest.max(column.abs().max_element())));
+    rows(scale).1 / scale
+}
+
+/// What reaches as far to either side.
+#[inline]
+pub(super) fn symmetric(half: DVec3) -> [DVec3; 2] {
+    [-half, half]
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
+    use crate::support::bounds_by_supports;
+    use crate::testing::in_cube;
+    use crate::{Capsule, Cone, Cuboid, Cylinder, Sphere, Support};
+
+    /// Law: the closed form bounds what six support points do, up to rounding: at any size, under any linear map.
+    #[test]
+    fn closed_forms_bound_what_support_points_do() {
+        /// Relative to the extent of the image: of a few sums of three products, and a root.
+        const ERROR: f64 = 16.0 * f64::EPSILON;
+        let mut rng = seeded(240);
+        for case in 0..2000 {
+            let scale = 10_f64.powi(rng.random_range(-90..90));
+            let mut size = || scale * rng.random_range(0.01..1.0);
+            let shapes: [&dyn Support; 5] = [
+                &Sphere::new(size()).unwrap(),
+                &Capsule::new(size(), size()).unwrap(),
+                &Cuboid::new(glam::DVec3::new(size(), size(), size())).unwrap(),
+                &Cylinder::new(size(), size()).unwrap(),
+                &Cone::new(size(), size()).unwrap(),
+            ];
+            // Of every other case a map that leaves axes axes, as of what stands upright.
+            let turn = if case % 2 == 0 {
+                DMat3::IDENTITY
+            } else {
+                DMat3::from_cols_array(&std::array::from_fn(|_| rng.random_range(-1.0..1.0)))
+            };
+            let exponent = if case % 3 == 0 { 90 } else { 3 };
+            let stretch = in_cube(&mut rng) * 10_f64.powi(rng.random_range(-exponent..=exponent));
+            let linear = turn * DMat3::from_diagonal(stretch);
+            for (kind, shape) in shapes.into_iter().enumerate() {
+                let [closed, supports] = [shape.image_bounds(&linear), bounds_by_supports(shape, &linear)];
+                let off = (closed[0] - supports[0]).abs().max((closed[1] - supports[1]).abs()).max_element();
+                let extent = supports[0].abs().max(supports[1].abs()).max_element();
+                assert!(off <= ERROR * extent, "{case}, shape {kind}: {:e} of the extent", off / extent);
+            }
+        }
+    }
+}
