@@ -84,6 +84,12 @@ fn plainly_good<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) 
 
 /// The unit vector along a vector of any length, without overflow or underflow on the way; `None` for zero.
 pub(crate) fn direction(v: DVec3) -> Option<DVec3> {
+    /// Squares of lengths that lose no digits.
+    const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
+    let square = v.length_squared();
+    if PLAIN.contains(&square) {
+        return Some(v / square.sqrt());
+    }
     let largest = v.abs().max_element();
     (largest > 0.0).then(|| (v / largest).normalize())
 }

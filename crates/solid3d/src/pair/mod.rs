@@ -42,7 +42,7 @@ use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
-pub(crate) use closed_form::{closest_to, contains, quickly_closest};
+pub(crate) use closed_form::{closest_to, contains, nearest_on_surface, quickly_closest};
 pub(crate) use coherent::{closest_again, intersects_again, penetration_again};
 pub(crate) use contact::contacts;
 pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};

@@ -41,8 +41,8 @@ pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Resu
 pub fn closest_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<ClosestPoint> {
     let body = placed(shape, placement)?;
     let (of_point, at) = as_shape(point)?;
-    if let Some((distance, on_body)) = pair::closest_to(body, point) {
-        return Ok(ClosestPoint { point: placement.transform_point3(on_body), distance });
+    if let Some((distance, point)) = pair::closest_to(body, point) {
+        return Ok(ClosestPoint { point, distance });
     }
     let Distance { distance, point_on_a, .. } = distance(shape, placement, of_point, &at)?;
     Ok(ClosestPoint { point: point_on_a, distance })

@@ -58,9 +58,12 @@ pub struct SignedDistance {
 /// ```
 pub fn signed_distance(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<SignedDistance> {
     let shape = placed(shape, placement)?;
-    let (point, at) = as_shape(point)?;
-    let point = Placed { shape: point, placement: &at };
-    let pair::SurfacePoint { distance, point, normal } =
-        Scratch::with(|scratch| pair::surface_point(shape, point, scratch));
+    let (of_point, at) = as_shape(point)?;
+    let at_length = || {
+        let of_point = Placed { shape: of_point, placement: &at };
+        Scratch::with(|scratch| pair::surface_point(shape, of_point, scratch))
+    };
+    let found = pair::nearest_on_surface(shape, point).unwrap_or_else(at_length);
+    let pair::SurfacePoint { distance, point, normal } = found;
     Ok(SignedDistance { distance, point, normal })
 }

@@ -19,6 +19,7 @@ pub(super) struct BallAndBody {
 }
 
 /// A ball, or a point, that its placement leaves one: with its radius in the world.
+#[inline(always)]
 pub(super) fn placed_ball(ball: Placed) -> Option<(Similarity, f64)> {
     let radius = ball.shape.ball_radius()?;
     let at = Similarity::new(&ball.placement.matrix3)?;
@@ -36,17 +37,18 @@ pub(crate) fn contains(body: Placed, point: DVec3) -> Option<bool> {
     intersects(Seen::new(body, point, 0.0)?.distance())
 }
 
-/// How far a point is from a body, and the point of the body that is nearest, in the body's own space: as of a ball without a radius.
+/// How far a point is from a body, and the point of the body that is nearest, in the world: as of a ball without a radius.
 pub(crate) fn closest_to(body: Placed, point: DVec3) -> Option<(f64, DVec3)> {
     let seen = Seen::new(body, point, 0.0)?;
     Some(match intersects(seen.distance())? {
-        true => (0.0, seen.point()),
-        false => (seen.distance() / seen.scale, seen.on_surface()),
+        true => (0.0, point),
+        false => (seen.distance() / seen.scale, body.placement.translation + seen.to_surface()),
     })
 }
 
 impl BallAndBody {
     /// `None` for other shapes, and for placements that are not a rotation with a uniform scale.
+    #[inline(always)] // most callers want a part of it
     pub fn new(ball: Placed, body: Placed) -> Option<BallAndBody> {
         let (at, radius) = placed_ball(ball)?;
         Some(BallAndBody { seen: Seen::new(body, ball.placement.translation, radius)?, radius, ball: at })

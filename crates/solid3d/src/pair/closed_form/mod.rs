@@ -21,12 +21,12 @@ use solid_convex::simd::dispatch;
 use solid_convex::{Closest, Penetration, unit_scale};
 
 use super::{Mirror, Placed, Relation};
-use crate::shape::Simple;
+use crate::shape::{ShapeKind, Simple};
 use ball::BallAndBody;
 pub(crate) use ball::{closest_to, contains};
 use boxes::PlacedBox;
 pub(super) use cast::cast;
-pub(super) use point::surface_point;
+pub(crate) use point::nearest_on_surface;
 use round::{Cores, PlacedRound};
 pub(super) use similarity::Similarity;
 
@@ -75,10 +75,10 @@ pub(super) fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
 /// Something of a ball, or a point, and a body; of a body and a ball mirrored. `None` for other shapes, and where GJK has to say.
 #[inline]
 fn of_ball<T: Mirror>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) -> Option<T>) -> Option<T> {
-    match BallAndBody::new(a, b) {
-        Some(pair) => what(&pair),
-        None => what(&BallAndBody::new(b, a)?).mirrored(),
-    }
+    let in_order = a.shape.ball_radius().is_some() && b.shape.kind() != ShapeKind::ConvexHull;
+    let (ball, body) = if in_order { (a, b) } else { (b, a) };
+    let found = what(&BallAndBody::new(ball, body)?)?;
+    Some(if in_order { found } else { found.mirrored() })
 }
 
 /// Whether a ball, or a point, and a body intersect; `None` for other shapes, and where GJK has to say.

@@ -34,6 +34,7 @@ pub(super) struct Seen {
 impl Seen {
     /// `None` for other shapes than a ball, box, cone, cylinder or capsule, and for placements that are not a rotation with a uniform scale.
     /// `radius` is that of a ball around the point, which belongs to the size of the data. World units.
+    #[inline(always)] // most callers want a part of it
     pub fn new(body: Placed, point: DVec3, radius: f64) -> Option<Seen> {
         if matches!(body.shape.kind(), ShapeKind::ConvexHull) {
             return None; // before its facets are made
@@ -57,7 +58,18 @@ impl Seen {
 
     /// The outward normal of the surface, where it is nearest. Space: world.
     pub fn normal(&self) -> DVec3 {
-        self.at.units().into_iter().zip(self.foot.normal.to_array()).map(|(axis, n)| axis * n).sum()
+        self.turned(self.foot.normal)
+    }
+
+    /// The way from the origin of the body to the nearest point of its surface. Space: world.
+    pub fn to_surface(&self) -> DVec3 {
+        self.turned(self.foot.at) / self.scale
+    }
+
+    /// A vector in the body's own directions as the world has it.
+    fn turned(&self, v: DVec3) -> DVec3 {
+        let [x, y, z] = self.at.units();
+        x * v.x + y * v.y + z * v.z
     }
 
     /// The nearest point of the surface. Space: the body's own.
@@ -77,13 +89,14 @@ impl Seen {
 
 /// The point of the surface of a ball, box, cone, cylinder or capsule nearest to a point of the world; `None` for other shapes,
 /// and for placements that are not a rotation with a uniform scale.
-pub(in crate::pair) fn surface_point(shape: Placed, point: DVec3) -> Option<SurfacePoint> {
+pub(crate) fn nearest_on_surface(shape: Placed, point: DVec3) -> Option<SurfacePoint> {
     let seen = Seen::new(shape, point, 0.0)?;
     let (distance, normal) = (seen.distance() / seen.scale, seen.normal());
     Some(SurfacePoint { distance, point: point - normal * distance, normal })
 }
 
 /// A bound on the coordinates of a body; `None` for a hull.
+#[inline(always)]
 fn extent(body: &Body) -> Option<f64> {
     Some(match body {
         Body::Sphere(shape) => shape.radius(),
@@ -96,6 +109,7 @@ fn extent(body: &Body) -> Option<f64> {
 }
 
 /// For a body that is `stretch` times its own size.
+#[inline(always)]
 fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
     let half = |height: f64| 0.5 * height * stretch;
     Some(match body {
@@ -110,12 +124,14 @@ fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
     })
 }
 
+#[inline(always)]
 fn of_capsule(radius: f64, half_height: f64, p: DVec3) -> Foot<DVec3> {
     let core = DVec3::Y * p.y.clamp(-half_height, half_height);
     let (length, normal) = polar(p - core, DVec3::X);
     Foot { distance: length - radius, normal, at: core + normal * radius }
 }
 
+#[inline(always)]
 fn of_box(half: DVec3, p: DVec3) -> Foot<DVec3> {
     let beyond = p.abs() - half;
     if beyond.max_element() > 0.0 {
@@ -172,13 +188,23 @@ fn of_cone(radius: f64, half_height: f64, p: DVec2) -> Foot<DVec2> {
     }
 }
 
-/// The length of a vector and its direction, which for zero is another.
+/// The length of a vector and its direction, which for zero is another. The vector is in the unit of the pair: no square overflows.
+#[inline(always)]
 fn polar(v: DVec3, of_zero: DVec3) -> (f64, DVec3) {
-    let largest = v.abs().max_element();
-    if largest == 0.0 {
-        return (0.0, of_zero);
+    /// Squares of lengths that lose no digits.
+    const PLAIN: f64 = 1e-200;
+    let square = v.length_squared();
+    if square >= PLAIN {
+        let length = square.sqrt();
+        return (length, v / length);
     }
-    // Dividing first, for the squares of a short vector underflow.
-    let (unit, length) = (v / largest).normalize_and_length();
-    (length * largest, unit)
+    short_polar(v).unwrap_or((0.0, of_zero))
+}
+
+/// The same of a short vector; `None` of zero.
+#[cold]
+fn short_polar(v: DVec3) -> Option<(f64, DVec3)> {
+    let largest = v.abs().max_element();
+    let (unit, length) = (largest > 0.0).then(|| (v / largest).normalize_and_length())?;
+    Some((length * largest, unit))
 }

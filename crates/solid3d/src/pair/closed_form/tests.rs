@@ -216,11 +216,13 @@ fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
         let [x, y] = in_world(found.points);
         assert!((x.distance(y) - found.distance).abs() < 1e-11, "{context}: {found:?}");
         if ball.ball_radius() == Some(0.0) {
-            // The same bits as asked of the point alone.
+            // As asked of the point alone.
             let (point, on_body) =
                 (at_a.translation, if case % 2 == 0 { found.points.on_b } else { found.points.on_a });
             assert_eq!(contains(placed[1], point), Some(hit), "{context}");
-            assert_eq!(closest_to(placed[1], point), Some((found.distance, on_body)), "{context}");
+            let (distance, of_body) = closest_to(placed[1], point).unwrap();
+            assert_eq!(distance, found.distance, "{context}");
+            assert!(of_body.distance(at_b.transform_point3(on_body)) < 1e-12, "{context}: {of_body}");
         }
         let found = penetration(a, b);
         assert_eq!(found.is_some(), hit, "{context}");

@@ -1,7 +1,8 @@
 //! The point of the surface of a shape that is nearest to a point, on whichever side of it.
 //!
 //! A signed distance is a distance outside and a penetration depth inside, both of which the table has: of a convex body the way out is
-//! the shortest translation of the point that leaves the two touching. Bodies that stay what they are have a closed form. A solid mesh
+//! the shortest translation of the point that leaves the two touching. Bodies that stay what they are have a closed
+//! form ([`nearest_on_surface`](super::nearest_on_surface)). A solid mesh
 //! is its surface, on which the nearest triangle is looked for, with the side that the winding number gives.
 
 mod solid;
@@ -10,7 +11,7 @@ use glam::{DAffine3, DVec3};
 use solid_convex::gjk::TOUCHING_ERROR;
 
 use super::reach::{image_reach, reach};
-use super::{Placed, Scratch, closed_form, closest, penetration};
+use super::{Placed, Scratch, closest, penetration};
 use crate::placement::direction;
 use crate::shape::{Class, ShapeKind};
 
@@ -29,12 +30,9 @@ pub(crate) struct SurfacePoint {
 /// Relative to the size of the data.
 const NEAR: f64 = 4.0 * TOUCHING_ERROR;
 
-/// The point of the surface of `shape` nearest to `point`, a shape of one point.
+/// The point of the surface of `shape` nearest to `point`, a shape of one point; of a body that has a closed form, where that says nothing.
 pub(crate) fn surface_point(shape: Placed, point: Placed, scratch: &mut Scratch) -> SurfacePoint {
     let p = point.placement.translation;
-    if let Some(found) = closed_form::surface_point(shape, p) {
-        return found;
-    }
     match shape.shape.class() {
         Class::Complex(mesh) if mesh.is_solid() => solid::surface_point((mesh, shape.placement), p, scratch),
         _ => of_union(shape, point, scratch),
