@@ -41,6 +41,12 @@ impl Shape {
         })
     }
 
+    /// Whether it is a ball.
+    #[inline]
+    pub(crate) fn is_ball(&self) -> bool {
+        matches!(self.geometry, Geometry::Sphere(_))
+    }
+
     /// The radius of a ball, or of a point at the local origin, which is 0; `None` for other shapes.
     #[inline]
     pub(crate) fn ball_radius(&self) -> Option<f64> {

@@ -10,6 +10,7 @@
 //! Everything is computed in a common frame around the pair: lengths near 1, so that tolerances are relative to the shapes.
 
 mod ball;
+mod body_ball;
 mod clip;
 mod face;
 mod joining;
@@ -144,6 +145,19 @@ enum Part<'a> {
 
 /// All contacts of two shapes.
 pub(crate) fn contacts(
+    a: Placed,
+    b: Placed,
+    options: &ContactOptions,
+    scratch: &mut Scratch,
+) -> Vec<Manifold> {
+    match body_ball::contact(a, b) {
+        Some(contact) => vec![contact],
+        None => contacts_at_length(a, b, options, scratch),
+    }
+}
+
+/// The same, of all shapes.
+fn contacts_at_length(
     a: Placed,
     b: Placed,
     options: &ContactOptions,

@@ -1,0 +1,97 @@
+//! The one contact of a ball and a convex body that have a closed form: no space around the two is needed for it.
+
+use glam::{DAffine3, DVec3};
+
+use super::super::{Placed, closed_form};
+use super::map::Map;
+use super::{ContactPoint, Feature, Manifold, face, touched};
+use crate::placement::direction;
+
+/// The contact of a ball and a ball, box, cone, cylinder or capsule that are in each other; `None` for other shapes, and where the general way has
+/// to say.
+pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
+    if !(a.shape.is_ball() || b.shape.is_ball()) {
+        return None;
+    }
+    let found = closed_form::penetration(a, b)?;
+    // In the body's own space, as its placement changes no angle.
+    let own = Map::new(DAffine3::IDENTITY);
+    let feature = |of: Placed, facing: DVec3| -> Option<Feature> {
+        let facing = direction(of.placement.matrix3.mul_transpose_vec3(facing))?;
+        Some(touched(&face::Placed::new(&of.shape.body()?, 0, &own), facing))
+    };
+    let normal = found.direction;
+    let point = ContactPoint {
+        point_on_a: a.placement.transform_point3(found.points.on_a),
+        point_on_b: b.placement.transform_point3(found.points.on_b),
+        depth: found.depth,
+        primitives: [0, 0],
+        features: [feature(a, -normal)?, feature(b, normal)?],
+    };
+    Some(Manifold { normal, points: vec![point] })
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
+    use super::super::contacts_at_length;
+    use super::*;
+    use crate::pair::Scratch;
+    use crate::query::{ContactOptions, bounds};
+    use crate::shape::Shape;
+    use glam::DQuat;
+
+    /// Law: the contact is that of the general way: the ball as the first and as the second, at any size and place.
+    #[test]
+    fn the_contact_is_that_of_the_general_way() {
+        let mut rng = seeded(151);
+        let ball = Shape::sphere(0.6).unwrap();
+        let bodies = [
+            ball.clone(),
+            Shape::capsule(0.3, 1.0).unwrap(),
+            Shape::cuboid([1.0, 0.8, 1.2]).unwrap(),
+            Shape::cylinder(0.5, 1.0).unwrap(),
+            Shape::cone(0.6, 1.2).unwrap(),
+        ];
+        for (kind, body) in bodies.iter().enumerate() {
+            let (mut found, cases) = (0, 1000);
+            for case in 0..cases {
+                let mut unit = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+                let size = 10f64.powi([0, -6, 6, 60, -60][case % 5]);
+                let (at, way, turn) = (unit() * 10.0, unit(), unit());
+                let place = |to: DVec3, scale: f64, turn: DQuat| {
+                    DAffine3::from_scale_rotation_translation(DVec3::splat(scale * size), turn, to * size)
+                };
+                let placements = [
+                    place(at, 0.8, DQuat::IDENTITY),
+                    place(at + way * 1.2, 1.1, DQuat::from_scaled_axis(turn * 3.0)),
+                ];
+                let mut pair = [
+                    Placed { shape: &ball, placement: &placements[0] },
+                    Placed { shape: body, placement: &placements[1] },
+                ];
+                if case % 2 == 0 {
+                    pair.reverse();
+                }
+                let [a, b] = pair;
+                let Some(quick) = contact(a, b) else { continue };
+                found += 1;
+                let general = contacts_at_length(a, b, &ContactOptions::default(), &mut Scratch::default());
+                let extent = bounds(a.shape, a.placement).unwrap().max.abs().max_element();
+                let near = |x: DVec3, y: DVec3, limit: f64| (x - y).length() <= limit;
+                let [general] = &general[..] else { panic!("{kind} {case}: {general:?}") };
+                let ([x], [y]) = (&quick.points[..], &general.points[..]) else { panic!("{general:?}") };
+                assert!(near(quick.normal, general.normal, 1e-14), "{kind} {case}");
+                assert!(
+                    near(x.point_on_a, y.point_on_a, 1e-14 * extent)
+                        && near(x.point_on_b, y.point_on_b, 1e-14 * extent)
+                );
+                assert!((x.depth - y.depth).abs() <= 1e-14 * extent, "{kind} {case}");
+                assert_eq!((x.primitives, x.features), (y.primitives, y.features), "{kind} {case}");
+            }
+            assert!((cases / 5..cases * 4 / 5).contains(&found), "{kind}: {found} of {cases}");
+        }
+    }
+}
