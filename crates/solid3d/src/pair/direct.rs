@@ -1,4 +1,4 @@
-//! Convex shapes that are held against triangles in closed form, eight at a time: balls and capsules that their placement leaves
+//! Convex shapes that are held against triangles in closed form, eight at a time: points, balls and capsules that their placement leaves
 //! what they are, and boxes under any placement.
 
 use fearless_simd::Simd;
@@ -48,7 +48,7 @@ impl Direct {
 
 impl Round {
     fn new(shape: &dyn Support, frame: &Frame) -> Option<Round> {
-        let (local_ends, radius) = core(shape)?;
+        let (local_ends, radius) = core(shape).or_else(|| Some((point(shape)?, 0.0)))?;
         let map = &frame.common[1];
         let at = Similarity::new(&map.matrix3)?;
         let ends = local_ends.map(|end| map.transform_point3(end));
@@ -83,6 +83,14 @@ impl Round {
         let apart = exceed(simd, &near.least, self.radius + gap);
         let meet = !exceed(simd, &near.distance, self.radius - gap);
         Verdict { meet: meet & lanes, apart: apart & lanes }
+    }
+}
+
+/// The place of what is a single point, twice.
+fn point(shape: &dyn Support) -> Option<[DVec3; 2]> {
+    match shape.as_polytope()?.points() {
+        &[point] => Some([point; 2]),
+        _ => None,
     }
 }
 

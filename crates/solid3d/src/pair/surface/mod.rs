@@ -32,9 +32,10 @@ const NEAR: f64 = 4.0 * TOUCHING_ERROR;
 
 /// The point of the surface of `shape` nearest to `point`, a shape of one point; of a body that has a closed form, where that says nothing.
 pub(crate) fn surface_point(shape: Placed, point: Placed, scratch: &mut Scratch) -> SurfacePoint {
-    let p = point.placement.translation;
-    match shape.shape.class() {
-        Class::Complex(mesh) if mesh.is_solid() => solid::surface_point((mesh, shape.placement), p, scratch),
+    match (shape.shape.class(), point.shape.class()) {
+        (Class::Complex(mesh), Class::Convex(one)) if mesh.is_solid() => {
+            solid::surface_point((mesh, shape.placement), (one, point.placement), scratch)
+        }
         _ => of_union(shape, point, scratch),
     }
 }

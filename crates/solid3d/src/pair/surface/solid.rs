@@ -3,14 +3,15 @@
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::simd::level;
-use solid_convex::{Points, gjk};
+use solid_convex::{Closest, Points, gjk};
 
 use super::{NEAR, SurfacePoint, away};
 use crate::bounds::Aabb;
-use crate::pair::Scratch;
 use crate::pair::containment::PlacedSolid;
 use crate::pair::frame::{Frame, Stretch};
-use crate::pair::table::PlacedComplex;
+use crate::pair::table::{PlacedComplex, PlacedConvex};
+use crate::pair::{Scratch, complex_convex};
+use crate::shape::Complex;
 use crate::tree::{Around, Leaf, NearLeaves};
 use crate::triangle_triangle::Triangle;
 
@@ -24,14 +25,38 @@ const CONFIRMED: f64 = 1.0 / (1u64 << 48) as f64;
 /// How far beside a triangle it is tested which side of it is outside, in parts of its size.
 const BESIDE: f64 = 1e-6;
 
-pub(super) fn surface_point((mesh, at): PlacedComplex, point: DVec3, scratch: &mut Scratch) -> SurfacePoint {
-    let at_point = DAffine3::from_translation(point);
-    let frame = Frame::new(at, mesh.reach(), &at_point, DVec3::ZERO);
+/// For a point, which is given as a convex shape.
+pub(super) fn surface_point(mesh: PlacedComplex, point: PlacedConvex, scratch: &mut Scratch) -> SurfacePoint {
+    let frame = Frame::new(mesh.1, mesh.0.reach(), point.1, DVec3::ZERO);
+    let solid = PlacedSolid::new(mesh.0, &frame.common[0]).expect("the caller saw that it is solid");
+    let inside = solid.contains(frame.common[1].translation, scratch);
+    let closest = complex_convex::closest_to_surface(mesh, point, f64::INFINITY, scratch);
+    let Closest { distance, points } = closest.expect("a mesh has a triangle, and every distance is finite");
+    if distance * frame.scale <= NEAR_FACE {
+        // Twice as far: by more than the error of the distance.
+        return close_by(mesh.0, &frame, (&solid, inside), 2.0 * NEAR_FACE, scratch);
+    }
+    let side = if inside { -1.0 } else { 1.0 };
+    // Not from points of the world, whose rounding is that of their coordinates.
+    let way = point.1.translation - mesh.1.translation - mesh.1.matrix3 * points.on_a;
+    SurfacePoint {
+        distance: side * distance,
+        point: mesh.1.transform_point3(points.on_a),
+        normal: away(way) * side,
+    }
+}
+
+/// The same for a point that may be so near to the surface, or on it, that the way to it has few digits. It is no further away than
+/// `bound`, in the common frame.
+fn close_by(
+    mesh: &Complex,
+    frame: &Frame,
+    (solid, inside): (&PlacedSolid, bool),
+    bound: f64,
+    scratch: &mut Scratch,
+) -> SurfacePoint {
     let [to_common, point_to_common] = &frame.common;
     let p = point_to_common.translation;
-    let solid = PlacedSolid::new(mesh, to_common).expect("the caller saw that it is solid");
-    let inside = solid.contains(p, scratch);
-
     let local = frame.b_to_a.translation;
     let bounds = Aabb::new(local, local).inflated(frame.slack_in_a);
     let query = [Around { bounds, radius: 0.0 }];
@@ -47,7 +72,7 @@ pub(super) fn surface_point((mesh, at): PlacedComplex, point: DVec3, scratch: &m
         primitive_tests,
         found: None,
     };
-    let mut best = f64::INFINITY;
+    let mut best = bound;
     mesh.tree().nearest_on(level(), &query, &metric, &mut best, traversal, &mut nearest);
     let (triangle, foot) = nearest.found.expect("a mesh has a triangle, and every distance is finite");
 
@@ -160,5 +185,77 @@ impl Foot {
         let [first, rest @ ..] = feet;
         rest.into_iter()
             .fold(first, |nearest, foot| if foot.distance < nearest.distance { foot } else { nearest })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use glam::DMat3;
+    use rand::Rng;
+    use solid_convex::Polytope;
+    use solid_oracle::generate::{in_cube, seeded};
+
+    use super::*;
+    use crate::shape::{Class, Shape};
+
+    /// A closed, wavy tube around the axis y, of 800 triangles.
+    fn ring() -> Shape {
+        let (around, across) = (40, 10);
+        let corner = |i: u32, j: u32| {
+            let (alpha, beta) =
+                (f64::from(i) * TAU / f64::from(around), f64::from(j) * TAU / f64::from(across));
+            let radius = 1.0 + (0.3 + 0.05 * (5.0 * alpha).sin()) * beta.cos();
+            DVec3::new(radius * alpha.cos(), 0.3 * beta.sin(), radius * alpha.sin())
+        };
+        let vertices: Vec<DVec3> = (0..around * across).map(|k| corner(k / across, k % across)).collect();
+        let at = |i: u32, j: u32| i % around * across + j % across;
+        let cell = |k: u32| {
+            let (i, j) = (k / across, k % across);
+            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+        };
+        let triangles: Vec<[u32; 3]> = (0..around * across).flat_map(cell).collect();
+        Shape::mesh(vertices, triangles).unwrap().into_solid().unwrap()
+    }
+
+    /// Law: the surface is as near, on the same side, as where each triangle is asked: far from it, near it, and on it.
+    #[test]
+    fn the_nearest_place_is_that_of_all_triangles() {
+        let mut rng = seeded(152);
+        let ring = ring();
+        let Class::Complex(mesh) = ring.class() else { panic!("a mesh is complex") };
+        let vertices = ring.vertices().unwrap();
+        let one = Polytope::new(vec![DVec3::ZERO]).unwrap();
+        let (mut inside, cases) = (0, 3000);
+        for case in 0..cases {
+            let size = 10f64.powi([0, 6, -6][case % 3]);
+            let linear = DMat3::from_cols(in_cube(&mut rng), in_cube(&mut rng), in_cube(&mut rng)) * size;
+            let at = DAffine3 { matrix3: linear, translation: in_cube(&mut rng) * size };
+            let near = vertices[rng.random_range(0..vertices.len())];
+            let local = match case % 4 {
+                0 => near + in_cube(&mut rng) * 10f64.powi(-rng.random_range(6..14)),
+                _ => near + in_cube(&mut rng) * 0.4,
+            };
+            let point = DAffine3::from_translation(at.transform_point3(local));
+            let scratch = &mut Scratch::default();
+            let quick = surface_point((mesh, &at), (&one, &point), scratch);
+            let frame = Frame::new(&at, mesh.reach(), &point, DVec3::ZERO);
+            let solid = PlacedSolid::new(mesh, &frame.common[0]).unwrap();
+            let is_inside = solid.contains(frame.common[1].translation, scratch);
+            let slow = close_by(mesh, &frame, (&solid, is_inside), f64::INFINITY, scratch);
+            inside += usize::from(slow.distance < 0.0);
+            let off = (quick.distance - slow.distance).abs() * frame.scale;
+            assert!(off <= 1e-14, "case {case}: {quick:?}, {slow:?}");
+            let between = (point.translation - quick.point).length() * frame.scale;
+            assert!((between - quick.distance.abs() * frame.scale).abs() <= 1e-14, "case {case}: {quick:?}");
+            // Of places as near as each other it may be another.
+            let apart = (quick.point - slow.point).length() * frame.scale;
+            assert!(
+                apart > 1e-7 || (quick.normal - slow.normal).length() < 1e-6,
+                "case {case}: {quick:?}, {slow:?}"
+            );
+        }
+        assert!((cases / 4..cases * 3 / 4).contains(&inside), "{inside} of {cases} are inside");
     }
 }
