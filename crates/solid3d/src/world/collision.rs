@@ -143,23 +143,28 @@ impl Contact {
         Contact::Depth { depth: distance.abs(), normal, point_on_a, point_on_b }
     }
 
-    /// Where the surfaces of two objects meet; a common point is known.
-    pub(super) fn curve(a: Placed, b: Placed, witness: &Witness, scratch: &mut Scratch) -> Contact {
+    /// Where the surfaces of two objects meet that intersect.
+    pub(super) fn curve(a: Placed, b: Placed, scratch: &mut Scratch) -> Contact {
         // What has no facets has no curve.
         let curve = pair::intersection_curve(a, b, scratch).unwrap_or_default();
-        let point = curve.first_point().unwrap_or_else(|| pair::midpoint(a, b, witness));
+        let point = curve.first_point().unwrap_or_else(|| common_point(a, b, scratch));
         Contact::Curve { point, curve: Arc::new(curve) }
     }
 
-    /// The contacts of two objects; a common point is known.
-    pub(super) fn contacts(a: Placed, b: Placed, witness: &Witness, scratch: &mut Scratch) -> Contact {
+    /// The contacts of two objects that intersect.
+    pub(super) fn contacts(a: Placed, b: Placed, scratch: &mut Scratch) -> Contact {
         let manifolds = pair::contacts(a, b, &ContactOptions::default(), scratch);
         let point = match deepest(&manifolds) {
             Some((_, contact)) => 0.5 * contact.point_on_a + 0.5 * contact.point_on_b,
-            None => pair::midpoint(a, b, witness),
+            None => common_point(a, b, scratch),
         };
         Contact::Contacts { point, manifolds: manifolds.into() }
     }
+}
+
+/// A point that two objects have in common, of the world.
+fn common_point(a: Placed, b: Placed, scratch: &mut Scratch) -> DVec3 {
+    pair::midpoint(a, b, &pair::closest(a, b, scratch).points)
 }
 
 /// The deepest contact, and the manifold that it is of; of equal ones the first.

@@ -13,7 +13,7 @@ use super::pair_map::Place;
 use super::response::ResponseTable;
 use super::{Contact, ObjectId, Response, Statistics, When};
 use crate::pair::swept::{self, Encounter};
-use crate::pair::{self, Relation, Scratch};
+use crate::pair::{self, Placed, Relation, Scratch};
 
 /// What examining a candidate gave.
 #[derive(Clone, Copy, Debug, Default)]
@@ -130,32 +130,44 @@ fn now(
     described: &mut Vec<(When, Contact)>,
 ) -> Found {
     let (placed_a, placed_b) = (a.placed(), b.placed());
-    if response == Response::Simple {
-        let Decision { intersect, by_the_same } = pair::decide(placed_a, placed_b, proof, scratch);
-        return Found { outcome: if intersect { Outcome::Plain } else { Outcome::Apart }, by_the_same };
+    if response == Response::Witness {
+        return with_witness(placed_a, placed_b, proof, scratch, described);
     }
+    let Decision { intersect, by_the_same } = pair::decide(placed_a, placed_b, proof, scratch);
+    if !intersect {
+        return Found { outcome: Outcome::Apart, by_the_same };
+    }
+    let contact = match response {
+        Response::Ignore | Response::Simple | Response::Witness => {
+            return Found { outcome: Outcome::Plain, by_the_same };
+        }
+        Response::Smart => smart([a, b], scratch),
+        Response::Curve => Contact::curve(placed_a, placed_b, scratch),
+        Response::Depth => Contact::depth(placed_a, placed_b, scratch),
+        Response::Contacts => Contact::contacts(placed_a, placed_b, scratch),
+    };
+    Found { outcome: describe(When::Now, contact, described), by_the_same }
+}
+
+/// The same where a common point is wanted, which shows that they intersect.
+fn with_witness(
+    a: Placed,
+    b: Placed,
+    proof: &mut Proof,
+    scratch: &mut Scratch,
+    described: &mut Vec<(When, Contact)>,
+) -> Found {
     if let Proof::Apart(axis) = proof
-        && pair::still_separated(axis, placed_a, placed_b)
+        && pair::still_separated(axis, a, b)
     {
         return Found { outcome: Outcome::Apart, by_the_same: true };
     }
-    let witness = match pair::intersection(placed_a, placed_b, scratch) {
-        Relation::Separated { axis } => {
-            *proof = axis.into();
-            return Found { outcome: Outcome::Apart, by_the_same: false };
-        }
-        Relation::Common(witness) => witness,
+    let (outcome, axis) = match pair::intersection(a, b, scratch) {
+        Relation::Separated { axis } => (Outcome::Apart, axis),
+        Relation::Common(witness) => (describe(When::Now, Contact::witness(a, b, &witness), described), None),
     };
-    *proof = Proof::None;
-    let contact = match response {
-        Response::Ignore | Response::Simple => Contact::Simple,
-        Response::Witness => Contact::witness(placed_a, placed_b, &witness),
-        Response::Smart => smart([a, b], scratch),
-        Response::Curve => Contact::curve(placed_a, placed_b, &witness, scratch),
-        Response::Depth => Contact::depth(placed_a, placed_b, scratch),
-        Response::Contacts => Contact::contacts(placed_a, placed_b, &witness, scratch),
-    };
-    Found { outcome: describe(When::Now, contact, described), by_the_same: false }
+    *proof = axis.into();
+    Found { outcome, by_the_same: false }
 }
 
 fn describe(when: When, contact: Contact, described: &mut Vec<(When, Contact)>) -> Outcome {
