@@ -4,11 +4,13 @@
 //! cross products of two edges have among them the normal of the facet nearest to the origin: the fifteen axes of the
 //! separating-axis theorem (Gottschalk, Lin and Manocha, *OBBTree*, 1996, section 5), of any two placed boxes, sheared ones too.
 
+use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::DVec3;
 
 use super::{Nearest, Penetration};
 use crate::difference::{Difference, SUPPORT_ERROR};
 use crate::gjk::TOUCHING_ERROR;
+use crate::simd::dispatch;
 use crate::{Support, Witness};
 
 /// Roundings of 2^-53 of the cross product of two unit vectors: of the two, three each, and of the product itself.
@@ -28,23 +30,24 @@ const DEPTH_MIN: f64 = 4.0 * TOUCHING_ERROR;
 /// span a facet that may be the nearest.
 const BOUNDS_APART_MAX: f64 = 1.0 / (1u64 << 44) as f64;
 
-/// The pairs of six edges, those of one object first: of equal depths, faces go before edges that cross.
-const PAIRS: [[usize; 2]; 15] = [
-    [1, 2],
-    [2, 0],
-    [0, 1],
-    [4, 5],
-    [5, 3],
-    [3, 4],
-    [0, 3],
-    [0, 4],
-    [0, 5],
-    [1, 3],
-    [1, 4],
-    [1, 5],
-    [2, 3],
-    [2, 4],
-    [2, 5],
+/// The pairs of six edges, those of one object first: of equal depths, faces go before edges that cross. With where their vectors have them, four pairs
+/// in each: an edge of `A` with each of `B` and the next of `A`, and at last those of `B`.
+const PAIRS: [([usize; 2], usize); 15] = [
+    ([1, 2], 7),
+    ([2, 0], 11),
+    ([0, 1], 3),
+    ([4, 5], 13),
+    ([5, 3], 14),
+    ([3, 4], 12),
+    ([0, 3], 0),
+    ([0, 4], 1),
+    ([0, 5], 2),
+    ([1, 3], 4),
+    ([1, 4], 5),
+    ([1, 5], 6),
+    ([2, 3], 8),
+    ([2, 4], 9),
+    ([2, 5], 10),
 ];
 
 /// The difference of two parallelepipeds. Space: that of the difference.
@@ -64,6 +67,14 @@ struct Facet {
     height: f64,
     /// Two edges that span it.
     spanned_by: [usize; 2],
+}
+
+/// The slabs between facets that face each other, of all pairs of edges.
+struct Slabs {
+    /// The sines of the angles between the two edges.
+    sine: [f64; 16],
+    /// How far the origin is from the nearer facet. No number where the sine is 0.
+    height: [f64; 16],
 }
 
 /// How deep two parallelepipeds are in each other; `None` for other objects, and where that is not certain to
@@ -91,28 +102,51 @@ where
 impl Zonotope {
     /// The facet nearest to the origin, and a lower bound of the distance of all.
     fn nearest(&self) -> Option<(Facet, f64)> {
-        let mut nearest: Option<Facet> = None;
+        let slabs = dispatch!(simd => self.slabs(simd));
+        let mut nearest: Option<([usize; 2], usize)> = None;
         let mut lower = f64::INFINITY;
-        for [i, j] in PAIRS {
-            let across = self.units[i].cross(self.units[j]);
-            let sine = across.length();
-            if sine <= PARALLEL_SINE {
+        for (pair, k) in PAIRS {
+            if slabs.sine[k] <= PARALLEL_SINE {
                 continue;
             }
-            let normal = across / sine;
-            let along = normal.dot(self.middle);
-            let reach = self.edges.iter().fold(0.0, |reach, edge| reach + normal.dot(*edge).abs());
-            let height = reach - along.abs();
             // So much may the normal be tilted.
-            let error = CROSS_ERROR / sine * REACH;
+            let (height, error) = (slabs.height[k], CROSS_ERROR / slabs.sine[k] * REACH);
             lower = lower.min(height - error);
-            if nearest.as_ref().is_none_or(|nearest| height + error < nearest.height) {
-                let normal = if along > 0.0 { -normal } else { normal };
-                nearest = Some(Facet { normal, height, spanned_by: [i, j] });
+            if nearest.is_none_or(|(_, best)| height + error < slabs.height[best]) {
+                nearest = Some((pair, k));
             }
         }
+        let (spanned_by @ [i, j], k) = nearest?;
+        let normal = self.units[i].cross(self.units[j]) / slabs.sine[k];
+        let normal = if normal.dot(self.middle) > 0.0 { -normal } else { normal };
         // Edges that were taken for parallel.
-        Some((nearest?, lower - SUPPORT_ERROR))
+        Some((Facet { normal, height: slabs.height[k], spanned_by }, lower - SUPPORT_ERROR))
+    }
+
+    /// How far the zonotope reaches along the cross products of all pairs of edges, as [`PAIRS`] says where.
+    #[inline(always)]
+    fn slabs<S: Simd>(&self, simd: S) -> Slabs {
+        let [a, b, c, d, e, f] = self.units;
+        let pairs = [
+            (splat(simd, a), four(simd, [d, e, f, b])),
+            (splat(simd, b), four(simd, [d, e, f, c])),
+            (splat(simd, c), four(simd, [d, e, f, a])),
+            (four(simd, [d, e, f, DVec3::ZERO]), four(simd, [e, f, d, DVec3::ZERO])),
+        ];
+        let middle = splat(simd, self.middle);
+        let mut slabs = Slabs { sine: [0.0; 16], height: [0.0; 16] };
+        for (i, (u, v)) in pairs.iter().enumerate() {
+            let [x, y, z] = cross(u, v);
+            let sine = dot(&[x, y, z], &[x, y, z]).sqrt();
+            let normal = [x / sine, y / sine, z / sine];
+            let mut reach = f64x4::splat(simd, 0.0);
+            for edge in &self.edges {
+                reach += dot(&normal, &splat(simd, *edge)).abs();
+            }
+            sine.store_slice(&mut slabs.sine[4 * i..4 * i + 4]);
+            (reach - dot(&normal, &middle).abs()).store_slice(&mut slabs.height[4 * i..4 * i + 4]);
+        }
+        slabs
     }
 
     /// How much of each edge, from -1 to 1, there is in a point of a facet.
@@ -158,5 +192,74 @@ impl Zonotope {
             parts[k] = share * place * along.dot(self.units[k]).signum();
         }
         parts
+    }
+}
+
+/// Four vectors, by coordinates.
+type Four<S> = [f64x4<S>; 3];
+
+/// One vector four times.
+#[inline(always)]
+fn splat<S: Simd>(simd: S, v: DVec3) -> Four<S> {
+    [f64x4::splat(simd, v.x), f64x4::splat(simd, v.y), f64x4::splat(simd, v.z)]
+}
+
+#[inline(always)]
+fn four<S: Simd>(simd: S, [a, b, c, d]: [DVec3; 4]) -> Four<S> {
+    [
+        f64x4::simd_from(simd, [a.x, b.x, c.x, d.x]),
+        f64x4::simd_from(simd, [a.y, b.y, c.y, d.y]),
+        f64x4::simd_from(simd, [a.z, b.z, c.z, d.z]),
+    ]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(u: &Four<S>, v: &Four<S>) -> f64x4<S> {
+    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+}
+
+/// As [`DVec3::cross`] has it, to the bit.
+#[inline(always)]
+fn cross<S: Simd>(u: &Four<S>, v: &Four<S>) -> Four<S> {
+    [u[1] * v[2] - v[1] * u[2], u[2] * v[0] - v[2] * u[0], u[0] * v[1] - v[0] * u[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use solid_oracle::generate::seeded;
+
+    use super::*;
+    use crate::simd::levels;
+    use crate::testing::in_cube;
+
+    /// The slow twin: one pair of edges after the other.
+    fn one_by_one(zonotope: &Zonotope, [i, j]: [usize; 2]) -> (f64, f64) {
+        let across = zonotope.units[i].cross(zonotope.units[j]);
+        let sine = across.length();
+        let normal = across / sine;
+        let reach = zonotope.edges.iter().fold(0.0, |reach, edge| reach + normal.dot(*edge).abs());
+        (sine, reach - normal.dot(zonotope.middle).abs())
+    }
+
+    /// Law: on every level the slabs are those of one pair after the other, to the bit; of parallel edges, too.
+    #[test]
+    fn slabs_are_those_of_the_pairs() {
+        let mut rng = seeded(153);
+        for case in 0..1000 {
+            let mut edges: [DVec3; 6] = std::array::from_fn(|_| in_cube(&mut rng));
+            if case % 2 == 0 {
+                edges[4] = edges[1] * 0.5;
+            }
+            let units = edges.map(DVec3::normalize_or_zero);
+            let zonotope = Zonotope { edges, units, middle: in_cube(&mut rng) };
+            for level in levels() {
+                let slabs = dispatch!(level, simd => zonotope.slabs(simd));
+                for (pair, k) in PAIRS {
+                    let (sine, height) = one_by_one(&zonotope, pair);
+                    assert_eq!(slabs.sine[k].to_bits(), sine.to_bits(), "{case}: {pair:?}");
+                    assert!(slabs.height[k] == height || sine == 0.0, "{case}: {pair:?}");
+                }
+            }
+        }
     }
 }

@@ -21,7 +21,7 @@ use solid_convex::simd::dispatch;
 use solid_convex::{Closest, Penetration, unit_scale};
 
 use super::{Mirror, Placed, Relation};
-use crate::shape::{ShapeKind, Simple};
+use crate::shape::{Shape, ShapeKind, Simple};
 use ball::BallAndBody;
 pub(crate) use ball::{closest_to, contains};
 use boxes::PlacedBox;
@@ -93,7 +93,8 @@ pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
 
 /// The same of two capsules whose cores are apart.
 fn of_rounds(a: Placed, b: Placed) -> Option<Penetration> {
-    match Pair::new(a, b)? {
+    let is_round = |shape: &Shape| matches!(shape.simple(), Some(Simple::Round(_)));
+    match (is_round(a.shape) && is_round(b.shape)).then(|| Pair::new(a, b))?? {
         (Pair::Rounds(a, b), scale) => Cores::of_rounds(&a, &b).penetration(scale),
         _ => None,
     }
