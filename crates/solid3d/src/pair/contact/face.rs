@@ -82,6 +82,11 @@ impl Face {
     }
 }
 
+/// The direction of a normal; zero of one that is.
+fn unit(normal: DVec3) -> DVec3 {
+    direction(normal).unwrap_or(DVec3::ZERO)
+}
+
 /// A convex body in the common frame of a pair.
 pub(super) struct Placed<'a> {
     body: &'a Body<'a>,
@@ -183,7 +188,7 @@ impl<'a> Placed<'a> {
 
     /// The image of a normal: by the inverse transposed, whose entries may be so large that their squares are not numbers.
     fn normal(&self, local: DVec3) -> DVec3 {
-        direction(self.map.inverse().transpose() * local).unwrap_or(DVec3::ZERO)
+        unit(self.map.inverse().transpose() * local)
     }
 
     fn ball(&self, sphere: &Sphere, direction: DVec3, local: DVec3) -> Face {
@@ -193,9 +198,10 @@ impl<'a> Placed<'a> {
 
     fn side_of_box(&self, cuboid: &Cuboid, direction: DVec3, local: DVec3) -> Face {
         let half = 0.5 * cuboid.size();
+        let rows = self.map.inverse().transpose();
         let side = |axis: usize| {
             let sign = if local[axis] < 0.0 { -1.0 } else { 1.0 };
-            let normal = self.normal(DVec3::AXES[axis] * sign);
+            let normal = unit(rows.col(axis) * sign);
             (normal.dot(direction), axis, sign, normal)
         };
         let sides = [side(0), side(1), side(2)];

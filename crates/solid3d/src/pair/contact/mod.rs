@@ -351,7 +351,9 @@ impl Pair<'_> {
         let primitives = [a.primitive, b.primitive];
         let touch = |corner: clip::Clipped| {
             let at = base + u * corner.at.x + v * corner.at.y;
-            let of = |face: &Face, order: &[usize], i: usize| face.corners[order[i % order.len()]];
+            let of = |face: &Face, order: &[usize], i: usize| {
+                face.corners[order[if i == order.len() { 0 } else { i }]]
+            };
             let edge = |face: &Face, order: &[usize], i: usize| {
                 let (x, y) = (of(face, order, i).vertex, of(face, order, i + 1).vertex);
                 Feature::Edge(x.min(y), x.max(y))
@@ -413,10 +415,15 @@ fn projected(face: &Face, flat: impl Fn(DVec3) -> DVec2) -> (SmallVec<[usize; 4]
         (0..all.len()).max_by(|i, j| distance(i).total_cmp(&distance(j)).then(j.cmp(i))).unwrap_or(0)
     };
     if all.len() >= 3 {
-        let from = far(all[0]);
-        let to = far(all[from]);
-        if clip::area(&all).abs() <= THIN * all[from].distance_squared(all[to]) {
-            return (smallvec![from, to], smallvec![all[from], all[to]]);
+        let area = clip::area(&all).abs();
+        // No two are further apart than twice what one is from the first: of most that is enough.
+        let extent_squared = all.iter().map(|p| p.distance_squared(all[0])).fold(0.0, f64::max);
+        if area <= THIN * 4.0 * extent_squared {
+            let from = far(all[0]);
+            let to = far(all[from]);
+            if area <= THIN * all[from].distance_squared(all[to]) {
+                return (smallvec![from, to], smallvec![all[from], all[to]]);
+            }
         }
     }
     ((0..all.len()).collect(), all)
