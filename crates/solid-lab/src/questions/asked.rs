@@ -1,4 +1,4 @@
-use parry3d_f64::math::Vector;
+use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::query::{
     ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, Ray as ParryRay, ShapeCastOptions,
     cast_shapes, cast_shapes_nonlinear, contact, distance, intersection_test,
@@ -50,10 +50,10 @@ pub const ALONE: [(&str, OfOne); 5] = [
     }),
 ];
 
-const VALID: &str = "the poses are valid";
-const SUPPORTED: &str = "the pair is supported";
+pub const VALID: &str = "the poses are valid";
+pub const SUPPORTED: &str = "the pair is supported";
 
-fn number(answer: bool) -> f64 {
+pub fn number(answer: bool) -> f64 {
     f64::from(u8::from(answer))
 }
 
@@ -112,20 +112,25 @@ fn contacts<'q>(a: &'q Kind, b: &'q Kind, poses: &'q Poses) -> (Asker<'q>, Optio
     };
     let theirs = move |i: usize| {
         let [at_a, at_b] = &poses.meeting[i].theirs;
-        let (mut found, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (Vec::new(), None);
-        let between = at_a.inv_mul(at_b);
-        let asked = DefaultQueryDispatcher.contact_manifolds(
-            &between,
-            &*a.theirs,
-            &*b.theirs,
-            0.0,
-            &mut found,
-            &mut workspace,
-        );
-        asked.expect(SUPPORTED);
-        found.iter().map(|manifold| manifold.points.len() as f64).sum()
+        contact_points([a, b], [at_a, at_b])
     };
     (Box::new(ours), both(a, b, theirs))
+}
+
+/// How many points parry's manifolds have.
+pub fn contact_points([a, b]: [&Kind; 2], [at_a, at_b]: [&ParryPose; 2]) -> f64 {
+    let (mut found, mut workspace): (Vec<ContactManifold<(), ()>>, _) = (Vec::new(), None);
+    let between = at_a.inv_mul(at_b);
+    let asked = DefaultQueryDispatcher.contact_manifolds(
+        &between,
+        &*a.theirs,
+        &*b.theirs,
+        0.0,
+        &mut found,
+        &mut workspace,
+    );
+    asked.expect(SUPPORTED);
+    found.iter().map(|manifold| manifold.points.len() as f64).sum()
 }
 
 fn straight<'q>(a: &'q Kind, b: &'q Kind, poses: &'q Poses) -> (Asker<'q>, Option<Asker<'q>>) {

@@ -6,9 +6,11 @@
 //! | `kinds` | the kinds, in the types of both |
 //! | `poses` | where they are |
 //! | `asked` | the questions |
+//! | `crowd` | worlds of a kind |
 //! | `table` | what comes out |
 
 mod asked;
+mod crowd;
 mod kinds;
 mod poses;
 mod table;
@@ -20,6 +22,8 @@ use cpu_time::ThreadTime;
 use crate::inputs::seeded;
 use crate::peers::{Effort, Spread, date, machine};
 use asked::{ALONE, Asker, OF_PAIRS};
+use crowd::{Crowd, OF_CROWDS};
+use kinds::Kind;
 pub use table::table;
 
 /// A turn takes at least so long.
@@ -59,6 +63,14 @@ pub struct Report {
     pub pairs: Asked,
     /// Of one.
     pub alone: Asked,
+    /// Of a frame of many.
+    pub crowds: Asked,
+}
+
+impl Report {
+    fn asked(&self) -> [&Asked; 3] {
+        [&self.pairs, &self.alone, &self.crowds]
+    }
 }
 
 /// Measures everything. `progress` is told the kinds before their turn.
@@ -79,7 +91,16 @@ pub fn run(effort: Effort, seed: u64, mut progress: impl FnMut(&str)) -> Report 
         let cells = ALONE.iter().map(|(_, ask)| race(effort, sights.len(), ask(a, &sights)));
         alone.rows.push((a.name.to_string(), cells.collect()));
     }
-    Report { seed, machine: machine(), date: date(), pairs, alone }
+    let mut crowds = Asked { questions: OF_CROWDS.map(|(name, _)| name).to_vec(), rows: Vec::new() };
+    let convex: Vec<&Kind> = kinds.iter().filter(|kind| kind.theirs.as_trimesh().is_none()).collect();
+    let of_one_kind = convex.iter().map(|&kind| (kind.name, vec![kind]));
+    for (name, kinds) in of_one_kind.chain([("all of these", convex.clone())]) {
+        progress(&format!("a world of {name}"));
+        let crowd = Crowd::new(effort, &mut rng, kinds);
+        let cells = OF_CROWDS.iter().map(|(_, ask)| race(effort, crowd.len(), ask(&crowd)));
+        crowds.rows.push((name.to_string(), cells.collect()));
+    }
+    Report { seed, machine: machine(), date: date(), pairs, alone, crowds }
 }
 
 /// Lets both take turns at a question.
@@ -125,8 +146,9 @@ mod tests {
     #[test]
     fn every_question_is_asked_of_every_kind() {
         let report = run(Effort::Smoke, 1999, |_| {});
-        assert_eq!((report.pairs.rows.len(), report.alone.rows.len()), (28, 7));
-        let cells = report.pairs.rows.iter().chain(&report.alone.rows).flat_map(|(_, cells)| cells);
+        let rows = report.asked().map(|asked| asked.rows.len());
+        assert_eq!(rows, [28, 7, 7]);
+        let cells = report.asked().into_iter().flat_map(|asked| &asked.rows).flat_map(|(_, cells)| cells);
         assert!(cells.clone().all(|cell| cell.micros > 0.0));
         // Of two meshes parry has no depth, no contacts and no time of impact.
         assert_eq!(cells.filter(|cell| cell.ratio.is_none()).count(), 3);

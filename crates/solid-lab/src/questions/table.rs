@@ -7,7 +7,9 @@ pub fn table(report: &Report) -> String {
     let mut text = of_asked("two shapes", &report.pairs);
     text.push('\n');
     text.push_str(&of_asked("one shape", &report.alone));
-    let rows = || report.pairs.rows.iter().chain(&report.alone.rows);
+    text.push('\n');
+    text.push_str(&of_asked("a frame of 1,000", &report.crowds));
+    let rows = || report.asked().into_iter().flat_map(|asked| &asked.rows);
     let ratios = || rows().flat_map(|(_, cells)| cells).filter_map(|cell| cell.ratio);
     let faster = ratios().filter(|&ratio| ratio >= 1.0).count();
     let _ = write!(
