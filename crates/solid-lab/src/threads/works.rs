@@ -30,7 +30,7 @@ pub fn all(bench: &Bench) -> Vec<Case<'_>> {
     let target = |size: usize, many: usize| if size < many { NO_SLOWER } else { SPEED_UP };
     let scaled = |size: usize| bench.effort.size(size);
     let mut cases: Vec<Case> = Vec::new();
-    for objects in [1_000, 10_000, 100_000] {
+    for objects in [1_000, 2_000, 10_000, 100_000] {
         let target = target(objects, OBJECTS_MANY);
         let name = format!("test of a world, {} polyhedra that all move", with_commas(objects));
         cases.push((name.clone(), target, Box::new(move || world(bench, &name, scaled(objects)))));
