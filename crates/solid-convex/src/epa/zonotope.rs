@@ -30,8 +30,8 @@ const DEPTH_MIN: f64 = 4.0 * TOUCHING_ERROR;
 /// span a facet that may be the nearest.
 const BOUNDS_APART_MAX: f64 = 1.0 / (1u64 << 44) as f64;
 
-/// The pairs of six edges, those of one object first: of equal depths, faces go before edges that cross. With where their vectors have them, four pairs
-/// in each: an edge of `A` with each of `B` and the next of `A`, and at last those of `B`.
+/// The pairs of six edges, those of one object first: of equal depths, faces go before edges that cross. With each its place in [`Slabs`], where four
+/// make a vector: an edge of `A` with each of `B` and with the next of `A`, and at last those of `B`.
 const PAIRS: [([usize; 2], usize); 15] = [
     ([1, 2], 7),
     ([2, 0], 11),
@@ -123,7 +123,7 @@ impl Zonotope {
         Some((Facet { normal, height: slabs.height[k], spanned_by }, lower - SUPPORT_ERROR))
     }
 
-    /// How far the zonotope reaches along the cross products of all pairs of edges, as [`PAIRS`] says where.
+    /// Of all pairs of edges, each where [`PAIRS`] says.
     #[inline(always)]
     fn slabs<S: Simd>(&self, simd: S) -> Slabs {
         let [a, b, c, d, e, f] = self.units;

@@ -75,6 +75,7 @@ pub(super) fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
 /// Something of a ball, or a point, and a body; of a body and a ball mirrored. `None` for other shapes, and where GJK has to say.
 #[inline]
 fn of_ball<T: Mirror>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) -> Option<T>) -> Option<T> {
+    // A point is a hull, which is no body here.
     let in_order = a.shape.ball_radius().is_some() && b.shape.kind() != ShapeKind::ConvexHull;
     let (ball, body) = if in_order { (a, b) } else { (b, a) };
     let found = what(&BallAndBody::new(ball, body)?)?;

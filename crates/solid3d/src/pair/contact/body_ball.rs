@@ -33,6 +33,7 @@ pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
 
 #[cfg(test)]
 mod tests {
+    use glam::DQuat;
     use rand::Rng;
     use solid_oracle::generate::seeded;
 
@@ -41,7 +42,6 @@ mod tests {
     use crate::pair::Scratch;
     use crate::query::{ContactOptions, bounds};
     use crate::shape::Shape;
-    use glam::DQuat;
 
     /// Law: the contact is that of the general way: the ball as the first and as the second, at any size and place.
     #[test]
