@@ -160,12 +160,13 @@ impl Shear {
                 continue;
             }
             let [of_p, of_q] = [p, q].map(|p| p.truncate().abs().max_element());
-            // Along the ray both ends count, across it the point between.
-            let weights = if of_p + of_q == 0.0 { [0.0, 1.0] } else { [of_p / (of_p + of_q); 2] };
-            for of_j in weights {
+            let both = of_p + of_q;
+            // Along the ray both ends count, across it the point between: with one division, so that what is 0 stays so.
+            let between = || ((p.z * of_q + q.z * of_p) / both, of_p / both);
+            for (depth, of_j) in if both == 0.0 { [(p.z, 0.0), (q.z, 1.0)] } else { [between(); 2] } {
                 let mut barycentric = [0.0; 3];
                 (barycentric[i], barycentric[j]) = (1.0 - of_j, of_j);
-                let t = (p.z * (1.0 - of_j) + q.z * of_j) * self.depth_to_t;
+                let t = depth * self.depth_to_t;
                 let hit = TriangleHit { t, barycentric, back: None };
                 first = first.filter(|first| first.t <= t).or(Some(hit));
                 last = last.filter(|last| last.t >= t).or(Some(hit));
@@ -237,6 +238,18 @@ mod tests {
         }
         println!("{hits} of {cases} hit, {edge_on} edge on");
         assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))) && edge_on > 1000);
+    }
+
+    /// A third of an edge has no exact weights, but the ray starts there all the same; both ways.
+    #[test]
+    fn a_ray_in_the_plane_that_starts_on_an_edge_hits_there() {
+        let (a, b, c) = (DVec3::new(-1.0, 2.0, 0.0), DVec3::new(1.0, 1.0, -1.0), DVec3::new(-2.0, -2.0, 2.0));
+        for triangle in [[a, b, c], [b, c, a], [c, b, a]] {
+            for direction in [DVec3::new(1.0, -2.0, 0.0), DVec3::new(-1.0, 2.0, 0.0)] {
+                let hit = Shear::new(DVec3::ZERO, direction, 1.0).hit(&triangle);
+                assert_eq!(hit.map(|hit| hit.t), Some(0.0), "{triangle:?} {direction}");
+            }
+        }
     }
 
     /// Slivers and grazing rays too: a hit is on the ray and on the triangle, up to the rounding of positions.
