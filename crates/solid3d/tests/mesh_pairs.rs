@@ -565,6 +565,9 @@ fn a_deformation_to_the_same_positions_answers_alike() {
             .unwrap();
             let closest = query::distance(mesh, &at, &small, &at_small).unwrap();
             // Of what intersects it is any common point.
+            let apart = closest.point_on_a.distance(closest.point_on_b);
+            let rounding = 1e-11 * extent + 1e-15 * closest.point_on_a.abs().max_element();
+            assert!((apart - closest.distance).abs() <= rounding, "case {case}: {closest:?}");
             let points = (closest.distance > 0.0).then_some([closest.point_on_a, closest.point_on_b]);
             let meet = query::intersects(mesh, &at, &small, &at_small).unwrap();
             let common = query::common_point(mesh, &at, &small, &at_small).unwrap();
