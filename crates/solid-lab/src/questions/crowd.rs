@@ -1,7 +1,6 @@
 use std::cell::RefCell;
 
 use parry3d_f64::math::Pose as ParryPose;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use parry3d_f64::query::intersection_test;
 use rand::rngs::StdRng;
 use solid3d::glam::DAffine3;
@@ -90,19 +89,12 @@ impl<'k> Crowd<'k> {
     /// With parry's tree, and what is asked of each pair of which the boxes overlap.
     fn theirs<'q>(&'q self, ask: impl Fn([&Kind; 2], [&ParryPose; 2]) -> f64 + 'q) -> Asker<'q> {
         let bounds = move |(i, at): (usize, &ParryPose)| self.kind(i).theirs.compute_aabb(at);
-        let boxes: Vec<_> = self.frame(0).theirs.iter().enumerate().map(bounds).collect();
-        let tree = RefCell::new(Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes));
-        let workspace = RefCell::new(BvhWorkspace::default());
+        let boxes = self.frame(0).theirs.iter().enumerate().map(bounds);
+        let crowd = RefCell::new(double::Crowd::new(boxes));
         Box::new(move |i| {
-            let (mut tree, mut workspace) = (tree.borrow_mut(), workspace.borrow_mut());
             let at = &self.frame(i).theirs;
-            for object in at.iter().enumerate() {
-                let _ = tree.insert_or_update_partially(bounds(object), object.0 as u32, 0.0);
-            }
-            tree.refit(&mut workspace);
-            tree.optimize_incremental(&mut workspace);
             let mut found = 0.0;
-            tree.traverse_bvtt_single_tree::<false>(&mut workspace, &mut |i, j| {
+            crowd.borrow_mut().frame(at.iter().enumerate().map(bounds), |i, j| {
                 let pair = [i as usize, j as usize];
                 found += ask(pair.map(|i| self.kind(i)), pair.map(|i| &at[i]));
             });

@@ -15,4 +15,4 @@ fn double(x: Real) -> f64 {
 
 #[path = "library.rs"]
 mod library;
-pub use library::{Parry, Swarm, vector};
+pub use library::{Crowd, Parry, Swarm, vector};

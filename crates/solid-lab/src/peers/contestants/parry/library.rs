@@ -153,11 +153,39 @@ impl Boxes for Swarm {
     }
 }
 
-/// parry's tree, and its test of each pair of which the boxes overlap; all move, so that all pairs are new.
-pub struct Objects {
-    shapes: Vec<ConvexPolyhedron>,
+/// parry's tree over boxes that all move, so that all pairs are new.
+pub struct Crowd {
     tree: Bvh,
     workspace: BvhWorkspace,
+}
+
+impl Crowd {
+    /// Of the boxes in the order of their numbers.
+    pub fn new(boxes: impl Iterator<Item = Aabb>) -> Self {
+        let boxes: Vec<Aabb> = boxes.collect();
+        Crowd { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), workspace: BvhWorkspace::default() }
+    }
+
+    /// Calls `found` with the numbers of each pair of boxes that overlap, after all moved.
+    pub fn frame(&mut self, boxes: impl Iterator<Item = Aabb>, mut found: impl FnMut(u32, u32)) {
+        for (i, bounds) in (0..).zip(boxes) {
+            let _ = self.tree.insert_or_update_partially(bounds, i, 0.0);
+        }
+        self.tree.refit(&mut self.workspace);
+        self.tree.optimize_incremental(&mut self.workspace);
+        self.tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut found);
+    }
+}
+
+/// Shapes, and a test of each pair of which the boxes overlap.
+pub struct Objects {
+    shapes: Vec<ConvexPolyhedron>,
+    crowd: Crowd,
+}
+
+/// The boxes of shapes that are used in turns.
+fn bounds_of<'s>(shapes: &'s [ConvexPolyhedron], poses: &'s [Pose]) -> impl Iterator<Item = Aabb> + 's {
+    poses.iter().zip(shapes.iter().cycle()).map(|(pose, shape)| shape.compute_aabb(pose))
 }
 
 impl Simulator for Parry {
@@ -166,20 +194,13 @@ impl Simulator for Parry {
     fn world(simulation: &ICollide) -> Objects {
         let shapes: Vec<ConvexPolyhedron> = simulation.shapes.iter().map(convex).collect();
         let poses: Vec<Pose> = simulation.poses().iter().map(Self::pose).collect();
-        let boxes: Vec<Aabb> =
-            poses.iter().zip(shapes.iter().cycle()).map(|(pose, shape)| shape.compute_aabb(pose)).collect();
-        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-        Objects { shapes, tree, workspace: BvhWorkspace::default() }
+        let crowd = Crowd::new(bounds_of(&shapes, &poses));
+        Objects { shapes, crowd }
     }
 
-    fn frame(Objects { shapes, tree, workspace }: &mut Objects, poses: &[Pose]) -> Vec<(u32, u32)> {
-        for (i, (pose, shape)) in (0..).zip(poses.iter().zip(shapes.iter().cycle())) {
-            let _ = tree.insert_or_update_partially(shape.compute_aabb(pose), i, 0.0);
-        }
-        tree.refit(workspace);
-        tree.optimize_incremental(workspace);
+    fn frame(Objects { shapes, crowd }: &mut Objects, poses: &[Pose]) -> Vec<(u32, u32)> {
         let mut pairs = Vec::new();
-        tree.traverse_bvtt_single_tree::<false>(workspace, &mut |i, j| {
+        crowd.frame(bounds_of(shapes, poses), |i, j| {
             let [a, b] = [i, j].map(|i| &shapes[i as usize % shapes.len()]);
             let [at_a, at_b] = [i, j].map(|i| &poses[i as usize]);
             if query::intersection_test(at_a, a, at_b, b).expect("the pair is supported").intersecting {
