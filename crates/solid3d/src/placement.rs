@@ -82,16 +82,30 @@ fn plainly_good<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) 
         & (translation.length_squared() <= MAGNITUDE_MAX * MAGNITUDE_MAX)
 }
 
-/// The unit vector along a vector of any length, without overflow or underflow on the way; `None` for zero.
+/// The unit vector along a vector of any length; `None` for zero.
 pub(crate) fn direction(v: DVec3) -> Option<DVec3> {
+    length_and_direction(v).map(|(_, direction)| direction)
+}
+
+/// The length of a vector, and the unit vector along it, without overflow or underflow on the way; `None` for zero.
+#[inline(always)]
+pub(crate) fn length_and_direction(v: DVec3) -> Option<(f64, DVec3)> {
     /// Squares of lengths that lose no digits.
     const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
     let square = v.length_squared();
     if PLAIN.contains(&square) {
-        return Some(v / square.sqrt());
+        let length = square.sqrt();
+        return Some((length, v / length));
     }
+    scaled_length_and_direction(v)
+}
+
+/// The same by the largest coordinate.
+#[cold]
+fn scaled_length_and_direction(v: DVec3) -> Option<(f64, DVec3)> {
     let largest = v.abs().max_element();
-    (largest > 0.0).then(|| (v / largest).normalize())
+    let (unit, length) = (largest > 0.0).then(|| (v / largest).normalize_and_length())?;
+    Some((length * largest, unit))
 }
 
 /// The inverse of a checked placement's linear part. Axes of very different length do it no harm.

@@ -21,7 +21,7 @@ use solid_convex::simd::dispatch;
 use solid_convex::{Closest, Penetration, unit_scale};
 
 use super::{Mirror, Placed, Relation};
-use crate::shape::{Shape, ShapeKind, Simple};
+use crate::shape::{ShapeKind, Simple};
 use ball::BallAndBody;
 pub(crate) use ball::{closest_to, contains};
 use boxes::PlacedBox;
@@ -94,8 +94,11 @@ pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
 
 /// The same of two capsules whose cores are apart.
 fn of_rounds(a: Placed, b: Placed) -> Option<Penetration> {
-    let is_round = |shape: &Shape| matches!(shape.simple(), Some(Simple::Round(_)));
-    match (is_round(a.shape) && is_round(b.shape)).then(|| Pair::new(a, b))?? {
+    // Before a pair of boxes is made a pair.
+    let [Some(Simple::Round(_)), Some(Simple::Round(_))] = [a.shape.simple(), b.shape.simple()] else {
+        return None;
+    };
+    match Pair::new(a, b)? {
         (Pair::Rounds(a, b), scale) => Cores::of_rounds(&a, &b).penetration(scale),
         _ => None,
     }

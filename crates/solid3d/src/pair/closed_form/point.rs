@@ -8,6 +8,7 @@ use solid_convex::unit_scale;
 
 use super::similarity::Similarity;
 use crate::pair::{Placed, SurfacePoint};
+use crate::placement::length_and_direction;
 use crate::shape::{Body, ShapeKind};
 
 /// Where a surface is nearest to a point, in the space of the surface.
@@ -188,23 +189,8 @@ fn of_cone(radius: f64, half_height: f64, p: DVec2) -> Foot<DVec2> {
     }
 }
 
-/// The length of a vector and its direction, which for zero is another. The vector is in the unit of the pair: no square overflows.
+/// The length of a vector and its direction, which for zero is another.
 #[inline(always)]
 fn polar(v: DVec3, of_zero: DVec3) -> (f64, DVec3) {
-    /// Squares of lengths that lose no digits.
-    const PLAIN: f64 = 1e-200;
-    let square = v.length_squared();
-    if square >= PLAIN {
-        let length = square.sqrt();
-        return (length, v / length);
-    }
-    short_polar(v).unwrap_or((0.0, of_zero))
-}
-
-/// The same of a short vector; `None` of zero.
-#[cold]
-fn short_polar(v: DVec3) -> Option<(f64, DVec3)> {
-    let largest = v.abs().max_element();
-    let (unit, length) = (largest > 0.0).then(|| (v / largest).normalize_and_length())?;
-    Some((length * largest, unit))
+    length_and_direction(v).unwrap_or((0.0, of_zero))
 }

@@ -69,18 +69,18 @@ pub(super) fn closest_within(
     if let Some(points) = contained(complex, convex, scratch) {
         return Some(Closest { distance: 0.0, points });
     }
-    closest_to_surface(complex, convex, bound, scratch)
+    closest_to_surface(complex, convex, &frame(complex, convex), bound, scratch)
 }
 
 /// The same of the surface of the complex shape alone, for what is not inside; of what is, if it is clear of the surface.
 pub(super) fn closest_to_surface(
     complex: PlacedComplex,
     convex: PlacedConvex,
+    frame: &Frame,
     bound: f64,
     scratch: &mut Scratch,
 ) -> Option<Closest> {
-    let frame = frame(complex, convex);
-    let (primitive, closest) = approach::closest_primitive(complex, convex, &frame, bound, scratch)?;
+    let (primitive, closest) = approach::closest_primitive(complex, convex, frame, bound, scratch)?;
     let mut closest = closest.unwrap_or_else(|| closest_to(complex, primitive, convex));
     // Of primitives as near as each other, another may be the one that touches.
     let may_touch = closest.distance > 0.0 && closest.distance * frame.scale <= 2.0 * gjk::TOUCHING_ERROR;

@@ -27,10 +27,10 @@ const BESIDE: f64 = 1e-6;
 
 /// For a point, which is given as a convex shape.
 pub(super) fn surface_point(mesh: PlacedComplex, point: PlacedConvex, scratch: &mut Scratch) -> SurfacePoint {
-    let frame = Frame::new(mesh.1, mesh.0.reach(), point.1, DVec3::ZERO);
+    let frame = complex_convex::frame(mesh, point);
     let solid = PlacedSolid::new(mesh.0, &frame.common[0]).expect("the caller saw that it is solid");
     let inside = solid.contains(frame.common[1].translation, scratch);
-    let closest = complex_convex::closest_to_surface(mesh, point, f64::INFINITY, scratch);
+    let closest = complex_convex::closest_to_surface(mesh, point, &frame, f64::INFINITY, scratch);
     let Closest { distance, points } = closest.expect("a mesh has a triangle, and every distance is finite");
     if distance * frame.scale <= NEAR_FACE {
         // Twice as far: by more than the error of the distance.
