@@ -7,6 +7,7 @@ use solid_convex::{Closest, Points, gjk};
 
 use super::{NEAR, SurfacePoint, away};
 use crate::bounds::Aabb;
+use crate::pair::complex_convex::{is_confirmed, nearest_to};
 use crate::pair::containment::PlacedSolid;
 use crate::pair::frame::{Frame, Stretch};
 use crate::pair::table::{PlacedComplex, PlacedConvex};
@@ -18,9 +19,6 @@ use crate::triangle_triangle::Triangle;
 /// Nearer to a face, its own normal is better than the way from the nearest point, of which rounding has that part. In the common
 /// frame, where the size of the data is from 1 to 2.
 const NEAR_FACE: f64 = 1.0 / (1u64 << 26) as f64;
-
-/// How far a closed form may be above the lower bound of a distance before GJK is asked. In the common frame: some rounding errors.
-const CONFIRMED: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// How far beside a triangle it is tested which side of it is outside, in parts of its size.
 const BESIDE: f64 = 1e-6;
@@ -143,48 +141,23 @@ struct Foot {
 }
 
 impl Foot {
-    /// By the face and the edges; where the plane across the way does not confirm that, as may be of slivers, by GJK.
+    /// By a point that stands on the triangle, not by its normal, which rounding tilts where it is thin; where the plane across the way
+    /// does not confirm that, as may be of slivers, by GJK.
     fn of(triangle: &Triangle, p: DVec3) -> Foot {
-        let foot = Foot::on_face(triangle, p).unwrap_or_else(|| Foot::on_edges(triangle, p));
-        let from = p - foot.point;
-        let least = triangle.iter().map(|&corner| (p - corner).dot(from)).fold(f64::INFINITY, f64::min);
-        if foot.distance * foot.distance - least <= CONFIRMED * foot.distance {
-            return foot;
+        let [s, t] = nearest_to(p, triangle);
+        let [a, b, c] = *triangle;
+        let point = a + (b - a) * s + (c - a) * t;
+        let way = p - point;
+        let distance = way.length();
+        let is_inner = s > 0.0 && t > 0.0 && s + t < 1.0;
+        if distance == 0.0 || is_confirmed(triangle, p, way, distance) {
+            return Foot { distance, point, is_inner };
         }
         let points = Points::new(triangle).expect("a triangle has corners");
         let (here, at) = (DAffine3::IDENTITY, DAffine3::from_translation(p));
         let one = Points::new(&[DVec3::ZERO]).expect("there is a point");
         let closest = gjk::closest_points(&points, &here, &one, &at);
-        Foot { distance: closest.distance, point: closest.points.on_a, is_inner: foot.is_inner }
-    }
-
-    fn on_face(triangle: &Triangle, p: DVec3) -> Option<Foot> {
-        let [a, b, c] = *triangle;
-        let normal = across(triangle)?;
-        let is_left = |u: DVec3, v: DVec3| (v - u).cross(p - u).dot(normal) > 0.0;
-        if !(is_left(a, b) && is_left(b, c) && is_left(c, a)) {
-            return None;
-        }
-        let height = (p - a).dot(normal);
-        Some(Foot { distance: height.abs(), point: p - normal * height, is_inner: true })
-    }
-
-    fn on_edges([a, b, c]: &Triangle, p: DVec3) -> Foot {
-        let feet = [[a, b], [b, c], [c, a]].map(|[u, v]| {
-            let (edge, from) = (*v - *u, p - *u);
-            let largest = edge.abs().max_element();
-            let part = if largest == 0.0 {
-                0.0
-            } else {
-                let unit = edge / largest;
-                (unit.dot(from) / (unit.length_squared() * largest)).clamp(0.0, 1.0)
-            };
-            let point = *u + edge * part;
-            Foot { distance: (p - point).length(), point, is_inner: false }
-        });
-        let [first, rest @ ..] = feet;
-        rest.into_iter()
-            .fold(first, |nearest, foot| if foot.distance < nearest.distance { foot } else { nearest })
+        Foot { distance: closest.distance, point: closest.points.on_a, is_inner }
     }
 }
 
@@ -192,9 +165,10 @@ impl Foot {
 mod tests {
     use std::f64::consts::TAU;
 
-    use glam::DMat3;
+    use glam::{DMat3, DQuat};
     use rand::Rng;
     use solid_convex::Polytope;
+    use solid_convex::gjk::TOUCHING_ERROR;
     use solid_oracle::generate::{in_cube, seeded};
 
     use super::*;
@@ -257,5 +231,42 @@ mod tests {
             );
         }
         assert!((cases / 4..cases * 3 / 4).contains(&inside), "{inside} of {cases} are inside");
+    }
+
+    /// Law: the surface of a solid needle, stretched up to a hundred million times, is as far from a point on it or all but on it as the
+    /// closest points of the two, which touch up to an error.
+    #[test]
+    fn a_needle_is_as_far_as_its_closest_point() {
+        let mut rng = seeded(153);
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let one = Polytope::new(vec![DVec3::ZERO]).unwrap();
+        let scratch = &mut Scratch::default();
+        let (mut apart, cases) = (0, 4000);
+        for case in 0..cases {
+            let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| p + in_cube(&mut rng) * 0.3);
+            let needle = Shape::mesh(corners.to_vec(), faces).unwrap().into_solid().unwrap();
+            let Class::Complex(mesh) = needle.class() else { panic!("a mesh is complex") };
+            let stretch = DMat3::from_diagonal(DVec3::new(1.0, 10f64.powi([4, 8][case % 2]), 1.0));
+            let turn = DMat3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 3.0));
+            let at = DAffine3 { matrix3: turn * stretch, translation: in_cube(&mut rng) };
+            let edge = corners[case % 4].lerp(corners[(case + 1) % 4], 0.5);
+            let off = in_cube(&mut rng) * [0.0, 1e-9, 1e-13, 1.0][case / 4 % 4];
+            let point = DAffine3::from_translation(at.transform_point3(edge) + off);
+            let found = surface_point((mesh, &at), (&one, &point), scratch);
+            let frame = complex_convex::frame((mesh, &at), (&one, &point));
+            let nearest = complex_convex::closest_to_surface(
+                (mesh, &at),
+                (&one, &point),
+                &frame,
+                f64::INFINITY,
+                scratch,
+            );
+            let distance = nearest.unwrap().distance;
+            let error = (found.distance.abs() - distance).abs() * frame.scale;
+            assert!(error <= TOUCHING_ERROR, "case {case}: {found:?} is off by {error:e}");
+            apart += usize::from(distance > 0.0);
+        }
+        println!("{apart} of {cases} are off the surface");
+        assert!(apart > cases / 4);
     }
 }
