@@ -16,6 +16,7 @@ mod face;
 mod joining;
 mod map;
 mod other;
+mod planes;
 mod region;
 mod ring;
 mod side;

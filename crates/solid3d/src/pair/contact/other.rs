@@ -3,12 +3,7 @@
 use glam::DVec3;
 use solid_convex::Support;
 
-use super::super::triangle_triangle::Triangle;
 use super::map::Map;
-use super::stars::LEVEL;
-
-/// A square that lost no digits.
-const SQUARE_MIN: f64 = 1e-280;
 
 /// A convex body, or a primitive of the other soup.
 #[derive(Clone, Copy)]
@@ -37,19 +32,9 @@ impl Other<'_> {
         [high - behind, beyond - low]
     }
 
-    /// Whether one of the depths behind some points along the normal of a triangle may be less than a length: a quick look, with the
-    /// slack that takes.
-    pub fn may_be_nearer(&self, points: &[DVec3], [p, q, r]: &Triangle, length: f64) -> bool {
-        let across = (*q - *p).cross(*r - *p);
-        let square = across.length_squared();
-        let limit = (length + 2.0 * LEVEL) * square.sqrt();
-        let [depth, opposite] = self.depths(points, across);
-        square < SQUARE_MIN || depth.min(opposite) <= limit
-    }
-
     /// The least and the greatest height along a direction, times the length of that.
     #[inline]
-    fn extremes(&self, direction: DVec3) -> [f64; 2] {
+    pub fn extremes(&self, direction: DVec3) -> [f64; 2] {
         if !self.corners.is_empty() {
             let [low, high] = extremes(self.corners, direction);
             let around = if self.radius > 0.0 { self.radius * direction.length() } else { 0.0 };
@@ -62,7 +47,7 @@ impl Other<'_> {
 
 /// The least and the greatest height of points along a direction.
 #[inline]
-fn extremes(points: &[DVec3], direction: DVec3) -> [f64; 2] {
+pub(super) fn extremes(points: &[DVec3], direction: DVec3) -> [f64; 2] {
     let heights = points.iter().map(|point| direction.dot(*point));
     heights
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| [low.min(height), high.max(height)])

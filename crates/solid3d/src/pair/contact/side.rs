@@ -7,6 +7,7 @@
 //! surface has at the edge or corner that they share, as a riser with the tread above it, where the way out along that is shorter.
 
 use glam::DVec3;
+use smallvec::SmallVec;
 
 use super::ball::{Way, way};
 use super::other::Other;
@@ -109,18 +110,18 @@ impl<'a> Side<'a> {
         let vertices = stars.welded(self.body.primitive);
         let [depth, _] = other.depths(corners, own);
         let mut shortest = Shortest { depth: depth - LEVEL, normal: None };
-        for (i, &vertex) in vertices.iter().enumerate().filter(|(_, vertex)| !stars.is_hub(**vertex)) {
-            let is_new = |&triangle: &u32| {
-                vertices[..i].iter().all(|&before| stars.is_hub(before) || !stars.has(triangle, before))
-            };
-            for triangle in stars.around(vertex).iter().copied().filter(is_new) {
+        let hubs: SmallVec<[u32; 3]> =
+            vertices.iter().copied().filter(|&vertex| stars.is_hub(vertex)).collect();
+        for &vertex in vertices.iter().filter(|vertex| !hubs.contains(vertex)) {
+            // One at an edge is looked at twice, which takes less than to know that.
+            for &triangle in stars.around(vertex).iter().filter(|&&around| around != self.body.primitive) {
                 stars.shorten(&mut shortest, triangle, &vertices, corners, Some(own), &other);
             }
         }
         // At hubs, and between two.
-        for part in [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]].map(|part| part.map(|i| vertices[i])) {
-            if part.iter().all(|&vertex| stars.is_hub(vertex)) {
-                let found = stars.shortest_at(part, own, &other);
+        for (i, &hub) in hubs.iter().enumerate() {
+            for &end in &hubs[i..] {
+                let found = stars.shortest_at([hub, end], own, &other);
                 if found.depth < shortest.depth {
                     shortest = found;
                 }
@@ -175,7 +176,7 @@ mod tests {
                 0 => Other { primitive: 0, support: &ball, map: &there, corners: &center, radius: 0.2 },
                 _ => Other { primitive: 0, support: &cuboid, map: &there, corners: &[], radius: 0.0 },
             };
-            let [mut with_hubs, mut without] = [(); 2].map(|()| Stars::new(complex, &here));
+            let [mut with_hubs, mut without] = [(); 2].map(|()| Stars::new(complex, &here, 8));
             (with_hubs.hub_min, without.hub_min) = (2, usize::MAX);
             for triangle in 0..complex.primitive_count() as u32 {
                 let body = Body::of_primitive(complex, triangle);

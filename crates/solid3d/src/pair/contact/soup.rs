@@ -57,8 +57,8 @@ pub(super) fn soup_body(
         None => &[],
     };
     let other = Other { primitive: 0, support: *support, map: map_body, corners, radius };
-    let stars = Stars::new(complex, map_soup);
     let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
+    let stars = Stars::new(complex, map_soup, found.len());
     let patch = |primitive: u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
@@ -200,7 +200,7 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     let _ = pairs_on(level(), a.tree(), b.tree(), &relative, &|| None, traversal, &mut near);
     let mut found = near.found;
     found.sort_unstable();
-    let (stars_a, stars_b) = (Stars::new(a, map_a), Stars::new(b, map_b));
+    let (stars_a, stars_b) = (Stars::new(a, map_a, found.len()), Stars::new(b, map_b, found.len()));
     let patch = |(primitives, must): ([u32; 2], bool)| {
         let [i, j] = primitives;
         let (hull_a, hull_b) = (a.primitive_hull(i), b.primitive_hull(j));

@@ -1,6 +1,6 @@
 //! What lies around the vertices of a placed soup, and which normals its surface has there.
 
-use std::cell::{Cell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
 
 use glam::DVec3;
@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 use super::face;
 use super::map::Map;
 use super::other::Other;
+use super::planes::{Plane, Planes};
 use crate::shape::Complex;
 
 /// Heights along a normal that differ by less than this, in the unit of the pair, are the same.
@@ -33,6 +34,9 @@ pub(super) struct Stars<'a> {
     shortest: RefCell<HashMap<[u32; 3], [Shortest; 2]>>,
     /// The last vertex that had a normal, and that in local space: a face lies on all around it.
     last: Cell<Option<(u32, DVec3)>>,
+    /// The planes of triangles around those that meet the other, of which there are so many; once they are asked for.
+    planes: OnceCell<Planes>,
+    found: usize,
 }
 
 /// The normal along which the way out is the shortest.
@@ -43,12 +47,13 @@ pub(super) struct Shortest {
 }
 
 impl<'a> Stars<'a> {
-    pub fn new(complex: &'a Complex, map: &'a Map) -> Stars<'a> {
+    /// For the contacts of so many of the primitives.
+    pub fn new(complex: &'a Complex, map: &'a Map, found: usize) -> Stars<'a> {
         let turned = map.linear().determinant().signum();
         let orientation =
             if complex.is_solid() { complex.topology().enclosed().orientation * turned } else { 0.0 };
-        let (shortest, last) = (RefCell::default(), Cell::new(None));
-        Stars { complex, map, orientation, hub_min: HUB_MIN, shortest, last }
+        let (shortest, last, planes) = (RefCell::default(), Cell::new(None), OnceCell::new());
+        Stars { complex, map, orientation, hub_min: HUB_MIN, shortest, last, planes, found }
     }
 
     /// Where the corners of a primitive are.
@@ -140,25 +145,30 @@ impl<'a> Stars<'a> {
         known: Option<DVec3>,
         other: &Other,
     ) {
-        let &[p, q, r] = self.complex.primitive(triangle) else { return };
-        let placed = [self.place(p), self.place(q), self.place(r)];
-        if !other.may_be_nearer(corners, &placed, shortest.depth) {
-            return;
-        }
-        let Some(normal) = face::triangle_normal(placed) else { return };
-        if known.is_some_and(|known| is_parallel(normal, known)) {
-            return;
-        }
-        for (sign, depth) in [1.0, -1.0].into_iter().zip(other.depths(corners, normal)) {
+        let planes = self.planes.get_or_init(|| Planes::new(self.found));
+        let plane = planes.beside(other, triangle, || self.normal_and_point(triangle));
+        let Some(Plane { normal, height, depths }) = plane else { return };
+        for (sign, depth) in [1.0, -1.0].into_iter().zip(depths) {
             let is_outward = self.orientation * sign >= 0.0;
-            let is_above = |corner: &DVec3| sign * normal.dot(*corner - placed[0]) > LEVEL;
-            if is_outward && depth < shortest.depth && !corners.iter().any(is_above) {
+            let is_above = |corner: &DVec3| sign * (normal.dot(*corner) - height) > LEVEL;
+            if depth < shortest.depth
+                && is_outward
+                && !known.is_some_and(|known| is_parallel(normal, known))
+                && !corners.iter().any(is_above)
+            {
                 let shared = vertices.iter().copied().filter(|&vertex| self.has(triangle, vertex));
                 if self.have(normal * sign, &shared.collect::<SmallVec<[u32; 4]>>()) {
                     *shortest = Shortest { depth, normal: Some(normal * sign) };
                 }
             }
         }
+    }
+
+    /// The normal of a triangle that has one, and a point of its plane.
+    fn normal_and_point(&self, triangle: u32) -> Option<(DVec3, DVec3)> {
+        let &[p, q, r] = self.complex.primitive(triangle) else { return None };
+        let placed = [p, q, r].map(|vertex| self.place(vertex));
+        Some((face::triangle_normal(placed)?, placed[0]))
     }
 
     /// The vertices that stand for those of a primitive and all at their positions.
