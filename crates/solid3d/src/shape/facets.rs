@@ -32,6 +32,8 @@ pub(crate) struct Facet {
     pub normal: DVec3,
     /// The corners, in order around it.
     pub corners: Vec<u32>,
+    /// The corner of the triangles in it that is furthest below the plane of the others.
+    pub lowest: u32,
 }
 
 impl Facets {
@@ -132,11 +134,14 @@ fn merged(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Facet> {
         }
         members.sort_unstable();
         members.dedup();
+        let height = |index: &u32| normal.dot(corner(*index));
+        let lowest = members.iter().copied().min_by(|i, j| height(i).total_cmp(&height(j)));
+        let lowest = lowest.expect("a face has a triangle");
         let (u, v) = normal.any_orthonormal_pair();
         let flat: Vec<DVec2> =
             members.iter().map(|&i| DVec2::new(u.dot(corner(i)), v.dot(corner(i)))).collect();
         let corners = outline(&flat, FLATNESS).into_iter().map(|i| members[i]).collect();
-        faces.push(Facet { normal, corners });
+        faces.push(Facet { normal, corners, lowest });
     }
     faces
 }

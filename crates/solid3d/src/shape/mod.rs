@@ -24,6 +24,7 @@ use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 
 pub use builder::ComplexShapeBuilder;
 pub(crate) use complex::Complex;
+pub(crate) use facets::Facet;
 pub(crate) use hulled::Hulled;
 pub use kind::ShapeKind;
 pub(crate) use simple::{Round, Simple};

@@ -26,6 +26,7 @@ use ball::BallAndBody;
 pub(crate) use ball::{closest_to, contains};
 use boxes::PlacedBox;
 pub(super) use cast::cast;
+pub(super) use point::foot;
 pub(crate) use point::nearest_on_surface;
 use round::{Cores, PlacedRound};
 pub(super) use similarity::Similarity;

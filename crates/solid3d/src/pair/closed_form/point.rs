@@ -96,6 +96,14 @@ pub(crate) fn nearest_on_surface(shape: Placed, point: DVec3) -> Option<SurfaceP
     Some(SurfacePoint { distance, point: point - normal * distance, normal })
 }
 
+/// How far a point is from the surface of a ball, box, cone, cylinder or capsule, negative inside, and the outward normal where that is nearest;
+/// at an `offset` from the body's origin. No unit is sought: the size of the data must be near 1.
+pub(in crate::pair) fn foot(body: &Body, at: &Similarity, offset: DVec3) -> Option<(f64, DVec3)> {
+    let [x, y, z] = at.units();
+    let foot = of_body(body, at.stretch, DVec3::new(x.dot(offset), y.dot(offset), z.dot(offset)))?;
+    Some((foot.distance, x * foot.normal.x + y * foot.normal.y + z * foot.normal.z))
+}
+
 /// A bound on the coordinates of a body; `None` for a hull.
 #[inline(always)]
 fn extent(body: &Body) -> Option<f64> {

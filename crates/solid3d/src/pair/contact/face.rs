@@ -6,8 +6,7 @@ use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Line, Sphere, Support, unit_scale};
 
-use super::map::Map;
-use crate::placement::direction;
+use super::map::{Map, unit};
 use crate::shape::{Body, Hulled};
 
 /// Corners of the polygon that stands for a circle: what is cut off is 2 % of the radius.
@@ -82,11 +81,6 @@ impl Face {
     }
 }
 
-/// The direction of a normal; zero of one that is.
-fn unit(normal: DVec3) -> DVec3 {
-    direction(normal).unwrap_or(DVec3::ZERO)
-}
-
 /// A convex body in the common frame of a pair.
 pub(super) struct Placed<'a> {
     body: &'a Body<'a>,
@@ -98,6 +92,10 @@ pub(super) struct Placed<'a> {
 impl<'a> Placed<'a> {
     pub fn new(body: &'a Body<'a>, primitive: u32, map: &'a Map) -> Self {
         Placed { body, map, primitive }
+    }
+
+    pub fn body(&self) -> &'a Body<'a> {
+        self.body
     }
 
     /// Whether it touches in one point, whatever it touches.
@@ -186,11 +184,6 @@ impl<'a> Placed<'a> {
         Corner { point: self.map.point(local), vertex }
     }
 
-    /// The image of a normal: by the inverse transposed, whose entries may be so large that their squares are not numbers.
-    fn normal(&self, local: DVec3) -> DVec3 {
-        unit(self.map.inverse().transpose() * local)
-    }
-
     fn ball(&self, sphere: &Sphere, direction: DVec3, local: DVec3) -> Face {
         let corners = smallvec![self.corner(sphere.support(local), 0)];
         Face { corners, normal: direction, number: 0, cosine: 1.0 }
@@ -221,9 +214,9 @@ impl<'a> Placed<'a> {
     fn cylinder(&self, cylinder: &Cylinder, direction: DVec3, local: DVec3) -> Face {
         let (radius, half) = (cylinder.radius(), 0.5 * cylinder.height());
         let y = if local.y < 0.0 { -half } else { half };
-        let cap = self.normal(DVec3::Y * y.signum());
+        let cap = self.map.normal(DVec3::Y * y.signum());
         let (x, z) = azimuth(local);
-        let side = self.normal(DVec3::new(x, 0.0, z));
+        let side = self.map.normal(DVec3::new(x, 0.0, z));
         let (of_cap, of_side) = (cap.dot(direction), side.dot(direction));
         if of_cap >= of_side {
             let first = if y < 0.0 { RIM } else { 0 };
@@ -242,11 +235,11 @@ impl<'a> Placed<'a> {
 
     fn cone(&self, cone: &Cone, direction: DVec3, local: DVec3) -> Face {
         let (radius, half) = (cone.radius(), 0.5 * cone.height());
-        let base = self.normal(DVec3::NEG_Y);
+        let base = self.map.normal(DVec3::NEG_Y);
         let (x, z) = azimuth(local);
         let largest = radius.max(cone.height());
         let (across, along) = (cone.height() / largest, radius / largest);
-        let side = self.normal(DVec3::new(x * across, along, z * across));
+        let side = self.map.normal(DVec3::new(x * across, along, z * across));
         let (of_base, of_side) = (base.dot(direction), side.dot(direction));
         if of_base >= of_side {
             let corners = self.rim(radius, -half, RIM, of_base, local);
@@ -262,7 +255,7 @@ impl<'a> Placed<'a> {
     fn capsule(&self, capsule: &Capsule, direction: DVec3, local: DVec3) -> Face {
         let (radius, half) = (capsule.radius(), capsule.half_height());
         let (x, z) = azimuth(local);
-        let side = self.normal(DVec3::new(x, 0.0, z));
+        let side = self.map.normal(DVec3::new(x, 0.0, z));
         let cosine = side.dot(direction);
         let upper = u32::from(local.y >= 0.0);
         let mut corners: Corners = smallvec![self.corner(capsule.support(local), upper)];
@@ -292,7 +285,7 @@ impl<'a> Placed<'a> {
     fn facet(&self, hull: &Hulled, names: Option<&[u32]>, direction: DVec3, local: DVec3) -> Face {
         let (points, facets) = (hull.points(), hull.facets());
         let highest = hull.polytope().support_index(local);
-        let cosine = |face: u32| self.normal(facets.get(face).normal).dot(direction);
+        let cosine = |face: u32| self.map.normal(facets.get(face).normal).dot(direction);
         let better = |x: &u32, y: &u32| cosine(*x).total_cmp(&cosine(*y)).then(y.cmp(x));
         // The furthest point may have been flattened out of an edge.
         let at_highest = facets.at(highest).iter().copied().max_by(better);
@@ -302,7 +295,7 @@ impl<'a> Placed<'a> {
         match best {
             Some(face) => Face {
                 corners: facets.get(face).corners.iter().map(corner).collect(),
-                normal: self.normal(facets.get(face).normal),
+                normal: self.map.normal(facets.get(face).normal),
                 number: face,
                 cosine: cosine(face),
             },

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::placement::inverse_linear;
+use crate::placement::{direction, inverse_linear};
 
 /// Takes local points to the common frame.
 pub(super) struct Map {
@@ -31,4 +31,14 @@ impl Map {
     pub fn inverse(&self) -> &DMat3 {
         self.inverse.get_or_init(|| inverse_linear(&self.affine.matrix3))
     }
+
+    /// The image of a normal: by the inverse transposed, whose entries may be so large that their squares are not numbers.
+    pub fn normal(&self, local: DVec3) -> DVec3 {
+        unit(self.inverse().transpose() * local)
+    }
+}
+
+/// The direction of a normal; zero of one that is.
+pub(super) fn unit(normal: DVec3) -> DVec3 {
+    direction(normal).unwrap_or(DVec3::ZERO)
 }

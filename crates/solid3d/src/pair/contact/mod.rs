@@ -13,6 +13,7 @@ mod ball;
 mod body_ball;
 mod clip;
 mod face;
+mod inside;
 mod joining;
 mod map;
 mod other;

@@ -12,16 +12,29 @@ pub(super) struct Plane {
     pub normal: DVec3,
     /// The height of the plane along its normal.
     pub height: f64,
-    /// How far the other reaches back behind it, along the normal and along its opposite.
+    /// How far the other reaches back behind it, along the normal and along its opposite; infinite for a triangle without a normal.
     pub depths: [f64; 2],
 }
 
-/// What was found of a triangle; of one without a normal that it has no plane.
-#[derive(Clone, Copy, Default)]
+impl Plane {
+    const NONE: Plane = Plane { normal: DVec3::ZERO, height: 0.0, depths: [f64::INFINITY; 2] };
+
+    fn at(normal: DVec3, height: f64, other: &Other) -> Plane {
+        let [behind, beyond] = other.extremes(normal);
+        Plane { normal, height, depths: [height - behind, beyond - height] }
+    }
+
+    /// The same beside another primitive.
+    fn beside(self, other: &Other) -> Plane {
+        if self.normal == DVec3::ZERO { self } else { Plane::at(self.normal, self.height, other) }
+    }
+}
+
+/// What was found of a triangle: its number and that of the primitive of the other, from 1 on; 0 for none.
+#[derive(Clone, Copy)]
 struct Found {
-    /// The numbers of the triangle and of the primitive of the other, from 1 on; 0 for none.
     of: [u32; 2],
-    plane: Option<Plane>,
+    plane: Plane,
 }
 
 /// A place for each of some consecutive triangles; what another takes the place of is found again.
@@ -33,31 +46,28 @@ impl Planes {
     /// For so many triangles, and those around them.
     pub fn new(count: usize) -> Planes {
         let places = (4 * count).clamp(16, 1 << 16).next_power_of_two();
-        Planes { places: vec![Cell::default(); places].into() }
+        Planes { places: vec![Cell::new(Found { of: [0; 2], plane: Plane::NONE }); places].into() }
     }
 
     /// The plane of a triangle beside another shape; `find` tells its normal, if it has one, and a point of it.
-    #[inline]
+    #[inline(always)]
     pub fn beside(
         &self,
         other: &Other,
         triangle: u32,
         find: impl FnOnce() -> Option<(DVec3, DVec3)>,
-    ) -> Option<Plane> {
+    ) -> Plane {
         let place = &self.places[triangle as usize & (self.places.len() - 1)];
-        let Found { of: of_found, plane } = place.get();
         let of = [triangle + 1, other.primitive + 1];
+        let Found { of: of_found, plane } = place.get();
         if of_found == of {
             return plane;
         }
-        let normal_and_height = match plane {
-            _ if of_found[0] != of[0] => find().map(|(normal, point)| (normal, normal.dot(point))),
-            plane => plane.map(|plane| (plane.normal, plane.height)),
+        let plane = if of_found[0] == of[0] {
+            plane.beside(other)
+        } else {
+            find().map_or(Plane::NONE, |(normal, point)| Plane::at(normal, normal.dot(point), other))
         };
-        let plane = normal_and_height.map(|(normal, height)| {
-            let [behind, beyond] = other.extremes(normal);
-            Plane { normal, height, depths: [height - behind, beyond - height] }
-        });
         place.set(Found { of, plane });
         plane
     }
@@ -95,14 +105,13 @@ mod tests {
                 faces[triangle]
             };
             let found = planes.beside(&other, triangle as u32, find);
-            assert_eq!(found.is_some(), faces[triangle].is_some());
-            let (Some(Plane { normal, height, depths }), Some((expected, point))) = (found, faces[triangle])
-            else {
+            let Some((normal, point)) = faces[triangle] else {
+                assert_eq!(found.depths, [f64::INFINITY; 2]);
                 continue;
             };
-            let [behind, beyond] = other.extremes(expected);
-            assert_eq!((normal, height), (expected, expected.dot(point)));
-            assert_eq!(depths, [height - behind, beyond - height]);
+            let ([behind, beyond], height) = (other.extremes(normal), normal.dot(point));
+            assert_eq!((found.normal, found.height), (normal, height));
+            assert_eq!(found.depths, [height - behind, beyond - height]);
         }
         assert!((cases / 4..cases * 3 / 4).contains(&looks), "{looks} of {cases}");
     }

@@ -10,6 +10,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use super::ball::{Way, way};
+use super::inside::Inside;
 use super::other::Other;
 use super::stars::{LEVEL, SAME_NORMAL, Shortest, Stars, is_parallel};
 use super::{Meeting, face};
@@ -56,14 +57,17 @@ impl<'a> Side<'a> {
         Side { stars, body, corners, other, plane }
     }
 
-    /// How a triangle and a ball lie to each other, where that is known in closed form.
-    pub fn meeting_of_ball(&self, mirrored: bool) -> Option<Meeting> {
-        let (&[p, q, r], &[center]) = (self.corners, self.other.corners) else { return None };
-        let Way { out, depth, foot } = way(&[p, q, r], center, self.other.radius)?;
-        let on_ball = center - out * self.other.radius;
+    /// How a triangle and a body lie to each other, where that is known in closed form.
+    pub fn meeting_of_body(&self, inside: &Option<Inside>, mirrored: bool) -> Option<Meeting> {
+        let &[p, q, r] = self.corners else { return None };
+        let Way { out, depth, foot } = match *self.other.corners {
+            [center] => way(&[p, q, r], center, self.other.radius)?,
+            _ => inside.as_ref()?.way(&[p, q, r])?,
+        };
+        let on_body = foot - out * depth;
         Some(match mirrored {
-            true => Meeting { normal: out, depth, on_a: on_ball, on_b: foot },
-            false => Meeting { normal: -out, depth, on_a: foot, on_b: on_ball },
+            true => Meeting { normal: out, depth, on_a: on_body, on_b: foot },
+            false => Meeting { normal: -out, depth, on_a: foot, on_b: on_body },
         })
     }
 
@@ -115,7 +119,7 @@ impl<'a> Side<'a> {
         for &vertex in vertices.iter().filter(|vertex| !hubs.contains(vertex)) {
             // One at an edge is looked at twice, which takes less than to know that.
             for &triangle in stars.around(vertex).iter().filter(|&&around| around != self.body.primitive) {
-                stars.shorten(&mut shortest, triangle, &vertices, corners, Some(own), &other);
+                stars.shorten(&mut shortest, triangle, (&vertices, corners), Some(own), &other);
             }
         }
         // At hubs, and between two.

@@ -3,6 +3,7 @@
 //! Where the surface is flat all around a triangle it has one normal only, and no penetration depth needs to be searched for; else that
 //! is corrected as [`side`](super::side) says.
 
+use std::cell::LazyCell;
 use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
@@ -16,6 +17,7 @@ use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
 use super::super::table::PlacedConvex;
 use super::super::triangle_triangle::Triangle;
 use super::super::{Scratch, complex_convex, table, triangle_triangle};
+use super::inside::Inside;
 use super::other::Other;
 use super::side::{Corrected, Side};
 use super::stars::Stars;
@@ -59,7 +61,8 @@ pub(super) fn soup_body(
     let other = Other { primitive: 0, support: *support, map: map_body, corners, radius };
     let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
     let stars = Stars::new(complex, map_soup, found.len());
-    let patch = |primitive: u32| {
+    let inside = LazyCell::new(|| Inside::new(&body, found.len()));
+    let patch = |&primitive: &u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
         let placed = face::Placed::new(&primitive_body, primitive, map_soup);
@@ -73,7 +76,7 @@ pub(super) fn soup_body(
             Some(normal) => (normal, over(normal)),
             None => {
                 let must = pair.margin == 0.0;
-                let meeting = match side.meeting_of_ball(mirrored) {
+                let meeting = match side.meeting_of_body(&inside, mirrored) {
                     Some(meeting) if must => meeting.touching(),
                     Some(meeting) => meeting.within(pair.margin)?,
                     None if mirrored => pair.meeting(*support, &hull, must)?,
@@ -96,7 +99,7 @@ pub(super) fn soup_body(
         let normal = if mirrored { out } else { -out };
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     };
-    found.into_iter().filter_map(patch).collect()
+    found.iter().filter_map(patch).collect()
 }
 
 /// The primitives of a soup that meet a body; with a margin, those whose boxes are as near. Ascending: in an order that does not

@@ -124,7 +124,7 @@ impl<'a> Stars<'a> {
             let besides = |known: Option<DVec3>| {
                 let mut shortest = Shortest { depth: f64::INFINITY, normal: None };
                 for triangle in self.around_all(vertices) {
-                    self.shorten(&mut shortest, triangle, vertices, &corners, known, other);
+                    self.shorten(&mut shortest, triangle, (vertices, &corners), known, other);
                 }
                 shortest
             };
@@ -136,26 +136,37 @@ impl<'a> Stars<'a> {
 
     /// Takes the way out along the normal of a triangle, or its opposite, where it is shorter and the surface has that at what the
     /// triangle shares with some vertices, which are at `corners`. Not along one that is known.
+    #[inline(always)]
     pub fn shorten(
         &self,
         shortest: &mut Shortest,
         triangle: u32,
-        vertices: &[u32],
-        corners: &[DVec3],
+        (vertices, corners): (&[u32], &[DVec3]),
         known: Option<DVec3>,
         other: &Other,
     ) {
         let planes = self.planes.get_or_init(|| Planes::new(self.found));
         let plane = planes.beside(other, triangle, || self.normal_and_point(triangle));
-        let Some(Plane { normal, height, depths }) = plane else { return };
+        if plane.depths[0] < shortest.depth || plane.depths[1] < shortest.depth {
+            self.shorten_along(plane, shortest, triangle, (vertices, corners), known);
+        }
+    }
+
+    fn shorten_along(
+        &self,
+        Plane { normal, height, depths }: Plane,
+        shortest: &mut Shortest,
+        triangle: u32,
+        (vertices, corners): (&[u32], &[DVec3]),
+        known: Option<DVec3>,
+    ) {
+        if known.is_some_and(|known| is_parallel(normal, known)) {
+            return;
+        }
         for (sign, depth) in [1.0, -1.0].into_iter().zip(depths) {
             let is_outward = self.orientation * sign >= 0.0;
             let is_above = |corner: &DVec3| sign * (normal.dot(*corner) - height) > LEVEL;
-            if depth < shortest.depth
-                && is_outward
-                && !known.is_some_and(|known| is_parallel(normal, known))
-                && !corners.iter().any(is_above)
-            {
+            if depth < shortest.depth && is_outward && !corners.iter().any(is_above) {
                 let shared = vertices.iter().copied().filter(|&vertex| self.has(triangle, vertex));
                 if self.have(normal * sign, &shared.collect::<SmallVec<[u32; 4]>>()) {
                     *shortest = Shortest { depth, normal: Some(normal * sign) };

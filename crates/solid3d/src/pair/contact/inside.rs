@@ -1,0 +1,162 @@
+//! A triangle of which a corner is deep in a body, in closed form.
+//!
+//! The depth of a triangle in a body is no less than that of any of its corners, each of which has a way out to the nearest place of the
+//! surface. Where no other corner is behind the deepest one on that way, it takes the whole triangle out, and is
+//! the shortest. Of a fine mesh deep in a body nearly all triangles are like that.
+
+use glam::DVec3;
+use solid_convex::Support;
+
+use super::super::closed_form::{Similarity, foot};
+use super::super::triangle_triangle::Triangle;
+use super::ball::Way;
+use super::face::Placed;
+use super::map::Map;
+use crate::shape::{Body, Facet, Hulled};
+
+/// A corner less deep than this, in the unit of the pair, is not looked at.
+const DEPTH_MIN: f64 = 1e-9;
+
+/// How far behind the deepest corner another may be on the way out: some rounding errors.
+const LEVEL_ERROR: f64 = 1e-14;
+
+/// Facets of a hull that are looked at for a corner, and made ready for each triangle: of more, the search for a depth takes no longer.
+const FACETS_MAX: usize = 256;
+const FACETS_EACH: usize = 16;
+
+/// A body of which it is known where its surface is nearest to a point in it. Space: common.
+pub(super) enum Inside<'a> {
+    /// One that its map leaves what it is, and its origin.
+    Similar(&'a Body<'a>, Similarity, DVec3),
+    /// The outward normals of a hull's facets, and how far the hull reaches along each.
+    Facets(Vec<(DVec3, f64)>),
+}
+
+impl<'a> Inside<'a> {
+    /// To be asked of so many triangles. `None` where it is not known, or not worth it.
+    pub fn new(body: &Placed<'a>, count: usize) -> Option<Inside<'a>> {
+        match *body.body() {
+            Body::Hull { hull, .. } => facets(hull, body.map, count).map(Inside::Facets),
+            Body::Simplex { .. } => None,
+            _ => {
+                let at = Similarity::new(body.map.linear())?;
+                Some(Inside::Similar(body.body(), at, body.map.affine.translation))
+            }
+        }
+    }
+
+    /// The shortest way of a triangle out of the body, from the body's side: against it the triangle leaves. `None` where it is not known.
+    pub fn way(&self, triangle: &Triangle) -> Option<Way> {
+        let feet = triangle.iter().filter_map(|&corner| Some((self.foot(corner)?, corner)));
+        let ((distance, normal), corner) = feet.min_by(|(x, _), (y, _)| x.0.total_cmp(&y.0))?;
+        let is_behind = |other: &DVec3| normal.dot(*other - corner) < -LEVEL_ERROR;
+        (distance < -DEPTH_MIN && !triangle.iter().any(is_behind)).then_some(Way {
+            out: -normal,
+            depth: -distance,
+            foot: corner,
+        })
+    }
+
+    /// How far a point is from the surface, negative inside, and the outward normal there; outside of a hull no more than that it is.
+    fn foot(&self, point: DVec3) -> Option<(f64, DVec3)> {
+        match self {
+            Inside::Similar(body, at, origin) => foot(body, at, point - *origin),
+            Inside::Facets(facets) => {
+                let distances = facets.iter().map(|&(normal, height)| (normal.dot(point) - height, normal));
+                distances.reduce(|nearest, plane| if plane.0 > nearest.0 { plane } else { nearest })
+            }
+        }
+    }
+}
+
+/// The facets of a hull where they are few, and flat up to rounding: no way out is shorter than that through the lowest corner of one.
+fn facets(hull: &Hulled, map: &Map, count: usize) -> Option<Vec<(DVec3, f64)>> {
+    let facets = hull.facets();
+    if facets.len() < 4 || facets.len() as usize > FACETS_MAX.min(FACETS_EACH * count) {
+        return None;
+    }
+    let plane = |facet: &Facet| {
+        let normal = map.normal(facet.normal);
+        let height = |local: DVec3| normal.dot(map.point(local));
+        let highest = height(hull.polytope().support(map.linear().transpose() * normal));
+        let lowest = height(hull.points()[facet.lowest as usize]);
+        (highest - lowest <= LEVEL_ERROR).then_some((normal, highest))
+    };
+    (0..facets.len()).map(|face| plane(facets.get(face))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DAffine3, DMat3, DQuat};
+    use rand::Rng;
+    use solid_convex::{Points, epa};
+    use solid_oracle::generate::{direction, in_cube, seeded};
+
+    use super::*;
+    use crate::shape::{Class, Shape};
+
+    /// Law: where there is an answer it is within the bounds of EPA, the points are each in their object, and there is one of nearly all small triangles.
+    #[test]
+    fn the_way_out_is_the_shortest() {
+        let mut rng = seeded(169);
+        let points: Vec<DVec3> = (0..20).map(|_| direction(&mut rng)).collect();
+        let bodies = [
+            Shape::cuboid([1.2, 1.0, 0.8]).unwrap(),
+            Shape::capsule(0.4, 0.8).unwrap(),
+            Shape::cylinder(0.6, 1.0).unwrap(),
+            Shape::cone(0.8, 1.2).unwrap(),
+            Shape::convex_hull(&points).unwrap(),
+        ];
+        for (kind, shape) in bodies.iter().enumerate() {
+            let (mut answers, mut of_small, mut small, cases) = (0, 0, 0, 2000);
+            for case in 0..cases {
+                let turn = DMat3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 3.0));
+                let at =
+                    DAffine3 { matrix3: turn * rng.random_range(0.3..1.0), translation: in_cube(&mut rng) };
+                let map = Map::new(at);
+                let body = shape.body().unwrap();
+                let placed = Placed::new(&body, 0, &map);
+                let middle = map.point(in_cube(&mut rng) * 0.4);
+                let extent = [1.0, 0.3, 0.03, 0.003][case % 4];
+                let triangle = [(); 3].map(|()| middle + in_cube(&mut rng) * extent);
+                let Class::Convex(support) = shape.class() else { panic!("a body is convex") };
+                let one = Points::new(&triangle).unwrap();
+                let here = DAffine3::IDENTITY;
+                let Some(exact) = epa::penetration(&one, &here, support, &at) else { continue };
+                let way =
+                    Inside::new(&placed, 100).expect("its placement leaves it what it is").way(&triangle);
+                small += usize::from(case % 4 == 3);
+                let Some(Way { out, depth, foot }) = way else { continue };
+                answers += 1;
+                of_small += usize::from(case % 4 == 3);
+                let context = format!("{kind}, case {case}: {out}, {depth}, {exact:?}");
+                assert!((exact.lower - 1e-12..=exact.upper + 1e-12).contains(&depth), "{context}");
+                assert!(triangle.contains(&foot) && (out.length() - 1.0).abs() < 1e-14, "{context}");
+                // Along its normal the body reaches as far as the corner that leaves it.
+                let reach = -out.dot(map.point(support.support(map.linear().transpose() * -out)));
+                assert!((reach + out.dot(foot) - depth).abs() <= 1e-14, "{context}");
+            }
+            println!("{kind}: {answers} answers, {of_small} of {small} small ones");
+            assert!(
+                answers > cases / 4 && of_small > small * 9 / 10,
+                "{kind}: {answers}, {of_small} of {small}"
+            );
+        }
+    }
+
+    /// Facets that were put together are those of the hull only where they are flat up to rounding; many are looked at only for many triangles.
+    #[test]
+    fn facets_are_asked_where_they_say_it_all() {
+        let map = Map::new(DAffine3::from_rotation_x(0.7));
+        let is_known = |bent: f64, count: usize| {
+            let corner = |i: u32| DVec3::from_array([0, 1, 2].map(|axis| f64::from(i >> axis & 1)));
+            let points: Vec<DVec3> = (0..8).map(corner).map(|p| p + p * bent * p.element_product()).collect();
+            let hull = Shape::convex_hull(&points).unwrap();
+            let body = hull.body().unwrap();
+            let placed = Placed::new(&body, 0, &map);
+            Inside::new(&placed, count).is_some()
+        };
+        assert!(is_known(0.0, 1) && is_known(1e-15, 1) && is_known(1e-3, 1));
+        assert!(!is_known(1e-11, 1) && !is_known(1e-10, 1) && !is_known(0.0, 0));
+    }
+}
