@@ -9,7 +9,7 @@ use super::ring::against;
 pub(super) const ON_EDGE: f64 = 1e-9;
 
 /// Segments whose directions have a lesser sine between them run side by side.
-const PARALLEL_SINE: f64 = 0.01;
+pub(super) const PARALLEL_SINE: f64 = 0.01;
 
 /// Where a corner comes from. Edge `i` of a polygon runs from its corner `i` to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

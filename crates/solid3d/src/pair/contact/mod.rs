@@ -10,12 +10,12 @@
 //! Everything is computed in a common frame around the pair: lengths near 1, so that tolerances are relative to the shapes.
 
 mod ball;
-mod body_ball;
 mod clip;
 mod face;
 mod inside;
 mod joining;
 mod map;
+mod one_point;
 mod other;
 mod planes;
 mod region;
@@ -152,7 +152,7 @@ pub(crate) fn contacts(
     options: &ContactOptions,
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
-    match body_ball::contact(a, b) {
+    match one_point::contact(a, b) {
         Some(contact) => vec![contact],
         None => contacts_at_length(a, b, options, scratch),
     }
