@@ -87,11 +87,19 @@ pub(super) struct Placed<'a> {
     pub map: &'a Map,
     /// Its number in the shape it is of.
     pub primitive: u32,
+    /// The unit normal of a triangle that has one, by the order of its corners.
+    pub plane: Option<DVec3>,
 }
 
 impl<'a> Placed<'a> {
     pub fn new(body: &'a Body<'a>, primitive: u32, map: &'a Map) -> Self {
-        Placed { body, map, primitive }
+        let plane = match *body {
+            Body::Simplex { vertices, indices: &[p, q, r] } => {
+                triangle_normal([p, q, r].map(|i| map.point(vertices[i as usize])))
+            }
+            _ => None,
+        };
+        Placed { body, map, primitive, plane }
     }
 
     pub fn body(&self) -> &'a Body<'a> {
@@ -309,11 +317,7 @@ impl<'a> Placed<'a> {
     /// Both sides of a triangle are its face. One without area is a segment.
     fn simplex(&self, vertices: &[DVec3], indices: &[u32], direction: DVec3) -> Face {
         let mut corners: Corners = indices.iter().map(|&i| self.corner(vertices[i as usize], i)).collect();
-        let normal = match corners[..] {
-            [p, q, r] => triangle_normal([p, q, r].map(|corner| corner.point)),
-            _ => None,
-        };
-        if let Some(normal) = normal {
+        if let Some(normal) = self.plane {
             let cosine = normal.dot(direction);
             let number = u32::from(cosine < 0.0);
             return Face { corners, normal: normal * cosine.signum(), number, cosine: cosine.abs() };
@@ -328,7 +332,7 @@ impl<'a> Placed<'a> {
     }
 }
 
-/// The unit normal of a triangle; `None` for one without area, and for what is none.
+/// The unit normal of a triangle; `None` for one without area.
 pub(super) fn triangle_normal([p, q, r]: [DVec3; 3]) -> Option<DVec3> {
     /// The sine of the least angle at a corner beyond which the normal has no digits.
     const SINE_MIN: f64 = 1e-12;

@@ -25,8 +25,6 @@ pub(super) struct Side<'a> {
     /// Space: common.
     corners: &'a [DVec3],
     other: Other<'a>,
-    /// The normal of the primitive when it is a triangle, by its order.
-    plane: Option<DVec3>,
 }
 
 /// A normal out of a primitive.
@@ -50,11 +48,7 @@ impl Corrected {
 
 impl<'a> Side<'a> {
     pub fn new(stars: &'a Stars<'a>, body: face::Placed<'a>, corners: &'a [DVec3], other: Other<'a>) -> Self {
-        let plane = match *corners {
-            [p, q, r] => face::triangle_normal([p, q, r]),
-            _ => None,
-        };
-        Side { stars, body, corners, other, plane }
+        Side { stars, body, corners, other }
     }
 
     /// How a triangle and a body lie to each other, where that is known in closed form.
@@ -74,7 +68,7 @@ impl<'a> Side<'a> {
     /// The normal of a triangle with a flat surface around it, to the side on which the way out is shorter.
     pub fn flat(&self) -> Option<DVec3> {
         let is_flat = self.stars.is_flat(self.body.primitive);
-        let normal = is_flat.then_some(self.plane)??;
+        let normal = is_flat.then_some(self.body.plane)??;
         let [depth, opposite] = self.other.depths(self.corners, normal);
         Some(if depth <= opposite { normal } else { -normal })
     }
@@ -83,12 +77,12 @@ impl<'a> Side<'a> {
     pub fn is_inward(&self, out: DVec3) -> bool {
         let orientation = self.stars.orientation;
         let points_in = |normal: DVec3| orientation * normal.dot(out) < -SAME_NORMAL;
-        orientation != 0.0 && self.plane.is_some_and(points_in)
+        orientation != 0.0 && self.body.plane.is_some_and(points_in)
     }
 
     /// The normal, if the surface has it where it is touched; else that of the triangle, or of a face next to it.
     pub fn corrected(&self, out: DVec3) -> Corrected {
-        let Some(normal) = self.plane else { return Corrected::Kept(out) };
+        let Some(normal) = self.body.plane else { return Corrected::Kept(out) };
         let cosine = normal.dot(out);
         if is_parallel(normal, out) {
             return Corrected::Kept(normal * cosine.signum());
