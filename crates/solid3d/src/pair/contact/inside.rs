@@ -14,8 +14,8 @@ use super::face::Placed;
 use super::map::Map;
 use crate::shape::{Body, Facet, Hulled};
 
-/// A corner less deep than this, in the unit of the pair, is not looked at.
-const DEPTH_MIN: f64 = 1e-9;
+/// What is less deep than this, in the unit of the pair, is not looked at.
+pub(super) const DEPTH_MIN: f64 = 1e-9;
 
 /// How far behind the deepest corner another may be on the way out: some rounding errors.
 const LEVEL_ERROR: f64 = 1e-14;

@@ -23,6 +23,7 @@ mod ring;
 mod side;
 mod soup;
 mod stars;
+mod through;
 
 use glam::{DVec2, DVec3};
 use smallvec::{SmallVec, smallvec};

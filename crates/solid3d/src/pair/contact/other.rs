@@ -23,6 +23,11 @@ impl Other<'_> {
         self.map.point(self.support.center())
     }
 
+    /// A point of it that is furthest along a direction.
+    pub fn furthest(&self, direction: DVec3) -> DVec3 {
+        self.map.point(self.support.support(self.map.linear().transpose() * direction))
+    }
+
     /// How far it reaches back behind what of some points is furthest along a normal, and along its opposite; along a vector of any
     /// length, times that.
     #[inline(always)]
@@ -40,8 +45,7 @@ impl Other<'_> {
             let around = if self.radius > 0.0 { self.radius * direction.length() } else { 0.0 };
             return [low - around, high + around];
         }
-        let local = self.map.linear().transpose() * direction;
-        [-local, local].map(|local| direction.dot(self.map.point(self.support.support(local))))
+        [-direction, direction].map(|way| direction.dot(self.furthest(way)))
     }
 }
 

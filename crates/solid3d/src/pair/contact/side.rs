@@ -13,7 +13,7 @@ use super::ball::{Way, way};
 use super::inside::Inside;
 use super::other::Other;
 use super::stars::{LEVEL, SAME_NORMAL, Shortest, Stars, is_parallel};
-use super::{Meeting, face};
+use super::{Meeting, face, through};
 
 /// A normal whose cosine with that of the triangle is beyond this tells the side on which the other is.
 const SIDE_COSINE: f64 = 0.2;
@@ -54,9 +54,13 @@ impl<'a> Side<'a> {
     /// How a triangle and a body lie to each other, where that is known in closed form.
     pub fn meeting_of_body(&self, inside: &Option<Inside>, mirrored: bool) -> Option<Meeting> {
         let &[p, q, r] = self.corners else { return None };
+        let triangle = [p, q, r];
         let Way { out, depth, foot } = match *self.other.corners {
-            [center] => way(&[p, q, r], center, self.other.radius)?,
-            _ => inside.as_ref()?.way(&[p, q, r])?,
+            [center] => way(&triangle, center, self.other.radius)?,
+            _ => inside
+                .as_ref()
+                .and_then(|inside| inside.way(&triangle))
+                .or_else(|| through::way(&triangle, self.body.plane?, &self.other))?,
         };
         let on_body = foot - out * depth;
         Some(match mirrored {
