@@ -92,7 +92,13 @@ pub(super) struct Placed<'a> {
 }
 
 impl<'a> Placed<'a> {
-    pub fn new(body: &'a Body<'a>, primitive: u32, map: &'a Map) -> Self {
+    /// A shape that is one body.
+    pub fn new(body: &'a Body<'a>, map: &'a Map) -> Self {
+        Placed { body, map, primitive: 0, plane: None }
+    }
+
+    /// A primitive of a complex shape.
+    pub fn of_primitive(body: &'a Body<'a>, primitive: u32, map: &'a Map) -> Self {
         let plane = match *body {
             Body::Simplex { vertices, indices: &[p, q, r] } => {
                 triangle_normal([p, q, r].map(|i| map.point(vertices[i as usize])))

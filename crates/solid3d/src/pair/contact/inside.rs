@@ -115,7 +115,7 @@ mod tests {
                     DAffine3 { matrix3: turn * rng.random_range(0.3..1.0), translation: in_cube(&mut rng) };
                 let map = Map::new(at);
                 let body = shape.body().unwrap();
-                let placed = Placed::new(&body, 0, &map);
+                let placed = Placed::new(&body, &map);
                 let middle = map.point(in_cube(&mut rng) * 0.4);
                 let extent = [1.0, 0.3, 0.03, 0.003][case % 4];
                 let triangle = [(); 3].map(|()| middle + in_cube(&mut rng) * extent);
@@ -153,7 +153,7 @@ mod tests {
             let points: Vec<DVec3> = (0..8).map(corner).map(|p| p + p * bent * p.element_product()).collect();
             let hull = Shape::convex_hull(&points).unwrap();
             let body = hull.body().unwrap();
-            let placed = Placed::new(&body, 0, &map);
+            let placed = Placed::new(&body, &map);
             Inside::new(&placed, count).is_some()
         };
         assert!(is_known(0.0, 1) && is_known(1e-15, 1) && is_known(1e-3, 1));

@@ -33,12 +33,14 @@ impl Map {
     }
 
     /// The image of a normal: by the inverse transposed, whose entries may be so large that their squares are not numbers.
+    #[inline]
     pub fn normal(&self, local: DVec3) -> DVec3 {
         unit(self.inverse().transpose() * local)
     }
 }
 
 /// The direction of a normal; zero of one that is.
+#[inline]
 pub(super) fn unit(normal: DVec3) -> DVec3 {
     direction(normal).unwrap_or(DVec3::ZERO)
 }

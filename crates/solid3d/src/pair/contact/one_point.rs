@@ -22,7 +22,7 @@ pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
     let own = Map::new(DAffine3::IDENTITY);
     let feature = |of: Placed, facing: DVec3| -> Option<Feature> {
         let facing = direction(of.placement.matrix3.mul_transpose_vec3(facing))?;
-        Some(touched(&face::Placed::new(&of.shape.body()?, 0, &own), facing))
+        Some(touched(&face::Placed::new(&of.shape.body()?, &own), facing))
     };
     let normal = found.direction;
     let features = [feature(a, -normal)?, feature(b, normal)?];

@@ -185,7 +185,7 @@ mod tests {
                 let corners = without.corners(triangle);
                 let out = in_cube(&mut rng).normalize();
                 let [found, expected] = [&with_hubs, &without].map(|stars| {
-                    let placed = face::Placed::new(&body, triangle, &here);
+                    let placed = face::Placed::of_primitive(&body, triangle, &here);
                     Side::new(stars, placed, &corners, other).corrected(out)
                 });
                 let depth = |corrected: Corrected| other.depths(&corners, corrected.normal())[0];

@@ -30,7 +30,7 @@ pub(super) fn body_body(pair: &Pair, a: &Part, b: &Part) -> Vec<Patch> {
     let (Part::Body(kind_a, of_a), Part::Body(kind_b, of_b)) = (a, b) else { return Vec::new() };
     let Some(meeting) = pair.meeting_of_bodies(*of_a, *of_b) else { return Vec::new() };
     let [map_a, map_b] = &pair.maps;
-    let (placed_a, placed_b) = (face::Placed::new(kind_a, 0, map_a), face::Placed::new(kind_b, 0, map_b));
+    let (placed_a, placed_b) = (face::Placed::new(kind_a, map_a), face::Placed::new(kind_b, map_b));
     let touches = pair.touches(&placed_a, &placed_b, &meeting);
     vec![Patch { normal: meeting.normal, touches, is_inward: false }]
 }
@@ -48,7 +48,7 @@ pub(super) fn soup_body(
     let convex: PlacedConvex = (*support, placed_body.placement);
     let [map_a, map_b] = &pair.maps;
     let [map_soup, map_body] = if mirrored { [map_b, map_a] } else { [map_a, map_b] };
-    let body = face::Placed::new(kind, 0, map_body);
+    let body = face::Placed::new(kind, map_body);
     let round = core(*support).zip(Similarity::new(map_body.linear()));
     let (ends, radius) = round.map_or(([DVec3::ZERO; 2], 0.0), |((ends, radius), similarity)| {
         (ends.map(|end| map_body.point(end)), radius * similarity.stretch)
@@ -65,7 +65,7 @@ pub(super) fn soup_body(
     let patch = |&primitive: &u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
-        let placed = face::Placed::new(&primitive_body, primitive, map_soup);
+        let placed = face::Placed::of_primitive(&primitive_body, primitive, map_soup);
         let corners = stars.corners(primitive);
         let side = Side::new(&stars, placed, &corners, other);
         let over = |normal: DVec3| match mirrored {
@@ -210,7 +210,7 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let meeting = pair.meeting(&hull_a, &hull_b, must)?;
         let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
         let (placed_a, placed_b) =
-            (face::Placed::new(&body_a, i, map_a), face::Placed::new(&body_b, j, map_b));
+            (face::Placed::of_primitive(&body_a, i, map_a), face::Placed::of_primitive(&body_b, j, map_b));
         let (corners_a, corners_b) = (stars_a.corners(i), stars_b.corners(j));
         let other_a = Other { primitive: i, support: &hull_a, map: map_a, corners: &corners_a, radius: 0.0 };
         let other_b = Other { primitive: j, support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
