@@ -8,13 +8,13 @@ use super::super::triangle_triangle::Triangle;
 /// A centre nearer to the triangle than this, in the unit of the pair, has a way to it with few digits.
 const WAY_MIN: f64 = 1e-6;
 
-/// The way from a triangle to a ball.
+/// The shortest way of a body out of a triangle. Space: common.
 pub(super) struct Way {
     /// A unit vector.
     pub out: DVec3,
     /// Negative for a gap.
     pub depth: f64,
-    /// The point of the triangle that is nearest to the centre.
+    /// The point of the triangle that the body leaves last; of a ball it is the nearest to the centre.
     pub foot: DVec3,
 }
 

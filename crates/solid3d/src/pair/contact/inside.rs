@@ -45,7 +45,7 @@ impl<'a> Inside<'a> {
         }
     }
 
-    /// The shortest way of a triangle out of the body, from the body's side: against it the triangle leaves. `None` where it is not known.
+    /// The shortest way of the body out of a triangle. `None` where it is not known.
     pub fn way(&self, triangle: &Triangle) -> Option<Way> {
         let feet = triangle.iter().filter_map(|&corner| Some((self.foot(corner)?, corner)));
         let ((distance, normal), corner) = feet.min_by(|(x, _), (y, _)| x.0.total_cmp(&y.0))?;

@@ -10,8 +10,8 @@ use super::{ContactPoint, Feature, Manifold, face, touched};
 use crate::placement::direction;
 use crate::shape::ShapeKind;
 
-/// The contact of a ball and a ball, box, cone, cylinder or capsule that are in each other, or of such capsules; `None` for other shapes, and where
-/// the general way has to say.
+/// The contact of a ball and a ball, box, cone, cylinder or capsule that are in each other, or of two capsules that are; `None` for other shapes,
+/// and where the general way has to say.
 pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
     let is_capsule = |of: Placed| of.shape.kind() == ShapeKind::Capsule;
     if !(a.shape.is_ball() || b.shape.is_ball() || is_capsule(a) && is_capsule(b)) {

@@ -28,8 +28,7 @@ impl Other<'_> {
         self.map.point(self.support.support(self.map.linear().transpose() * direction))
     }
 
-    /// How far it reaches back behind what of some points is furthest along a normal, and along its opposite; along a vector of any
-    /// length, times that.
+    /// How far it reaches back behind what of some points is furthest along a unit normal, and along its opposite.
     #[inline(always)]
     pub fn depths(&self, points: &[DVec3], out: DVec3) -> [f64; 2] {
         let [low, high] = extremes(points, out);
@@ -37,13 +36,12 @@ impl Other<'_> {
         [high - behind, beyond - low]
     }
 
-    /// The least and the greatest height along a direction, times the length of that.
+    /// The least and the greatest height along a unit vector.
     #[inline]
     pub fn extremes(&self, direction: DVec3) -> [f64; 2] {
         if !self.corners.is_empty() {
             let [low, high] = extremes(self.corners, direction);
-            let around = if self.radius > 0.0 { self.radius * direction.length() } else { 0.0 };
-            return [low - around, high + around];
+            return [low - self.radius, high + self.radius];
         }
         [-direction, direction].map(|way| direction.dot(self.furthest(way)))
     }
@@ -51,7 +49,7 @@ impl Other<'_> {
 
 /// The least and the greatest height of points along a direction.
 #[inline]
-pub(super) fn extremes(points: &[DVec3], direction: DVec3) -> [f64; 2] {
+fn extremes(points: &[DVec3], direction: DVec3) -> [f64; 2] {
     let heights = points.iter().map(|point| direction.dot(*point));
     heights
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| [low.min(height), high.max(height)])
