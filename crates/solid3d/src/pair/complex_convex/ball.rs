@@ -14,9 +14,8 @@ use super::CLEARLY_APART;
 pub(super) fn closest_points(triangle: &Triangle, round: &Round, frame: &Frame) -> Option<Closest> {
     let center = round.center()?;
     let placed = triangle.map(|corner| frame.common[0].transform_point3(corner));
-    let [s, t] = nearest_to(center, &placed);
-    let point = |[p, q, r]: &Triangle| *p + (*q - *p) * s + (*r - *p) * t;
-    let way = center - point(&placed);
+    let at = nearest_to(center, &placed);
+    let way = center - point_at(&placed, at);
     let length = way.length();
     let gap = length - round.radius;
     let to_surface = if gap > CLEARLY_APART {
@@ -26,7 +25,10 @@ pub(super) fn closest_points(triangle: &Triangle, round: &Round, frame: &Frame) 
         (gap < -CLEARLY_APART).then_some(1.0)?
     };
     let on_b = round.local_ends[0] - round.at.local(way * to_surface);
-    Some(Closest { distance: gap.max(0.0) / frame.scale, points: Witness { on_a: point(triangle), on_b } })
+    Some(Closest {
+        distance: gap.max(0.0) / frame.scale,
+        points: Witness { on_a: point_at(triangle, at), on_b },
+    })
 }
 
 /// Whether the way from a triangle to a point is the shortest, or no longer by what rounding hides: the plane across it bounds the distance from below.
@@ -70,6 +72,12 @@ pub(in super::super) fn nearest_to(point: DVec3, [p, q, r]: &Triangle) -> [f64; 
     // Rounding may have hidden beyond which edge of a sliver the point is.
     let s = (of_q * inverse).clamp(0.0, 1.0);
     [s, (of_r * inverse).clamp(0.0, 1.0 - s)]
+}
+
+/// The point of a triangle that is so far from the first corner along the edges to the second and the third.
+#[inline(always)]
+pub(in super::super) fn point_at([p, q, r]: &Triangle, [s, t]: [f64; 2]) -> DVec3 {
+    *p + (*q - *p) * s + (*r - *p) * t
 }
 
 #[cfg(test)]

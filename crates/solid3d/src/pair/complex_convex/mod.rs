@@ -20,7 +20,7 @@ use super::frame::Frame;
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Relation, Scratch};
 use crate::bounds::Aabb;
-pub(super) use ball::{is_confirmed, nearest_to};
+pub(super) use ball::{is_confirmed, nearest_to, point_at};
 
 /// A gap in the common frame, where the size of the data is from 1 to 2, at which GJK calls shapes separate without fail: four
 /// times the one at which it does so by a cached axis.

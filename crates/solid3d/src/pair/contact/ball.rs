@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::complex_convex::{is_confirmed, nearest_to};
+use super::super::complex_convex::{is_confirmed, nearest_to, point_at};
 use super::super::triangle_triangle::Triangle;
 
 /// A centre nearer to the triangle than this, in the unit of the pair, has a way to it with few digits.
@@ -21,9 +21,7 @@ pub(super) struct Way {
 /// The way from a triangle to the centre of a ball that is not on it. `None` where rounding hides which point of a sliver is the closest, and where the
 /// centre is on it. Space: common.
 pub(super) fn way(triangle: &Triangle, center: DVec3, radius: f64) -> Option<Way> {
-    let [p, q, r] = *triangle;
-    let [s, t] = nearest_to(center, triangle);
-    let foot = p + (q - p) * s + (r - p) * t;
+    let foot = point_at(triangle, nearest_to(center, triangle));
     let way = center - foot;
     let length = way.length();
     if length < WAY_MIN {

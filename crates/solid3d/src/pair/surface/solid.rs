@@ -7,7 +7,7 @@ use solid_convex::{Closest, Points, gjk};
 
 use super::{NEAR, SurfacePoint, away};
 use crate::bounds::Aabb;
-use crate::pair::complex_convex::{is_confirmed, nearest_to};
+use crate::pair::complex_convex::{is_confirmed, nearest_to, point_at};
 use crate::pair::containment::PlacedSolid;
 use crate::pair::frame::{Frame, Stretch};
 use crate::pair::table::{PlacedComplex, PlacedConvex};
@@ -145,8 +145,7 @@ impl Foot {
     /// does not confirm that, as may be of slivers, by GJK.
     fn of(triangle: &Triangle, p: DVec3) -> Foot {
         let [s, t] = nearest_to(p, triangle);
-        let [a, b, c] = *triangle;
-        let point = a + (b - a) * s + (c - a) * t;
+        let point = point_at(triangle, [s, t]);
         let way = p - point;
         let distance = way.length();
         let is_inner = s > 0.0 && t > 0.0 && s + t < 1.0;
