@@ -97,12 +97,10 @@ impl<'a> Placed<'a> {
         Placed { body, map, primitive: 0, plane: None }
     }
 
-    /// A primitive of a complex shape.
-    pub fn of_primitive(body: &'a Body<'a>, primitive: u32, map: &'a Map) -> Self {
-        let plane = match *body {
-            Body::Simplex { vertices, indices: &[p, q, r] } => {
-                triangle_normal([p, q, r].map(|i| map.point(vertices[i as usize])))
-            }
+    /// A primitive of a complex shape, whose corners are there.
+    pub fn of_primitive(body: &'a Body<'a>, primitive: u32, map: &'a Map, corners: &[DVec3]) -> Self {
+        let plane = match *corners {
+            [p, q, r] => triangle_normal([p, q, r]),
             _ => None,
         };
         Placed { body, map, primitive, plane }

@@ -90,24 +90,17 @@ mod tests {
     use glam::{DAffine3, DMat3, DQuat};
     use rand::Rng;
     use solid_convex::{Points, epa};
-    use solid_oracle::generate::{direction, in_cube, seeded};
+    use solid_oracle::generate::{in_cube, seeded};
 
+    use super::super::ways::{assert_is_shortest, bodies, support};
     use super::*;
-    use crate::shape::{Class, Shape};
+    use crate::shape::Shape;
 
     /// Law: where there is an answer it is within the bounds of EPA, the points are each in their object, and there is one of nearly all small triangles.
     #[test]
     fn the_way_out_is_the_shortest() {
         let mut rng = seeded(169);
-        let points: Vec<DVec3> = (0..20).map(|_| direction(&mut rng)).collect();
-        let bodies = [
-            Shape::cuboid([1.2, 1.0, 0.8]).unwrap(),
-            Shape::capsule(0.4, 0.8).unwrap(),
-            Shape::cylinder(0.6, 1.0).unwrap(),
-            Shape::cone(0.8, 1.2).unwrap(),
-            Shape::convex_hull(&points).unwrap(),
-        ];
-        for (kind, shape) in bodies.iter().enumerate() {
+        for (kind, shape) in bodies(&mut rng).iter().enumerate() {
             let (mut answers, mut of_small, mut small, cases) = (0, 0, 0, 2000);
             for case in 0..cases {
                 let turn = DMat3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 3.0));
@@ -119,22 +112,18 @@ mod tests {
                 let middle = map.point(in_cube(&mut rng) * 0.4);
                 let extent = [1.0, 0.3, 0.03, 0.003][case % 4];
                 let triangle = [(); 3].map(|()| middle + in_cube(&mut rng) * extent);
-                let Class::Convex(support) = shape.class() else { panic!("a body is convex") };
-                let one = Points::new(&triangle).unwrap();
-                let here = DAffine3::IDENTITY;
-                let Some(exact) = epa::penetration(&one, &here, support, &at) else { continue };
+                let (support, one) = (support(shape), Points::new(&triangle).unwrap());
+                if epa::penetration(support, &at, &one, &DAffine3::IDENTITY).is_none() {
+                    continue;
+                }
                 let way =
                     Inside::new(&placed, 100).expect("its placement leaves it what it is").way(&triangle);
                 small += usize::from(case % 4 == 3);
-                let Some(Way { out, depth, foot }) = way else { continue };
+                let Some(way) = way else { continue };
                 answers += 1;
                 of_small += usize::from(case % 4 == 3);
-                let context = format!("{kind}, case {case}: {out}, {depth}, {exact:?}");
-                assert!((exact.lower - 1e-12..=exact.upper + 1e-12).contains(&depth), "{context}");
-                assert!(triangle.contains(&foot) && (out.length() - 1.0).abs() < 1e-14, "{context}");
-                // Along its normal the body reaches as far as the corner that leaves it.
-                let reach = -out.dot(map.point(support.support(map.linear().transpose() * -out)));
-                assert!((reach + out.dot(foot) - depth).abs() <= 1e-14, "{context}");
+                assert!(triangle.contains(&way.foot), "{kind}, case {case}");
+                assert_is_shortest(&way, &triangle, support, &at, &format!("{kind}, case {case}"));
             }
             println!("{kind}: {answers} answers, {of_small} of {small} small ones");
             assert!(

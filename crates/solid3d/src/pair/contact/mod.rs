@@ -24,6 +24,8 @@ mod side;
 mod soup;
 mod stars;
 mod through;
+#[cfg(test)]
+mod ways;
 
 use glam::{DVec2, DVec3};
 use smallvec::{SmallVec, smallvec};

@@ -52,13 +52,12 @@ impl<'a> Side<'a> {
     }
 
     /// How a triangle and a body lie to each other, where that is known in closed form.
-    pub fn meeting_of_body(&self, inside: &Option<Inside>, mirrored: bool) -> Option<Meeting> {
+    pub fn meeting_of_body(&self, inside: Option<&Inside>, mirrored: bool) -> Option<Meeting> {
         let &[p, q, r] = self.corners else { return None };
         let triangle = [p, q, r];
         let Way { out, depth, foot } = match *self.other.corners {
             [center] => way(&triangle, center, self.other.radius)?,
             _ => inside
-                .as_ref()
                 .and_then(|inside| inside.way(&triangle))
                 .or_else(|| through::way(&triangle, self.body.plane?, &self.other))?,
         };
@@ -185,7 +184,7 @@ mod tests {
                 let corners = without.corners(triangle);
                 let out = in_cube(&mut rng).normalize();
                 let [found, expected] = [&with_hubs, &without].map(|stars| {
-                    let placed = face::Placed::of_primitive(&body, triangle, &here);
+                    let placed = face::Placed::of_primitive(&body, triangle, &here, &corners);
                     Side::new(stars, placed, &corners, other).corrected(out)
                 });
                 let depth = |corrected: Corrected| other.depths(&corners, corrected.normal())[0];

@@ -65,8 +65,8 @@ pub(super) fn soup_body(
     let patch = |&primitive: &u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
-        let placed = face::Placed::of_primitive(&primitive_body, primitive, map_soup);
         let corners = stars.corners(primitive);
+        let placed = face::Placed::of_primitive(&primitive_body, primitive, map_soup, &corners);
         let side = Side::new(&stars, placed, &corners, other);
         let over = |normal: DVec3| match mirrored {
             true => pair.over(&body, &side.body, normal, false),
@@ -76,7 +76,7 @@ pub(super) fn soup_body(
             Some(normal) => (normal, over(normal)),
             None => {
                 let must = pair.margin == 0.0;
-                let meeting = match side.meeting_of_body(&inside, mirrored) {
+                let meeting = match side.meeting_of_body(inside.as_ref(), mirrored) {
                     Some(meeting) if must => meeting.touching(),
                     Some(meeting) => meeting.within(pair.margin)?,
                     None if mirrored => pair.meeting(*support, &hull, must)?,
@@ -209,9 +209,9 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let (hull_a, hull_b) = (a.primitive_hull(i), b.primitive_hull(j));
         let meeting = pair.meeting(&hull_a, &hull_b, must)?;
         let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
-        let (placed_a, placed_b) =
-            (face::Placed::of_primitive(&body_a, i, map_a), face::Placed::of_primitive(&body_b, j, map_b));
         let (corners_a, corners_b) = (stars_a.corners(i), stars_b.corners(j));
+        let placed_a = face::Placed::of_primitive(&body_a, i, map_a, &corners_a);
+        let placed_b = face::Placed::of_primitive(&body_b, j, map_b, &corners_b);
         let other_a = Other { primitive: i, support: &hull_a, map: map_a, corners: &corners_a, radius: 0.0 };
         let other_b = Other { primitive: j, support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
         let of_a = Side::new(&stars_a, placed_a, &corners_a, other_b);

@@ -14,16 +14,17 @@ use super::other::Other;
 
 /// The shortest way out of a triangle with a unit normal, along that or its opposite. `None` where it may be another.
 pub(super) fn way(triangle: &Triangle, normal: DVec3, other: &Other) -> Option<Way> {
-    let [behind, beyond] = other.depths(triangle, normal);
-    let (depth, out) = if behind <= beyond { (behind, normal) } else { (beyond, -normal) };
+    let [p, q, r] = *triangle;
+    let [back, front] = [-normal, normal].map(|direction| other.furthest(direction));
+    let (behind, beyond) = (normal.dot(p - back), normal.dot(front - p));
+    let (depth, out, deepest) =
+        if behind <= beyond { (behind, normal, back) } else { (beyond, -normal, front) };
     let center = other.center();
-    let height = out.dot(center - triangle[0]);
+    let height = out.dot(center - p);
     if depth <= DEPTH_MIN || height <= depth {
         return None;
     }
-    let deepest = other.furthest(-out);
     let before = deepest + (center - deepest) * (2.0 * depth / (height + depth));
-    let [p, q, r] = *triangle;
     let has_around = |(from, to): (DVec3, DVec3)| {
         let edge = to - from;
         let (inward, room) = (normal.cross(edge), depth * edge.length());
@@ -40,28 +41,19 @@ pub(super) fn way(triangle: &Triangle, normal: DVec3, other: &Other) -> Option<W
 mod tests {
     use glam::{DAffine3, DMat3, DQuat};
     use rand::Rng;
-    use solid_convex::{Points, epa};
-    use solid_oracle::generate::{direction, in_cube, seeded};
+    use solid_oracle::generate::{in_cube, seeded};
 
     use super::super::face::triangle_normal;
     use super::super::map::Map;
+    use super::super::ways::{assert_is_shortest, bodies, support};
     use super::*;
-    use crate::shape::{Class, Shape};
 
     /// Law: where there is an answer it is within the bounds of EPA, the points are each in their object, and there is one of most bodies that come
     /// through the middle of a triangle.
     #[test]
     fn the_way_out_is_the_shortest() {
         let mut rng = seeded(170);
-        let points: Vec<DVec3> = (0..20).map(|_| direction(&mut rng)).collect();
-        let bodies = [
-            Shape::cuboid([1.2, 1.0, 0.8]).unwrap(),
-            Shape::capsule(0.4, 0.8).unwrap(),
-            Shape::cylinder(0.6, 1.0).unwrap(),
-            Shape::cone(0.8, 1.2).unwrap(),
-            Shape::convex_hull(&points).unwrap(),
-        ];
-        for (kind, shape) in bodies.iter().enumerate() {
+        for (kind, shape) in bodies(&mut rng).iter().enumerate() {
             let (mut answers, mut through, cases) = (0, 0, 2000);
             for case in 0..cases {
                 let triangle = [(); 3].map(|()| in_cube(&mut rng) * 1.5);
@@ -69,7 +61,7 @@ mod tests {
                 let turn = DMat3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 3.0));
                 let stretch = DMat3::from_diagonal(DVec3::new(1.0, [1.0, 0.2][case / 2 % 2], 1.0));
                 let linear = turn * stretch * rng.random_range(0.1..0.6);
-                let Class::Convex(support) = shape.class() else { panic!("a body is convex") };
+                let support = support(shape);
                 // Behind its plane by some thousandths, or anywhere.
                 let deepest = linear * support.support(linear.transpose() * normal);
                 let part = [rng.random_range(0.0..1.0), rng.random_range(0.0..1.0)];
@@ -80,12 +72,11 @@ mod tests {
                 let map = Map::new(at);
                 let other = Other { primitive: 0, support, map: &map, corners: &[], radius: 0.0 };
                 through += usize::from(case % 2 == 0);
-                let Some(Way { out, depth, foot }) = way(&triangle, normal, &other) else { continue };
+                let Some(found) = way(&triangle, normal, &other) else { continue };
                 answers += usize::from(case % 2 == 0);
-                let one = Points::new(&triangle).unwrap();
-                let exact = epa::penetration(support, &at, &one, &DAffine3::IDENTITY).expect("they meet");
-                let context = format!("{kind}, case {case}: {out}, {depth}, {exact:?}");
-                assert!((exact.lower - 1e-12..=exact.upper + 1e-12).contains(&depth), "{context}");
+                let context = format!("{kind}, case {case}");
+                assert_is_shortest(&found, &triangle, support, &at, &context);
+                let Way { out, depth, foot } = found;
                 assert!(out == normal || out == -normal, "{context}");
                 assert!(out.dot(foot - p).abs() < 1e-14, "{context}");
                 assert!((foot - out * depth - other.furthest(-out)).length() < 1e-14, "{context}");
