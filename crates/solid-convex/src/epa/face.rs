@@ -1,10 +1,6 @@
-//! A face of the polytope: its plane, and how well that is known.
+//! A face of the polytope, and how it hangs together with others.
 
-use glam::DVec3;
-
-use super::HEIGHT_ERROR;
-use crate::Support;
-use crate::difference::{Difference, SupportPoint};
+use super::plane::Plane;
 
 /// A triangle of the polytope, counterclockwise from outside.
 #[derive(Clone, Copy, Debug)]
@@ -13,18 +9,21 @@ pub(super) struct Face {
     pub corners: [u32; 3],
     /// For the edge from each corner to the next, the same edge of the face across it.
     pub twins: [HalfEdge; 3],
-    /// Outward, of unit length.
-    pub normal: DVec3,
-    /// How far the plane is from the origin along the normal; infinite for a face that was replaced.
-    pub offset: f64,
-    /// How much less it may be.
-    pub slack: f64,
-    /// How much higher above the plane of its rounded corners, or lower, a vertex may be than its computed height says.
-    pub blur: f64,
+    /// Where it lies.
+    pub plane: Plane,
     /// Whether the point being inserted sees it.
     pub seen: bool,
-    /// Whether it is still to be looked across.
-    pub open: bool,
+}
+
+impl Face {
+    /// Holds the place of one that is to come.
+    pub const NONE: Face =
+        Face { corners: [0; 3], twins: [HalfEdge(0); 3], plane: Plane::BEYOND, seen: false };
+
+    /// Whether it is of the polytope, not a place that none has.
+    pub fn is_live(&self) -> bool {
+        self.plane.offset < f64::INFINITY
+    }
 }
 
 /// An edge of a face: four times its number, plus that of the corner which the edge starts at.
@@ -50,92 +49,5 @@ impl HalfEdge {
     pub fn others(self) -> [HalfEdge; 2] {
         const NEXT: [[u32; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
         NEXT[self.corner()].map(|corner| HalfEdge(self.0 / 4 * 4 + corner))
-    }
-}
-
-/// Roundings of 2^-53 of the normal of two edges, each relative to the parts that the edge is computed from: two products with
-/// matrices and their difference for each edge, the cross product, the root and the scalar product with a corner.
-const NORMAL_ROUNDINGS: f64 = 16.0 / (1u64 << 53) as f64;
-
-/// No two points of the difference, whose coordinates are below 2, are further apart.
-const DIAMETER: f64 = 8.0;
-
-/// The square of the width of a triangle over its longest edge, in the difference's unit, beyond which the rounding of its corners does
-/// not tilt it by more than some 1e-14.
-const WIDE_SQUARED: f64 = 1.0 / 1024.0;
-
-impl Face {
-    /// The face of three points.
-    #[inline]
-    pub fn new<A, B>(
-        difference: &Difference<A, B>,
-        corners: [u32; 3],
-        points: [&SupportPoint; 3],
-        twins: [HalfEdge; 3],
-    ) -> Self
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
-        let [p, q, r] = points.map(|point| point.w);
-        let (pq, pr) = (q - p, r - p);
-        let normal = pq.cross(pr);
-        let area_squared = normal.length_squared();
-        let longest_squared = pq.length_squared().max(pr.length_squared()).max((r - q).length_squared());
-        if area_squared <= WIDE_SQUARED * longest_squared {
-            return Face::narrow(difference, corners, points, twins);
-        }
-        let inverse = 1.0 / area_squared.sqrt();
-        let normal = normal * inverse;
-        // The corners are what they are: only the computation rounds.
-        let tilt = NORMAL_ROUNDINGS * (1.0 + longest_squared * inverse);
-        let (slack, blur) = (tilt * p.abs().element_sum(), tilt * DIAMETER);
-        Face { corners, twins, normal, offset: normal.dot(p), slack, blur, seen: false, open: true }
-    }
-
-    /// The face of three points that are nearly in line, or near to each other. Its normal comes from the edges of the two objects, which
-    /// are precise where the points are large and the face is small.
-    #[inline(never)]
-    fn narrow<A, B>(
-        difference: &Difference<A, B>,
-        corners: [u32; 3],
-        points: [&SupportPoint; 3],
-        twins: [HalfEdge; 3],
-    ) -> Self
-    where
-        A: Support + ?Sized,
-        B: Support + ?Sized,
-    {
-        let [p, q, r] = points;
-        let sides = [(p, q), (q, r), (r, p)];
-        let squares = sides.map(|(x, y)| x.w.distance_squared(y.w));
-        // The two shortest: see `feature::normal`.
-        let longest = (1..3).fold(0, |i, j| if squares[j] > squares[i] { j } else { i });
-        let edge = |i: usize| difference.edge_with_size(sides[i % 3].0, sides[i % 3].1);
-        let [(x, size_x), (y, size_y)] = [edge(longest + 1), edge(longest + 2)];
-        let normal = x.cross(y);
-        let near = |x: DVec3, y: DVec3| if y.length_squared() < x.length_squared() { y } else { x };
-        let nearest = near(near(p.w, q.w), r.w);
-        let length = normal.length();
-        let unit = normal / length;
-        if !unit.is_finite() {
-            // So thin that its normal is lost: looked across once, along its nearest corner, and of no use as a bound.
-            let normal = nearest.try_normalize().unwrap_or(DVec3::X);
-            let (slack, blur) = (f64::INFINITY, f64::INFINITY);
-            return Face { corners, twins, normal, offset: 0.0, slack, blur, seen: false, open: true };
-        }
-        let tilt = NORMAL_ROUNDINGS * (1.0 + (size_x * y.length() + size_y * x.length()) / length);
-        // The vertices are the rounded ones.
-        let slack = tilt.min(2.0) * nearest.length() + HEIGHT_ERROR;
-        // Far from the face, the plane of the rounded vertices may be anywhere.
-        let (offset, blur) = (unit.dot(nearest), f64::INFINITY);
-        Face { corners, twins, normal: unit, offset, slack, blur, seen: false, open: true }
-    }
-
-    /// How many times a direction the way along it to the plane is; infinite where it goes inward, and where the plane is lost.
-    pub fn exit(&self, direction: DVec3) -> f64 {
-        let along = self.normal.dot(direction);
-        let known = along > 0.0 && self.slack < f64::INFINITY;
-        if known { self.offset / along } else { f64::INFINITY }
     }
 }

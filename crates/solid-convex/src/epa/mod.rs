@@ -18,6 +18,7 @@
 //!   answer that had to stop early ([`VERTICES_MAX`]) says how good it is.
 
 mod face;
+mod plane;
 mod polytope;
 mod rounded;
 mod start;
@@ -34,7 +35,7 @@ use crate::gjk::{BEYOND_TOUCHING, End, Goal, descend, intersects};
 use crate::rounded::Core;
 use crate::simplex::{Reduced, Simplex};
 use crate::{Support, Witness};
-use face::Face;
+use plane::Plane;
 use polytope::Polytope;
 use start::start;
 use stretch::Stretch;
@@ -257,7 +258,7 @@ where
     let (mut height, mut normal) = (f64::INFINITY, DVec3::X);
     for _ in 0..EXPANSIONS_MAX {
         let Some(index) = polytope.take_nearest() else { break };
-        let Face { normal: across, offset, .. } = *polytope.face(index);
+        let Plane { normal: across, offset, .. } = *polytope.plane(index);
         if offset >= height - tolerance(height) {
             break;
         }
@@ -265,7 +266,6 @@ where
         let beyond = across.dot(p.w);
         if beyond < height {
             (height, normal) = (beyond, across);
-            polytope.limit(height - tolerance(height));
         }
         // A point that is a vertex already is beyond the face by the rounding error only.
         let grows = beyond - offset > tolerance(beyond)

@@ -1,13 +1,12 @@
 //! The polytope: vertices, faces, and how it grows.
 
 use std::cell::Cell;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 use glam::DVec3;
 use robust::orient3d;
 
 use super::face::{Face, HalfEdge};
+use super::plane::Plane;
 use super::stretch::Stretch;
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
@@ -19,10 +18,8 @@ use crate::simplex::coord;
 pub(super) struct Polytope {
     vertices: Vec<SupportPoint>,
     faces: Vec<Face>,
-    /// The open faces, by [`order`] of their offsets and then by number; and some that no longer are.
-    open: BinaryHeap<Reverse<(u64, u32)>>,
-    /// Faces that are at least this far from the origin are not to be looked across.
-    limit: f64,
+    /// For each face its offset while it is still to be looked across, then infinity.
+    open: Vec<f64>,
     /// How the space of the vertices was stretched, if it was.
     stretch: Option<Stretch>,
     horizon: Horizon,
@@ -72,10 +69,28 @@ pub(super) fn side([p, q, r]: [DVec3; 3], s: DVec3) -> f64 {
     orient3d(coord(p), coord(q), coord(r), coord(s))
 }
 
-/// A number that is ordered as an offset is.
-fn order(offset: f64) -> u64 {
-    let bits = offset.to_bits();
-    if offset.is_sign_negative() { !bits } else { bits | 1 << 63 }
+/// The place of the least of some numbers, the first of equals; `None` when all are infinite.
+fn place_of_least(numbers: &[f64]) -> Option<usize> {
+    const BLOCK: usize = 64;
+    let (mut least, mut start) = (f64::INFINITY, 0);
+    for (i, block) in numbers.chunks(BLOCK).enumerate() {
+        let least_here = least_of(block);
+        if least_here < least {
+            (least, start) = (least_here, i * BLOCK);
+        }
+    }
+    let place = numbers[start..].iter().position(|&x| x == least && x < f64::INFINITY)?;
+    Some(start + place)
+}
+
+/// The least of some numbers, or infinity: several at a time, each the least of its own.
+fn least_of(numbers: &[f64]) -> f64 {
+    let lesser = |x: f64, y: f64| if y < x { y } else { x };
+    let (eights, rest) = numbers.as_chunks::<8>();
+    let lanes = eights.iter().fold([f64::INFINITY; 8], |least, eight| {
+        std::array::from_fn(|lane| lesser(least[lane], eight[lane]))
+    });
+    lanes.iter().chain(rest).copied().fold(f64::INFINITY, lesser)
 }
 
 impl Polytope {
@@ -109,7 +124,6 @@ impl Polytope {
         self.vertices.clear();
         self.faces.clear();
         self.open.clear();
-        self.limit = f64::INFINITY;
     }
 
     /// Leaves the memory to the next one.
@@ -130,8 +144,8 @@ impl Polytope {
         self.vertices.iter().any(|q| q.w == p.w)
     }
 
-    pub fn face(&self, index: usize) -> &Face {
-        &self.faces[index]
+    pub fn plane(&self, index: usize) -> &Plane {
+        &self.faces[index].plane
     }
 
     /// The corners of a face.
@@ -139,28 +153,18 @@ impl Polytope {
         self.faces[index].corners.map(|i| self.vertices[i as usize])
     }
 
-    /// Notes that only faces nearer to the origin than this are of interest.
-    pub fn limit(&mut self, offset: f64) {
-        self.limit = offset;
-    }
-
     /// The open face nearest to the origin, the first of equals, which is then no longer open; `None` when all are finished.
     pub fn take_nearest(&mut self) -> Option<usize> {
-        while let Some(Reverse((key, index))) = self.open.pop() {
-            let face = &mut self.faces[index as usize];
-            if face.open && order(face.offset) == key {
-                face.open = false;
-                return Some(index as usize);
-            }
-        }
-        None
+        let index = place_of_least(&self.open)?;
+        self.open[index] = f64::INFINITY;
+        Some(index)
     }
 
     /// A ball of this radius around the origin is in the hull of the vertices; negative when that cannot be said. Beyond `enough` it
     /// need not be precise.
     pub fn radius(&self, enough: f64) -> f64 {
-        let bound = |(index, face): (usize, &Face)| {
-            let of_plane = face.offset - face.slack;
+        let bound = |(index, Face { plane, .. }): (usize, &Face)| {
+            let of_plane = plane.offset - plane.slack;
             if of_plane < enough && self.stretch.is_none() {
                 of_plane.max(self.sliver_distance(index))
             } else {
@@ -193,13 +197,13 @@ impl Polytope {
         margin: f64,
     ) -> impl Iterator<Item = [SupportPoint; 3]> + '_ {
         let latest = self.exit(direction) + margin;
-        let near = (0..self.faces.len()).filter(move |&i| self.faces[i].exit(direction) <= latest);
+        let near = (0..self.faces.len()).filter(move |&i| self.faces[i].plane.exit(direction) <= latest);
         near.map(|i| self.corners(i))
     }
 
     /// How many times a direction the way along it out of the polytope is.
     fn exit(&self, direction: DVec3) -> f64 {
-        self.faces.iter().map(|face| face.exit(direction)).fold(f64::INFINITY, f64::min)
+        self.faces.iter().map(|face| face.plane.exit(direction)).fold(f64::INFINITY, f64::min)
     }
 
     /// The direction of a normal, and where along it a plane that is at this height leaves the polytope. What is stretched is left on the ray itself:
@@ -212,7 +216,7 @@ impl Polytope {
 
     /// The corners of all faces.
     pub fn all_faces(&self) -> impl Iterator<Item = [SupportPoint; 3]> + '_ {
-        (0..self.faces.len()).filter(|&i| self.is_live(i)).map(|i| self.corners(i))
+        (0..self.faces.len()).filter(|&i| self.faces[i].is_live()).map(|i| self.corners(i))
     }
 
     /// Takes a point in, which should be beyond a face; false, and nothing changes, when it is in the polytope.
@@ -252,20 +256,16 @@ impl Polytope {
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let first = (0..self.faces.len()).find(|&i| self.is_live(i) && self.sees(i, p.w));
+        let first = (0..self.faces.len()).find(|&i| self.faces[i].is_live() && self.sees(i, p.w));
         first.is_some_and(|first| self.insert_seen_by(difference, p, first))
-    }
-
-    fn is_live(&self, index: usize) -> bool {
-        self.faces[index].offset < f64::INFINITY
     }
 
     /// Whether a point is beyond a face: by its height over the plane where that is certain, else by the exact sign.
     #[inline]
     fn sees(&self, index: usize, p: DVec3) -> bool {
         let face = &self.faces[index];
-        let height = face.normal.dot(p) - face.offset;
-        if height.abs() > face.blur {
+        let height = face.plane.normal.dot(p) - face.plane.offset;
+        if height.abs() > face.plane.blur {
             return height > 0.0;
         }
         side(face.corners.map(|i| self.vertices[i as usize].w), p) < 0.0
@@ -326,7 +326,8 @@ impl Polytope {
         }
         for &left in seen.iter().skip(count) {
             let face = &mut self.faces[left as usize];
-            (face.offset, face.open, face.seen) = (f64::INFINITY, false, false);
+            (face.plane, face.seen) = (Plane::BEYOND, false);
+            self.open[left as usize] = f64::INFINITY;
         }
     }
 
@@ -341,18 +342,18 @@ impl Polytope {
         A: Support + ?Sized,
         B: Support + ?Sized,
     {
-        let points = corners.map(|i| &self.vertices[i as usize]);
-        let mut face = Face::new(difference, corners, points, twins);
+        let place = place as usize;
+        if place == self.faces.len() {
+            self.faces.push(Face::NONE);
+            self.open.push(f64::INFINITY);
+        }
+        let face = &mut self.faces[place];
+        (face.corners, face.twins, face.seen) = (corners, twins, false);
+        face.plane.lay(difference, corners.map(|i| &self.vertices[i as usize]));
         if let Some(stretch) = &self.stretch {
-            face = stretch.measure(face);
+            face.plane = stretch.measure(face.plane);
         }
-        if face.offset < self.limit {
-            self.open.push(Reverse((order(face.offset), place)));
-        }
-        match self.faces.get_mut(place as usize) {
-            Some(old) => *old = face,
-            None => self.faces.push(face),
-        }
+        self.open[place] = face.plane.offset;
     }
 }
 
@@ -361,7 +362,7 @@ impl Polytope {
     /// Whether it is closed and exactly convex, as its invariant says.
     pub fn assert_well_formed(&self) {
         let mut live = 0;
-        for (index, face) in self.faces.iter().enumerate().filter(|&(i, _)| self.is_live(i)) {
+        for (index, face) in self.faces.iter().enumerate().filter(|&(i, _)| self.faces[i].is_live()) {
             live += 1;
             assert!(!face.seen);
             for corner in 0..3 {
@@ -381,8 +382,7 @@ impl Polytope {
                 assert_eq!(self.sees(index, p.w), side(corners, p.w) < 0.0);
             }
         }
-        let corners =
-            self.faces.iter().filter(|face| face.offset < f64::INFINITY).flat_map(|face| face.corners);
+        let corners = self.faces.iter().filter(|face| face.is_live()).flat_map(|face| face.corners);
         let used: std::collections::BTreeSet<u32> = corners.collect();
         assert_eq!(live, 2 * used.len() - 4, "Euler's formula");
     }

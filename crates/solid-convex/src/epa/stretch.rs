@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::face::Face;
+use super::plane::Plane;
 use super::start::furthest;
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
@@ -62,12 +62,12 @@ impl Stretch {
         difference.mapped(&self.map)
     }
 
-    /// Gives the normal of a face its length.
-    pub fn measure(&self, face: Face) -> Face {
-        let inverse = 1.0 / self.normal(face.normal).length();
-        let normal = face.normal * inverse;
-        let slack = face.slack * inverse + normal.abs().dot(self.error);
-        Face { normal, offset: face.offset * inverse, slack, blur: face.blur * inverse, ..face }
+    /// Gives the normal of a plane its length.
+    pub fn measure(&self, plane: Plane) -> Plane {
+        let inverse = 1.0 / self.normal(plane.normal).length();
+        let normal = plane.normal * inverse;
+        let slack = plane.slack * inverse + normal.abs().dot(self.error);
+        Plane { normal, offset: plane.offset * inverse, slack, blur: plane.blur * inverse }
     }
 
     /// The normal here of a plane there.
