@@ -13,6 +13,8 @@
 //! - Two boxes, however placed, need no search: the facets of their difference are known.
 //! - Spheres and capsules, unless they are stretched, are points and segments with a radius: what is searched is the depth or the
 //!   distance of these, and both are found exactly.
+//! - Where what is curved is nearest Newton's method finds, from the face that the search ends with: the polytope would need a vertex for
+//!   each two or three bits of the normal, and says only how much nearer the boundary might be elsewhere.
 //! - Needles side by side are searched once more, in a space that is stretched across them.
 //! - Every direction that was looked along gives an upper bound, the nearest face a lower one. Both are reported, so that an
 //!   answer that had to stop early ([`VERTICES_MAX`]) says how good it is.
@@ -31,17 +33,18 @@ use glam::{DAffine3, DVec3};
 
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
 use crate::feature::SLIVER_SINE_SQUARED;
-use crate::gjk::{BEYOND_TOUCHING, End, Goal, descend, intersects};
+use crate::gjk::{BEYOND_TOUCHING, End, Goal, descend, intersects, nearest_boundary};
 use crate::rounded::Core;
 use crate::simplex::{Reduced, Simplex};
 use crate::{Support, Witness};
+use face::Face;
 use plane::Plane;
 use polytope::Polytope;
 use start::start;
 use stretch::Stretch;
 
 /// The depth of curved objects is searched until its bounds are this near, relative to it: they need some five support points for
-/// each digit. That of polytopes is searched to the rounding error, for a few vertices more.
+/// each digit. The upper one is then nearly always the depth to the rounding error. That of polytopes is searched to the rounding error, for a few vertices more.
 pub const DEPTH_TOLERANCE: f64 = 1e-7;
 
 /// The most vertices of a polytope. Curved shapes that have their least depth in many directions at once, as a cylinder around
@@ -255,17 +258,17 @@ where
 {
     let relative = relative_tolerance(difference);
     let tolerance = |height: f64| tolerance(height, relative);
-    let (mut height, mut normal) = (f64::INFINITY, DVec3::X);
+    let (mut height, mut normal, mut corners) = (f64::INFINITY, DVec3::X, [0; 3]);
     for _ in 0..EXPANSIONS_MAX {
         let Some(index) = polytope.take_nearest() else { break };
-        let Plane { normal: across, offset, .. } = *polytope.plane(index);
+        let Face { plane: Plane { normal: across, offset, .. }, corners: around, .. } = *polytope.face(index);
         if offset >= height - tolerance(height) {
             break;
         }
         let p = difference.support_against(-across);
         let beyond = across.dot(p.w);
         if beyond < height {
-            (height, normal) = (beyond, across);
+            (height, normal, corners) = (beyond, across, around);
         }
         // A point that is a vertex already is beyond the face by the rounding error only.
         let grows = beyond - offset > tolerance(beyond)
@@ -277,8 +280,29 @@ where
     }
     let margin = tolerance(height);
     let lower = polytope.radius(height - margin);
+    let near = corners.map(|i| polytope.vertices()[i as usize]);
+    if !polytope.is_stretched()
+        && let Some((height, normal, points)) =
+            refined(difference, &near).filter(|(refined, ..)| *refined <= height)
+    {
+        return Nearest { height, lower, normal, points };
+    }
     let points = witness(polytope, normal, height, height - lower, margin);
     Nearest { height, lower, normal, points }
+}
+
+/// Where the boundary of `A - B` near some points of it is nearest to the origin, to the rounding error: its height, its normal, and the
+/// point. `None` where nothing bends, and where that is not found.
+fn refined<A, B>(difference: &Difference<A, B>, near: &[SupportPoint]) -> Option<(f64, DVec3, Witness)>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let (point, points) = nearest_boundary(difference, near)?;
+    let normal = point.normalize();
+    let height = normal.dot(difference.support_against(-normal).w);
+    // Nothing is beyond the plane across the way to it.
+    (height - point.length() <= HEIGHT_ERROR).then_some((height, normal, points))
 }
 
 /// The point where the ray along a normal leaves the polytope, which is at a height less at most `beyond`, up to a margin.

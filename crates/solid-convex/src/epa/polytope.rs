@@ -144,8 +144,13 @@ impl Polytope {
         self.vertices.iter().any(|q| q.w == p.w)
     }
 
-    pub fn plane(&self, index: usize) -> &Plane {
-        &self.faces[index].plane
+    pub fn face(&self, index: usize) -> &Face {
+        &self.faces[index]
+    }
+
+    /// Whether lengths in it are others than in the space of the difference.
+    pub fn is_stretched(&self) -> bool {
+        self.stretch.is_some()
     }
 
     /// The corners of a face.

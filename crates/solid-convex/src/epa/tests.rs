@@ -56,6 +56,40 @@ fn the_translation_leaves_them_touching() {
     assert!((count * 3 / 10..count * 7 / 10).contains(&deep), "{deep} of {count}: not representative");
 }
 
+/// What is curved is as deep as its normals all around say, to the rounding error: bounds that are 1e-7 of the depth apart would leave the normal
+/// off by 1e-4 and more, and the points with it.
+#[test]
+fn what_is_curved_is_as_deep_as_any_normal_near_says() {
+    let (mut count, mut exact) = (0, 0);
+    for (i, a) in shapes().iter().enumerate() {
+        for (j, b) in shapes().iter().enumerate() {
+            for k in 0..60 {
+                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
+                let Some(found) = penetration(&**a, &at_a, &**b, &at_b) else { continue };
+                let difference = Difference::new(&**a, &at_a, &**b, &at_b);
+                if difference.is_polytope() || found.depth < 1e-3 {
+                    continue;
+                }
+                let height =
+                    |n: DVec3| n.dot(difference.support_against(-n).w) / (n.length() * difference.scale());
+                let (s, t) = found.direction.any_orthonormal_pair();
+                let around = (0..24).map(|i| {
+                    let aside = DVec2::from_angle(f64::from(i % 6) * TAU / 6.0) * 0.1f64.powi(2 + i / 6);
+                    height(-found.direction + s * aside.x + t * aside.y)
+                });
+                let way = at_b.transform_point3(found.points.on_b) - at_a.transform_point3(found.points.on_a);
+                let missed = way.distance(found.direction * found.depth);
+                count += 1;
+                exact += usize::from(
+                    around.fold(f64::INFINITY, f64::min) >= found.depth - 1e-13 && missed < 1e-11,
+                );
+            }
+        }
+    }
+    println!("{exact} of {count}");
+    assert!(count > 500 && 50 * exact > 49 * count, "{exact} of {count}");
+}
+
 #[test]
 fn swapping_mirrors() {
     for (i, a) in shapes().iter().enumerate() {

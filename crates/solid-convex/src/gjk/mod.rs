@@ -40,7 +40,7 @@ pub use distance::{
 pub use intersection::{
     Outcome, Witness, intersection, intersects, intersects_closely, separates, separating_axis,
 };
-pub(crate) use newton::newton;
+pub(crate) use newton::{nearest_boundary, newton};
 pub(crate) use pairs::Pair;
 pub use proof::{Decision, Proof, Vertices};
 

@@ -1,4 +1,4 @@
-//! Newton's method for the closest points of what is curved.
+//! Newton's method for the closest points of what is curved, and for the deepest.
 //!
 //! A descent replaces one point of its simplex with each support point, and next to what is curved comes closer by a constant factor: some four
 //! support points for each digit. Here all points of the simplex move at once, each along its [`Locus`] to where it is furthest along the
@@ -8,7 +8,7 @@
 //! With `n` the normal, `w(n)` the points, `x` the point of weights `λ` between them and `d` its height along `n`: of closest points `x` is `d n`,
 //! and all `w` are as high. A turn of `n` by `t` moves `w` by `-H t`, where `H` is the curvature of the two support functions, and its
 //! height by `w t`. So the next normal follows from `(H + d) t = x + E dλ`, `E t = -(heights above the first)`, where `E` are the edges from the first
-//! point, across `n`.
+//! point, across `n`. Where the origin is inside, `d` is negative, and all else is the same.
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
@@ -16,7 +16,7 @@ use super::descent::begun;
 use super::pairs::Pair;
 use crate::difference::{Difference, NO_VERTEX, SupportPoint};
 use crate::simplex::Simplex;
-use crate::{Locus, Support};
+use crate::{Locus, Support, Witness};
 
 /// Newton's method ends after so many steps: begun within some percent, it takes three or four.
 const STEPS_MAX: usize = 6;
@@ -127,6 +127,19 @@ impl<'a> Span<'a> {
         self.a.loci[..self.len].iter().chain(&self.b.loci[..self.len]).any(|locus| *locus != Locus::Point)
     }
 
+    /// Its points as those of the difference; what is beyond their number is nothing.
+    fn placed<A, B>(&self, difference: &Difference<A, B>) -> [SupportPoint; 3]
+    where
+        A: Support + ?Sized,
+        B: Support + ?Sized,
+    {
+        let mut placed = [SupportPoint::ZERO; 3];
+        for (i, p) in placed[..self.len].iter_mut().enumerate() {
+            *p = difference.point(self.a.points[i], self.b.points[i]);
+        }
+        placed
+    }
+
     /// Moves its points to where they are along a normal.
     fn slide(&mut self, n: DVec3) {
         self.a.slide(-n, self.len);
@@ -164,6 +177,33 @@ impl<'a> Span<'a> {
     }
 }
 
+/// Turns a normal, and moves the points of a simplex along with it, until these are furthest against it where what they span has its closest
+/// point; `None` where nothing bends, or this leads nowhere.
+fn converge<'a, A, B>(difference: &'a Difference<A, B>, simplex: &Simplex, mut n: DVec3) -> Option<Span<'a>>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let mut span = Span::new(difference, simplex);
+    if !span.is_curved() {
+        return None;
+    }
+    for _ in 0..STEPS_MAX {
+        span.slide(n);
+        let turn = span.turn(n, &span.placed(difference).map(|p| p.w));
+        let square = turn.length_squared();
+        if square.is_nan() || square > TURN_MAX * TURN_MAX {
+            return None;
+        }
+        n = (n + turn).normalize();
+        if square < TURN_MIN * TURN_MIN {
+            break;
+        }
+    }
+    span.slide(n);
+    Some(span)
+}
+
 /// Pairs of points to go on from, and how many there are, by the points of the difference that a descent has come to; `None` where nothing bends,
 /// or this leads nowhere.
 #[inline(never)]
@@ -176,28 +216,27 @@ where
     B: Support + ?Sized,
 {
     let (simplex, v) = begun(points)?;
-    let mut span = Span::new(difference, &simplex);
-    if !span.is_curved() {
-        return None;
-    }
-    let mut n = v.normalize();
-    for _ in 0..STEPS_MAX {
-        span.slide(n);
-        let mut w = [DVec3::ZERO; 3];
-        (0..span.len).for_each(|i| w[i] = difference.point(span.a.points[i], span.b.points[i]).w);
-        let turn = span.turn(n, &w);
-        let square = turn.length_squared();
-        if square.is_nan() || square > TURN_MAX * TURN_MAX {
-            return None;
-        }
-        n = (n + turn).normalize();
-        if square < TURN_MIN * TURN_MIN {
-            break;
-        }
-    }
-    span.slide(n);
+    let span = converge(difference, &simplex, v.normalize())?;
     let pair = |i: usize| Pair { a: span.a.points[i], b: span.b.points[i], indices: [NO_VERTEX; 2] };
     Some(([0, 1, 2].map(pair), span.len))
+}
+
+/// The same for a boundary that has the origin inside: where it is nearest to that, as a point of the difference and of the objects, by
+/// points of it that are near there. Whether it is nearest is for the caller to see.
+#[inline(never)]
+pub(crate) fn nearest_boundary<A, B>(
+    difference: &Difference<A, B>,
+    points: &[SupportPoint],
+) -> Option<(DVec3, Witness)>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let (simplex, v) = begun(points)?;
+    // Against the normal of what has the origin on the other side.
+    let span = converge(difference, &simplex, -v.normalize())?;
+    let (simplex, v) = begun(&span.placed(difference)[..span.len])?;
+    Some((v, Witness::of(&simplex)))
 }
 
 #[cfg(test)]
