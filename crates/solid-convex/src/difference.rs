@@ -173,6 +173,7 @@ impl<'a, A: Support + ?Sized, B: Support + ?Sized> Difference<'a, A, B> {
     }
 
     /// The same as [`edge`](Difference::edge), and the size of the two edges that it is the difference of, whose rounding is its error.
+    #[inline]
     pub fn edge_with_size(&self, x: &SupportPoint, y: &SupportPoint) -> (DVec3, f64) {
         let (of_a, of_b) = (self.linear_a * (y.a - x.a), self.linear_b * (y.b - x.b));
         (of_a - of_b, of_a.abs().element_sum() + of_b.abs().element_sum())

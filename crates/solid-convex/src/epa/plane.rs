@@ -92,10 +92,10 @@ impl Plane {
             return Plane { normal, offset: 0.0, slack, blur };
         }
         let tilt = NORMAL_ROUNDINGS * (1.0 + (size_x * y.length() + size_y * x.length()) / length);
-        // The vertices are the rounded ones.
+        // The vertices are the rounded ones: their plane is turned by that over the width.
         let slack = tilt.min(2.0) * nearest.length() + HEIGHT_ERROR;
-        // Far from the face, the plane of the rounded vertices may be anywhere.
-        let (offset, blur) = (unit.dot(nearest), f64::INFINITY);
+        let turned = 4.0 * HEIGHT_ERROR * squares[longest].sqrt() / length;
+        let (offset, blur) = (unit.dot(nearest), (tilt + turned) * DIAMETER + HEIGHT_ERROR);
         Plane { normal: unit, offset, slack, blur }
     }
 
@@ -104,5 +104,56 @@ impl Plane {
         let along = self.normal.dot(direction);
         let known = along > 0.0 && self.slack < f64::INFINITY;
         if known { self.offset / along } else { f64::INFINITY }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DAffine3;
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
+    use super::super::polytope::side;
+    use super::*;
+    use crate::Points;
+    use crate::testing::{in_cube, placement};
+
+    /// Law: a point that is higher over a plane than its blur, or lower, is on that side of the rounded corners, however small or thin their
+    /// triangle is.
+    #[test]
+    fn heights_beyond_the_blur_have_the_exact_sign() {
+        let mut rng = seeded(153);
+        let (mut sure, mut wrong) = (0, 0);
+        for case in 0..40_000 {
+            let ends = [in_cube(&mut rng), in_cube(&mut rng)];
+            let object = Points::new(&ends).unwrap();
+            let at: [DAffine3; 2] = std::array::from_fn(|i| placement(2 * case + i as u32));
+            let difference = Difference::new(&object, &at[0], &object, &at[1]);
+            let (size, thin) = (
+                0.1f64.powi(rng.random_range(0..9)),
+                DVec3::new(1.0, 0.1f64.powi(rng.random_range(0..4)), 1.0),
+            );
+            let around = [in_cube(&mut rng), in_cube(&mut rng)];
+            let corners: [SupportPoint; 3] = std::array::from_fn(|_| {
+                let [a, b] = around.map(|around| around + in_cube(&mut rng) * thin * size);
+                difference.point(a, b)
+            });
+            let mut plane = Plane::BEYOND;
+            plane.lay(&difference, [&corners[0], &corners[1], &corners[2]]);
+            let [p, q, r] = corners.map(|corner| corner.w);
+            let along = (q - p) * rng.random_range(-2.0..2.0) + (r - p) * rng.random_range(-2.0..2.0);
+            let far = along / along.length().max(1e-300) * 0.1f64.powi(rng.random_range(0..6));
+            let over = plane.blur * 0.1f64.powf(rng.random_range(-0.5..5.0));
+            let s = p + far + plane.normal * over.copysign(rng.random_range(-1.0..1.0));
+            let height = plane.normal.dot(s) - plane.offset;
+            let is_above = side([p, q, r], s) < 0.0;
+            if height.abs() > plane.blur {
+                sure += 1;
+                assert_eq!(height > 0.0, is_above, "case {case}: {height:e}, {plane:?}");
+            } else {
+                wrong += usize::from((height > 0.0) != is_above);
+            }
+        }
+        assert!(sure > 1_500 && wrong > 100, "{sure}, {wrong}");
     }
 }

@@ -67,7 +67,8 @@ impl Stretch {
         let inverse = 1.0 / self.normal(plane.normal).length();
         let normal = plane.normal * inverse;
         let slack = plane.slack * inverse + normal.abs().dot(self.error);
-        Plane { normal, offset: plane.offset * inverse, slack, blur: plane.blur * inverse }
+        // Points are rounded by more there than a plane knows: signs are left to the exact arithmetic.
+        Plane { normal, offset: plane.offset * inverse, slack, blur: f64::INFINITY }
     }
 
     /// The normal here of a plane there.

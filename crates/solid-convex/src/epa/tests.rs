@@ -269,6 +269,30 @@ fn the_polytope_is_well_formed() {
     assert!(grown > 500, "{grown}");
 }
 
+/// So it does where curved shapes make its faces small, and their planes are taken from the edges of the objects.
+#[test]
+fn the_polytope_of_curved_shapes_is_well_formed() {
+    let mut vertices = 0;
+    for (i, a) in shapes().iter().enumerate() {
+        for (j, b) in shapes().iter().enumerate() {
+            for k in 0..20 {
+                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
+                let difference = Difference::new(&**a, &at_a, &**b, &at_b);
+                let descent = descend(&difference, Goal::Separation);
+                let ended: Vec<_> = descent.simplex.points().copied().collect();
+                if descent.end != End::Inside || difference.is_polytope() {
+                    continue;
+                }
+                let Ok(mut polytope) = start(&difference, &ended) else { continue };
+                expand(&difference, &mut polytope);
+                polytope.assert_well_formed();
+                vertices += polytope.vertex_count();
+            }
+        }
+    }
+    assert!(vertices > 3_000, "{vertices}");
+}
+
 /// Concentric ellipsoids of revolution have their least depth in every direction across: no polytope of this many vertices decides
 /// that, and the bounds say so.
 #[test]
