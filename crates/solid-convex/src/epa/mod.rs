@@ -280,11 +280,10 @@ where
     }
     let margin = tolerance(height);
     let lower = polytope.radius(height - margin);
-    let near = corners.map(|i| polytope.vertices()[i as usize]);
-    if !polytope.is_stretched()
-        && let Some((height, normal, points)) =
-            refined(difference, &near).filter(|(refined, ..)| *refined <= height)
-    {
+    let near = || corners.map(|i| polytope.vertices()[i as usize]);
+    let is_curved = relative > 0.0 && !polytope.is_stretched();
+    let refined = is_curved.then(|| refined(difference, &near())).flatten();
+    if let Some((height, normal, points)) = refined.filter(|(refined, ..)| *refined <= height) {
         return Nearest { height, lower, normal, points };
     }
     let points = witness(polytope, normal, height, height - lower, margin);

@@ -60,7 +60,7 @@ const TETRAHEDRON: [([u32; 3], [HalfEdge; 3]); 4] = {
 
 thread_local! {
     /// A polytope whose memory the next one on this thread takes over: no more than the [`VERTICES_MAX`](super::VERTICES_MAX) ask for.
-    static SPARE: Cell<Option<Polytope>> = const { Cell::new(None) };
+    static SPARE: Cell<Option<Box<Polytope>>> = const { Cell::new(None) };
 }
 
 /// Where a point is to a plane, as [`orient3d`] says it for counterclockwise corners seen from outside: negative when the plane
@@ -99,7 +99,7 @@ impl Polytope {
         difference: &Difference<A, B>,
         points: [SupportPoint; 4],
         stretch: Option<Stretch>,
-    ) -> Option<Self>
+    ) -> Option<Box<Self>>
     where
         A: Support + ?Sized,
         B: Support + ?Sized,
@@ -127,7 +127,7 @@ impl Polytope {
     }
 
     /// Leaves the memory to the next one.
-    pub fn recycle(self) {
+    pub fn recycle(self: Box<Self>) {
         SPARE.set(Some(self));
     }
 

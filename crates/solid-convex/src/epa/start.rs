@@ -11,7 +11,10 @@ use crate::difference::{Difference, SupportPoint};
 
 /// A polytope that contains the points GJK ended with, and so the origin, up to [`TOUCHING_ERROR`](crate::gjk::TOUCHING_ERROR).
 /// `Err` with the unit normal of the plane in which `A - B` lies, when it has no thickness.
-pub(super) fn start<A, B>(difference: &Difference<A, B>, ended: &[SupportPoint]) -> Result<Polytope, DVec3>
+pub(super) fn start<A, B>(
+    difference: &Difference<A, B>,
+    ended: &[SupportPoint],
+) -> Result<Box<Polytope>, DVec3>
 where
     A: Support + ?Sized,
     B: Support + ?Sized,

@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 
-use super::polytope::Polytope;
 use super::start::start;
 use super::{DEPTH_TOLERANCE, Penetration, VERTICES_MAX, deepen, expand, penetration, zonotope};
 use crate::difference::Difference;
@@ -300,7 +299,7 @@ fn the_vertex_limit_is_honest() {
     let ball = Sphere::new(1.0).unwrap();
     let egg = DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(1.0, 3.0, 1.0)));
     let difference = Difference::new(&ball, &egg, &ball, &egg);
-    let mut polytope: Polytope = start(&difference, &[difference.support_against(DVec3::X)]).unwrap();
+    let mut polytope = start(&difference, &[difference.support_against(DVec3::X)]).unwrap();
     expand(&difference, &mut polytope);
     assert_eq!(polytope.vertex_count(), VERTICES_MAX);
     polytope.assert_well_formed();
