@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::Polytope;
-use crate::gjk::Balls;
+use crate::gjk::{Ball, Balls};
 use crate::kinds::ball_support;
 
 /// A convex object, known by its support mapping. Space: the object's own.
@@ -27,6 +27,12 @@ pub trait Support: Send + Sync {
     /// A ball around the object and one in it: where they tell, no search is needed.
     fn balls(&self) -> Option<Balls> {
         None
+    }
+
+    /// Whether it surely has all of a ball in it, up to rounding: by the ball of its [`balls`](Support::balls), where there is nothing better.
+    fn contains_ball(&self, ball: Ball) -> bool {
+        let has = |inner: Ball| inner.center.distance(ball.center) + ball.radius <= inner.radius;
+        self.balls().is_some_and(|balls| has(balls.inner))
     }
 
     /// Whether it is the hull of finitely many points, which its support points are: then a search among them ends with the exact answer.
@@ -153,4 +159,41 @@ pub(crate) fn rim(radius: f64, x: f64, z: f64) -> (f64, f64) {
     let (x, z) = (x / largest, z / largest);
     let scale = radius / (x * x + z * z).sqrt();
     (x * scale, z * scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
+    use crate::gjk::Ball;
+    use crate::testing::{in_cube, shapes};
+
+    /// Law: a ball is said to be in an object only if it reaches beyond no plane that bounds the object; and of cones and cylinders, if it does so
+    /// by a hair's breadth, that is said.
+    #[test]
+    fn balls_inside_reach_beyond_no_plane() {
+        let mut rng = seeded(154);
+        let mut inside = 0;
+        for case in 0..20_000 {
+            let object = &shapes()[case % 5];
+            let ball =
+                Ball { center: in_cube(&mut rng), radius: 0.3 * rng.random_range(0.0f64..1.0).powi(3) };
+            let room = |n: DVec3| n.dot(object.support(n)) - n.dot(ball.center) - ball.radius;
+            let outward = ball.center.with_y(0.0).normalize_or(DVec3::X);
+            // Of the cone and the cylinder there.
+            let planes = [DVec3::Y, DVec3::NEG_Y, outward, (outward * 3.0 + DVec3::Y).normalize()];
+            let least = planes.map(room).into_iter().fold(f64::INFINITY, f64::min);
+            if object.contains_ball(ball) {
+                inside += 1;
+                let around = (0..20).map(|_| room(in_cube(&mut rng).normalize()));
+                let least = around.fold(least, f64::min);
+                assert!(least >= -1e-12, "case {case}: {ball:?}, {least:e}");
+            } else if matches!(case % 5, 2 | 3) {
+                assert!(least <= 1e-12, "case {case}: {ball:?}, {least:e}");
+            }
+        }
+        assert!(inside > 1_000, "{inside}");
+    }
 }

@@ -69,4 +69,13 @@ impl Support for Cone {
         let on_axis = |y: f64, radius: f64| Ball { center: DVec3::new(0.0, y, 0.0), radius };
         Some(Balls { inner: on_axis(inner - half_height, inner), outer: on_axis(around, outer) })
     }
+
+    fn contains_ball(&self, Ball { center, radius }: Ball) -> bool {
+        let Cone { radius: base, half_height, .. } = *self;
+        let height = 2.0 * half_height;
+        let off_axis = center.with_y(0.0).length();
+        // Times the length of the side.
+        let to_side = base * (half_height - center.y) - height * off_axis;
+        center.y - radius >= -half_height && to_side >= radius * base.hypot(height)
+    }
 }

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::image::{reach, symmetric};
-use crate::gjk::Balls;
+use crate::gjk::{Ball, Balls};
 use crate::size::positive;
 use crate::support::{rim, with_sign};
 use crate::{Locus, SizeError, Support};
@@ -55,5 +55,12 @@ impl Support for Cylinder {
     fn balls(&self) -> Option<Balls> {
         let (inner, outer) = (self.radius.min(self.half_height), self.radius.hypot(self.half_height));
         Some(Balls::about_origin(inner, outer))
+    }
+
+    fn contains_ball(&self, Ball { center, radius }: Ball) -> bool {
+        let room = self.radius - radius;
+        center.y.abs() + radius <= self.half_height
+            && room >= 0.0
+            && center.x * center.x + center.z * center.z <= room * room
     }
 }

@@ -1,5 +1,6 @@
 //! Which primitives meet the convex shape.
 
+use std::cell::OnceCell;
 use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
@@ -14,6 +15,7 @@ use super::super::gaps::Gaps;
 use super::super::glance::Glance;
 use super::super::row::{Row, Verdict};
 use super::super::table::{PlacedComplex, PlacedConvex};
+use super::inside::Inside;
 use super::shadow::Shadow;
 use super::{CLEARLY_APART, frame};
 use crate::tree::{Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves, bits};
@@ -53,6 +55,7 @@ pub(super) fn primitives(
         direct: &direct,
         map,
         shadow,
+        inside: OnceCell::new(),
         glance,
         opened: 0,
         gaps: None,
@@ -76,6 +79,8 @@ struct Meeting<'s> {
     /// Where primitives are placed: in the common frame, or the space of a box.
     map: DAffine3,
     shadow: Shadow<'s>,
+    /// What finds corners in the shape, once a primitive is looked at by itself.
+    inside: OnceCell<Inside<'s>>,
     /// What looks at images of triangles, where any that meets will do.
     glance: Option<(&'s Glance, &'s LeafImages)>,
     /// How many nodes were opened, and what bounds the distances of their boxes once they are many.
@@ -165,10 +170,18 @@ impl Meeting<'_> {
             (self.found)(row.primitive(lane), None)?;
         }
         near &= !sure.meet;
+        // Of a shape that is known by its support mapping.
+        let inside = (near != 0 && matches!(self.direct, Direct::None))
+            .then(|| self.inside.get_or_init(|| Inside::new(self.convex.0, self.frame, CLEARLY_APART)));
         while let Some(lane) = bits(near).next() {
             near &= near - 1;
             let primitive = row.primitive(lane);
             if !complex.primitive_bounds(primitive).overlaps(self.shadow.in_complex()) {
+                continue;
+            }
+            let corner = inside.and_then(|inside| inside.corner_of(complex.points_of(primitive)));
+            if let Some(corner) = corner {
+                (self.found)(primitive, Some(corner))?;
                 continue;
             }
             let points = complex.primitive_hull(primitive);

@@ -8,6 +8,7 @@
 
 mod approach;
 mod ball;
+mod inside;
 mod meeting;
 mod shadow;
 
