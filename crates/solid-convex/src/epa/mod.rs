@@ -44,7 +44,8 @@ use start::start;
 use stretch::Stretch;
 
 /// The depth of curved objects is searched until its bounds are this near, relative to it: they need some five support points for
-/// each digit. The upper one is then nearly always the depth to the rounding error. That of polytopes is searched to the rounding error, for a few vertices more.
+/// each digit. The upper one is then nearly always the depth to the rounding error. That of polytopes is searched to the rounding
+/// error, for a few vertices more.
 pub const DEPTH_TOLERANCE: f64 = 1e-7;
 
 /// The most vertices of a polytope. Curved shapes that have their least depth in many directions at once, as a cylinder around
@@ -280,13 +281,13 @@ where
     }
     let margin = tolerance(height);
     let lower = polytope.radius(height - margin);
+    // Of polytopes nothing bends; what is stretched has other lengths.
+    let may_bend = relative > 0.0 && !polytope.is_stretched();
     let near = || corners.map(|i| polytope.vertices()[i as usize]);
-    let is_curved = relative > 0.0 && !polytope.is_stretched();
-    let refined = is_curved.then(|| refined(difference, &near())).flatten();
-    if let Some((height, normal, points)) = refined.filter(|(refined, ..)| *refined <= height) {
-        return Nearest { height, lower, normal, points };
-    }
-    let points = witness(polytope, normal, height, height - lower, margin);
+    let refined = may_bend.then(|| refined(difference, &near())).flatten();
+    let (height, normal, points) = refined
+        .filter(|(refined, ..)| *refined <= height)
+        .unwrap_or_else(|| (height, normal, witness(polytope, normal, height, height - lower, margin)));
     Nearest { height, lower, normal, points }
 }
 
