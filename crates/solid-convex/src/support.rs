@@ -150,15 +150,10 @@ pub(crate) fn with_sign(magnitude: f64, sign: f64) -> f64 {
 }
 
 /// The point at distance `radius` from the axis y in the direction (x, z); on the axis when there is none.
+#[inline]
 pub(crate) fn rim(radius: f64, x: f64, z: f64) -> (f64, f64) {
-    let largest = x.abs().max(z.abs());
-    if largest == 0.0 {
-        return (0.0, 0.0);
-    }
-    // Dividing first keeps the squares away from overflow and underflow.
-    let (x, z) = (x / largest, z / largest);
-    let scale = radius / (x * x + z * z).sqrt();
-    (x * scale, z * scale)
+    let DVec3 { x, z, .. } = ball_support(radius, DVec3::new(x, 0.0, z));
+    (x, z)
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use glam::{DMat3, DVec3};
 
-use super::image::{reach, symmetric};
+use super::image::{PLAIN, reach, symmetric};
 use crate::gjk::Balls;
 use crate::size::positive;
-use crate::{Locus, SizeError, Support};
+use crate::{Locus, SizeError, Support, unit_scale};
 
 /// A ball centred at the origin (thesis, section 4.4.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,13 +26,24 @@ impl Sphere {
 }
 
 /// The point at distance `radius` from the origin in `direction`; the origin for the zero direction.
+#[inline]
 pub(crate) fn ball_support(radius: f64, direction: DVec3) -> DVec3 {
+    let square = direction.length_squared();
+    if PLAIN.contains(&square) {
+        return direction * (radius / square.sqrt());
+    }
+    scaled_ball_support(radius, direction)
+}
+
+/// The same, whose squares may overflow or underflow.
+#[cold]
+#[inline(never)]
+fn scaled_ball_support(radius: f64, direction: DVec3) -> DVec3 {
     let largest = direction.abs().max_element();
     if largest == 0.0 {
         return DVec3::ZERO;
     }
-    // Dividing first keeps the squares away from overflow and underflow.
-    let direction = direction / largest;
+    let direction = direction * unit_scale(largest);
     direction * (radius / direction.length())
 }
 
