@@ -30,9 +30,16 @@ pub trait Support: Send + Sync {
     }
 
     /// Whether it surely has all of a ball in it, up to rounding: by the ball of its [`balls`](Support::balls), where there is nothing better.
+    ///
+    /// ```
+    /// use solid_convex::{Cylinder, Support, gjk::Ball, glam::DVec3};
+    /// let drum = Cylinder::new(1.0, 2.0)?;
+    /// let at_the_rim = |radius: f64| Ball { center: DVec3::new(0.75, 0.5, 0.0), radius };
+    /// assert!(drum.contains_ball(at_the_rim(0.25)) && !drum.contains_ball(at_the_rim(0.3)));
+    /// # Ok::<(), solid_convex::SizeError>(())
+    /// ```
     fn contains_ball(&self, ball: Ball) -> bool {
-        let has = |inner: Ball| inner.center.distance(ball.center) + ball.radius <= inner.radius;
-        self.balls().is_some_and(|balls| has(balls.inner))
+        self.balls().is_some_and(|balls| balls.inner.contains(ball))
     }
 
     /// Whether it is the hull of finitely many points, which its support points are: then a search among them ends with the exact answer.
@@ -162,30 +169,36 @@ mod tests {
     use rand::Rng;
     use solid_oracle::generate::seeded;
 
+    use crate::Polytope;
     use crate::gjk::Ball;
-    use crate::testing::{in_cube, shapes};
+    use crate::testing::{in_cube, octahedron_faces, shapes};
 
-    /// Law: a ball is said to be in an object only if it reaches beyond no plane that bounds the object; and of cones and cylinders, if it does so
-    /// by a hair's breadth, that is said.
+    /// Law: a ball is said to be in an object only if it reaches beyond no plane that bounds the object; and of cones, cylinders and hulls, if it
+    /// does so by a hair's breadth, that is said.
     #[test]
     fn balls_inside_reach_beyond_no_plane() {
         let mut rng = seeded(154);
         let mut inside = 0;
-        for case in 0..20_000 {
-            let object = &shapes()[case % 5];
+        let corners = (0..6).map(|i| DVec3::AXES[i / 2] * if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let octahedron = Polytope::new(corners).unwrap().with_faces(&octahedron_faces());
+        let mut objects = shapes();
+        objects.push(Box::new(octahedron));
+        for case in 0..24_000 {
+            let object = &objects[case % 6];
             let ball =
                 Ball { center: in_cube(&mut rng), radius: 0.3 * rng.random_range(0.0f64..1.0).powi(3) };
             let room = |n: DVec3| n.dot(object.support(n)) - n.dot(ball.center) - ball.radius;
             let outward = ball.center.with_y(0.0).normalize_or(DVec3::X);
-            // Of the cone and the cylinder there.
-            let planes = [DVec3::Y, DVec3::NEG_Y, outward, (outward * 3.0 + DVec3::Y).normalize()];
+            // Of the cone, the cylinder and the octahedron there.
+            let side = DVec3::ONE.copysign(ball.center).normalize();
+            let planes = [DVec3::Y, DVec3::NEG_Y, outward, (outward * 3.0 + DVec3::Y).normalize(), side];
             let least = planes.map(room).into_iter().fold(f64::INFINITY, f64::min);
             if object.contains_ball(ball) {
                 inside += 1;
                 let around = (0..20).map(|_| room(in_cube(&mut rng).normalize()));
                 let least = around.fold(least, f64::min);
                 assert!(least >= -1e-12, "case {case}: {ball:?}, {least:e}");
-            } else if matches!(case % 5, 2 | 3) {
+            } else if matches!(case % 6, 2 | 3 | 5) {
                 assert!(least <= 1e-12, "case {case}: {ball:?}, {least:e}");
             }
         }

@@ -229,6 +229,13 @@ impl Line {
     }
 }
 
+impl Ball {
+    /// Whether it has all of another in it, up to rounding.
+    pub(crate) fn contains(&self, other: Ball) -> bool {
+        self.center.distance(other.center) + other.radius <= self.radius
+    }
+}
+
 impl Balls {
     /// Both about the local origin, of these radii.
     pub fn about_origin(inner: f64, outer: f64) -> Balls {

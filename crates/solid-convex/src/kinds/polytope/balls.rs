@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 
+use super::plane::Plane;
 use crate::gjk::Ball;
-use crate::unit_scale;
 
 /// Steps of a search for a centre, and how long each is beside the one before.
 const STEPS: usize = 24;
@@ -27,10 +27,9 @@ pub(super) fn around(points: &[DVec3], mean: DVec3) -> Ball {
     if found.radius < first.radius { found } else { first }
 }
 
-/// A ball in the hull of points, with their mean, of which the triangles `faces` are the surface, counter-clockwise seen from outside; of radius 0
-/// where it is flat, or no face is known. Cost: O(n).
-pub(super) fn inside(points: &[DVec3], mean: DVec3, faces: &[[u32; 3]]) -> Ball {
-    let planes: Vec<Plane> = faces.iter().map(|face| Plane::of(face.map(|i| points[i as usize]))).collect();
+/// A ball in the hull of points, with their mean, of which these are the planes of all faces; of radius 0 where it is flat, or no face is known.
+/// Cost: O(n).
+pub(super) fn inside(points: &[DVec3], mean: DVec3, planes: &[Plane]) -> Ball {
     let lowest = |point: DVec3| {
         planes.iter().fold((f64::INFINITY, DVec3::ZERO), |lowest, plane| {
             let height = plane.height(point);
@@ -77,37 +76,6 @@ fn least(ball: Ball, function: impl Fn(DVec3) -> (f64, DVec3)) -> DVec3 {
     best.1
 }
 
-/// The plane of a face.
-struct Plane {
-    corner: DVec3,
-    /// Its unit normal.
-    inward: DVec3,
-    /// By how much the normal may be off.
-    error: f64,
-}
-
-impl Plane {
-    /// That of a triangle, counter-clockwise seen from outside. Which side is the inner one is not told by a point of the hull: the mean of
-    /// corners, as it is rounded, may be off what is flat.
-    fn of([p, q, r]: [DVec3; 3]) -> Plane {
-        /// The error of a normal is this much, relative to the lengths of the two edges: it turns the plane about the corner.
-        const NORMAL_ERROR: f64 = 16.0 * f64::EPSILON;
-        let edges = [q - p, r - p];
-        let scale = unit_scale(edges[0].abs().max_element().max(edges[1].abs().max_element()));
-        let [q, r] = edges.map(|edge| edge * scale);
-        let normal = r.cross(q);
-        let length = normal.length();
-        Plane { corner: p, inward: normal / length, error: NORMAL_ERROR * q.length() * r.length() / length }
-    }
-
-    /// How far a point is above it, at least. Below any point of a sliver without a plane to speak of.
-    fn height(&self, point: DVec3) -> f64 {
-        let way = point - self.corner;
-        // Of what is no number, that it is lowest.
-        (self.inward.dot(way) - self.error * way.abs().element_sum()).max(f64::NEG_INFINITY)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use rand::Rng;
@@ -121,7 +89,7 @@ mod tests {
     }
 
     fn inside(points: &[DVec3], faces: &[[u32; 3]]) -> Ball {
-        super::inside(points, mean(points.iter().copied()), faces)
+        super::inside(points, mean(points.iter().copied()), &Plane::all(points, faces))
     }
 
     /// The corners of a box from 0 to some sizes, and its faces.

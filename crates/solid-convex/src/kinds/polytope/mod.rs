@@ -2,6 +2,7 @@
 
 mod balls;
 mod direction_map;
+mod plane;
 mod rows;
 
 use fearless_simd::Simd;
@@ -14,6 +15,7 @@ use crate::gjk::{Ball, Balls};
 use crate::simd::{self, dispatch};
 use crate::support::bounds_by_supports;
 use direction_map::DirectionMap;
+use plane::Plane;
 use rows::Rows;
 
 /// Points beyond which support points are looked up by direction first. Below, comparing all of them is as fast.
@@ -22,11 +24,14 @@ const SCAN_MAX: usize = 192;
 /// Points beyond which the bounds of an image are found by support points. Below, mapping all of them takes fewer instructions.
 const IMAGE_MAX: usize = 400;
 
+/// Planes of so many faces are kept: among more, a search takes no longer than to look at all of them.
+const PLANES_MAX: usize = 64;
+
 /// The convex hull of points, as [`Points`](super::Points), with the same answers to the bit, found faster: up to 192 points by
 /// comparing all of them with vector instructions; more by comparing those few that can be the furthest in directions near the
 /// one asked for.
 ///
-/// Memory: 48 bytes a point; of more than 192 points some 50 more, and at most 200. Cost of a support point: some 25 ns, however many
+/// Memory: 48 bytes a point; of more than 192 points some 50 more, and at most 200; 56 for each of up to 64 faces that are known. Cost of a support point: some 25 ns, however many
 /// points there are, where the hull is round; where many points are about as far as each other, as the rim of a
 /// drum is along its axis, as long as it takes to compare these.
 ///
@@ -50,6 +55,8 @@ pub struct Polytope {
     balls: Balls,
     /// Those of the balls.
     sure_radii: [f64; 2],
+    /// Of all faces; none where these are unknown, or many.
+    planes: Box<[Plane]>,
 }
 
 impl Polytope {
@@ -60,7 +67,18 @@ impl Polytope {
         let farthest = balls::farthest(&points, DVec3::ZERO);
         let map = (points.len() > SCAN_MAX).then(|| DirectionMap::new(&points, reach)).flatten();
         let balls = Balls { inner: Ball { center, radius: 0.0 }, outer: balls::around(&points, center) };
-        Some(Polytope { points, rows, map, reach, center, farthest, balls, sure_radii: balls.sure_radii() })
+        let sure_radii = balls.sure_radii();
+        Some(Polytope {
+            points,
+            rows,
+            map,
+            reach,
+            center,
+            farthest,
+            balls,
+            sure_radii,
+            planes: Box::default(),
+        })
     }
 
     /// The memory that it owns, in bytes.
@@ -73,7 +91,7 @@ impl Polytope {
     /// ```
     pub fn bytes(&self) -> usize {
         let map = self.map.as_ref().map_or(0, DirectionMap::bytes);
-        self.points.capacity() * size_of::<DVec3>() + self.rows.bytes() + map
+        self.points.capacity() * size_of::<DVec3>() + self.rows.bytes() + map + size_of_val(&*self.planes)
     }
 
     /// The same, where the faces of the hull are known: the triangles `faces` of its points, which close it, counter-clockwise seen from outside. Many
@@ -91,8 +109,10 @@ impl Polytope {
     /// assert!((0.2..0.2114).contains(&radius));
     /// ```
     pub fn with_faces(mut self, faces: &[[u32; 3]]) -> Self {
-        self.balls.inner = balls::inside(&self.points, self.center, faces);
+        let planes = Plane::all(&self.points, faces);
+        self.balls.inner = balls::inside(&self.points, self.center, &planes);
         self.sure_radii = self.balls.sure_radii();
+        self.planes = if planes.len() <= PLANES_MAX { planes.into() } else { Box::default() };
         self
     }
 
@@ -253,6 +273,12 @@ impl Support for Polytope {
 
     fn balls(&self) -> Option<Balls> {
         Some(self.balls)
+    }
+
+    fn contains_ball(&self, ball: Ball) -> bool {
+        self.balls.inner.contains(ball)
+            || (!self.planes.is_empty()
+                && self.planes.iter().all(|plane| plane.height(ball.center) >= ball.radius))
     }
 
     fn is_polytope(&self) -> bool {
