@@ -147,9 +147,8 @@ impl Meeting<'_> {
 
     #[inline(always)]
     fn look<S: Simd>(&mut self, simd: S, leaf: &[u32]) -> ControlFlow<()> {
-        let (complex, at_complex) = self.complex;
         let row = self.row.get_or_insert_default();
-        row.place(simd, complex, leaf, &self.map);
+        row.place(simd, self.complex.0, leaf, &self.map);
         let bounds = match self.direct {
             Direct::Cube(cube) => &cube.bounds(),
             _ => self.shadow.bounds(self.direct),
@@ -169,9 +168,19 @@ impl Meeting<'_> {
         for lane in bits(near & sure.meet) {
             (self.found)(row.primitive(lane), None)?;
         }
-        near &= !sure.meet;
+        self.look_closely(simd, near & !sure.meet)
+    }
+
+    /// Looks at the primitives in some lanes one by one.
+    #[inline(always)]
+    fn look_closely<S: Simd>(&mut self, simd: S, mut near: u32) -> ControlFlow<()> {
+        if near == 0 {
+            return ControlFlow::Continue(());
+        }
+        let (complex, at_complex) = self.complex;
+        let row = self.row.get_or_insert_default();
         // Of a shape that is known by its support mapping.
-        let inside = (near != 0 && matches!(self.direct, Direct::None))
+        let inside = matches!(self.direct, Direct::None)
             .then(|| self.inside.get_or_init(|| Inside::new(self.convex.0, self.frame, CLEARLY_APART)));
         while let Some(lane) = bits(near).next() {
             near &= near - 1;
@@ -187,7 +196,7 @@ impl Meeting<'_> {
             let points = complex.primitive_hull(primitive);
             match gjk::intersection(&points, at_complex, self.convex.0, self.convex.1) {
                 Outcome::Separated { axis } => {
-                    if matches!(self.direct, Direct::None) {
+                    if inside.is_some() {
                         self.shadow.turn(axis);
                         if let Some(gaps) = &mut self.gaps {
                             gaps.look_along(simd, axis);
