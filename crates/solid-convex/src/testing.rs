@@ -39,3 +39,15 @@ pub fn placement(i: u32) -> DAffine3 {
 pub fn in_cube(rng: &mut StdRng) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)))
 }
+
+/// A law about two shapes and where they are: of all pairs of kinds, in so many placements each. With the numbers of the kinds and the placement.
+pub fn for_each_pair(placements: u32, mut law: impl FnMut([u32; 3], [&dyn Support; 2], [&DAffine3; 2])) {
+    let all = shapes();
+    for (i, a) in (0..).zip(&all) {
+        for (j, b) in (0..).zip(&all) {
+            for k in 0..placements {
+                law([i, j, k], [&**a, &**b], [&placement(k), &placement(7 * k + i + 5 * j + 1)]);
+            }
+        }
+    }
+}

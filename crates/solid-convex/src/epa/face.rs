@@ -16,7 +16,7 @@ pub(super) struct Face {
 }
 
 impl Face {
-    /// Holds the place of one that is to come.
+    /// In a place that no face has.
     pub const NONE: Face =
         Face { corners: [0; 3], twins: [HalfEdge(0); 3], plane: Plane::BEYOND, seen: false };
 

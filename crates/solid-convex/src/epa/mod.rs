@@ -283,8 +283,7 @@ where
     let lower = polytope.radius(height - margin);
     // Of polytopes nothing bends; what is stretched has other lengths.
     let may_bend = relative > 0.0 && !polytope.is_stretched();
-    let near = || corners.map(|i| polytope.vertices()[i as usize]);
-    let refined = may_bend.then(|| refined(difference, &near())).flatten();
+    let refined = may_bend.then(|| refined(difference, &polytope.points(corners))).flatten();
     let (height, normal, points) = refined
         .filter(|(refined, ..)| *refined <= height)
         .unwrap_or_else(|| (height, normal, witness(polytope, normal, height, height - lower, margin)));
@@ -301,8 +300,8 @@ where
     let (point, points) = nearest_boundary(difference, near)?;
     let normal = point.normalize();
     let height = normal.dot(difference.support_against(-normal).w);
-    // Nothing is beyond the plane across the way to it.
-    (height - point.length() <= HEIGHT_ERROR).then_some((height, normal, points))
+    // On the plane across the way to it, beyond which nothing is.
+    ((height - point.length()).abs() <= HEIGHT_ERROR).then_some((height, normal, points))
 }
 
 /// The point where the ray along a normal leaves the polytope, which is at a height less at most `beyond`, up to a margin.

@@ -6,7 +6,6 @@ use glam::DVec3;
 use robust::orient3d;
 
 use super::face::{Face, HalfEdge};
-use super::plane::Plane;
 use super::stretch::Stretch;
 use crate::Support;
 use crate::difference::{Difference, SUPPORT_ERROR, SupportPoint};
@@ -153,9 +152,14 @@ impl Polytope {
         self.stretch.is_some()
     }
 
+    /// Three of the vertices.
+    pub fn points(&self, corners: [u32; 3]) -> [SupportPoint; 3] {
+        corners.map(|i| self.vertices[i as usize])
+    }
+
     /// The corners of a face.
     pub fn corners(&self, index: usize) -> [SupportPoint; 3] {
-        self.faces[index].corners.map(|i| self.vertices[i as usize])
+        self.points(self.faces[index].corners)
     }
 
     /// The open face nearest to the origin, the first of equals, which is then no longer open; `None` when all are finished.
@@ -330,9 +334,7 @@ impl Polytope {
             before = here;
         }
         for &left in seen.iter().skip(count) {
-            let face = &mut self.faces[left as usize];
-            (face.plane, face.seen) = (Plane::BEYOND, false);
-            self.open[left as usize] = f64::INFINITY;
+            (self.faces[left as usize], self.open[left as usize]) = (Face::NONE, f64::INFINITY);
         }
     }
 

@@ -8,8 +8,8 @@ use super::start::start;
 use super::{DEPTH_TOLERANCE, Penetration, VERTICES_MAX, deepen, expand, penetration, zonotope};
 use crate::difference::Difference;
 use crate::gjk::{self, End, Goal, descend};
-use crate::testing::{placement, shapes};
-use crate::{Capsule, Cone, Cuboid, Cylinder, Points, Sphere, Support};
+use crate::testing::{for_each_pair, placement, shapes};
+use crate::{Capsule, Cone, Cuboid, Cylinder, Locus, Points, Sphere, Support};
 
 fn at(x: f64, y: f64, z: f64) -> DAffine3 {
     DAffine3::from_translation(DVec3::new(x, y, z))
@@ -26,32 +26,27 @@ fn assert_certain(found: &Penetration, size: f64) {
 #[test]
 fn the_translation_leaves_them_touching() {
     let (mut deep, mut count) = (0, 0);
-    for (i, a) in shapes().iter().enumerate() {
-        for (j, b) in shapes().iter().enumerate() {
-            for k in 0..50 {
-                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
-                count += 1;
-                let found = penetration(&**a, &at_a, &**b, &at_b);
-                let outcome = gjk::intersection(&**a, &at_a, &**b, &at_b);
-                assert_eq!(found.is_some(), outcome.witness().is_some());
-                let Some(found) = found else { continue };
-                deep += 1;
-                assert_certain(&found, 3.0);
-                let moved = |part: f64| {
-                    let way = found.direction * found.depth * part;
-                    DAffine3 { translation: at_a.translation + way, ..at_a }
-                };
-                let distance = |part: f64| gjk::closest_points(&**a, &moved(part), &**b, &at_b).distance;
-                assert!(distance(1.0) <= DEPTH_TOLERANCE * found.depth + 1e-12, "{found:?}");
-                let gap = distance(1.001);
-                assert!(gap >= 0.0009 * found.depth, "{found:?}: {gap:e}");
-                assert_eq!(distance(0.999), 0.0, "{found:?}");
-                let way = at_b.transform_point3(found.points.on_b) - at_a.transform_point3(found.points.on_a);
-                let missed = way.distance(found.direction * found.depth);
-                assert!(missed <= DEPTH_TOLERANCE * 10.0, "{k}: {missed:e} {found:?}");
-            }
-        }
-    }
+    for_each_pair(50, |[.., k], [a, b], [at_a, at_b]| {
+        count += 1;
+        let found = penetration(a, at_a, b, at_b);
+        let outcome = gjk::intersection(a, at_a, b, at_b);
+        assert_eq!(found.is_some(), outcome.witness().is_some());
+        let Some(found) = found else { return };
+        deep += 1;
+        assert_certain(&found, 3.0);
+        let moved = |part: f64| {
+            let way = found.direction * found.depth * part;
+            DAffine3 { translation: at_a.translation + way, ..*at_a }
+        };
+        let distance = |part: f64| gjk::closest_points(a, &moved(part), b, at_b).distance;
+        assert!(distance(1.0) <= DEPTH_TOLERANCE * found.depth + 1e-12, "{found:?}");
+        let gap = distance(1.001);
+        assert!(gap >= 0.0009 * found.depth, "{found:?}: {gap:e}");
+        assert_eq!(distance(0.999), 0.0, "{found:?}");
+        let way = at_b.transform_point3(found.points.on_b) - at_a.transform_point3(found.points.on_a);
+        let missed = way.distance(found.direction * found.depth);
+        assert!(missed <= DEPTH_TOLERANCE * 10.0, "{k}: {missed:e} {found:?}");
+    });
     assert!((count * 3 / 10..count * 7 / 10).contains(&deep), "{deep} of {count}: not representative");
 }
 
@@ -60,49 +55,36 @@ fn the_translation_leaves_them_touching() {
 #[test]
 fn what_is_curved_is_as_deep_as_any_normal_near_says() {
     let (mut count, mut exact) = (0, 0);
-    for (i, a) in shapes().iter().enumerate() {
-        for (j, b) in shapes().iter().enumerate() {
-            for k in 0..60 {
-                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
-                let Some(found) = penetration(&**a, &at_a, &**b, &at_b) else { continue };
-                let difference = Difference::new(&**a, &at_a, &**b, &at_b);
-                if difference.is_polytope() || found.depth < 1e-3 {
-                    continue;
-                }
-                let height =
-                    |n: DVec3| n.dot(difference.support_against(-n).w) / (n.length() * difference.scale());
-                let (s, t) = found.direction.any_orthonormal_pair();
-                let around = (0..24).map(|i| {
-                    let aside = DVec2::from_angle(f64::from(i % 6) * TAU / 6.0) * 0.1f64.powi(2 + i / 6);
-                    height(-found.direction + s * aside.x + t * aside.y)
-                });
-                let way = at_b.transform_point3(found.points.on_b) - at_a.transform_point3(found.points.on_a);
-                let missed = way.distance(found.direction * found.depth);
-                count += 1;
-                exact += usize::from(
-                    around.fold(f64::INFINITY, f64::min) >= found.depth - 1e-13 && missed < 1e-11,
-                );
-            }
+    for_each_pair(60, |_, [a, b], [at_a, at_b]| {
+        let Some(found) = penetration(a, at_a, b, at_b) else { return };
+        let difference = Difference::new(a, at_a, b, at_b);
+        if difference.is_polytope() || found.depth < 1e-3 {
+            return;
         }
-    }
+        let height = |n: DVec3| n.dot(difference.support_against(-n).w) / (n.length() * difference.scale());
+        let (s, t) = found.direction.any_orthonormal_pair();
+        let around = (0..24).map(|i| {
+            let aside = DVec2::from_angle(f64::from(i % 6) * TAU / 6.0) * 0.1f64.powi(2 + i / 6);
+            height(-found.direction + s * aside.x + t * aside.y)
+        });
+        let way = at_b.transform_point3(found.points.on_b) - at_a.transform_point3(found.points.on_a);
+        let missed = way.distance(found.direction * found.depth);
+        count += 1;
+        exact += usize::from(around.fold(f64::INFINITY, f64::min) >= found.depth - 1e-13 && missed < 1e-11);
+    });
     println!("{exact} of {count}");
     assert!(count > 500 && 50 * exact > 49 * count, "{exact} of {count}");
 }
 
 #[test]
 fn swapping_mirrors() {
-    for (i, a) in shapes().iter().enumerate() {
-        for (j, b) in shapes().iter().enumerate() {
-            for k in 0..20 {
-                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
-                let Some(found) = penetration(&**a, &at_a, &**b, &at_b) else { continue };
-                let swapped = penetration(&**b, &at_b, &**a, &at_a).unwrap();
-                let apart = (found.depth - swapped.depth).abs();
-                assert!(apart <= DEPTH_TOLERANCE * found.depth, "{found:?}, {swapped:?}");
-                assert!(found.direction.dot(swapped.direction) < -0.99, "{found:?}, {swapped:?}");
-            }
-        }
-    }
+    for_each_pair(20, |_, [a, b], [at_a, at_b]| {
+        let Some(found) = penetration(a, at_a, b, at_b) else { return };
+        let swapped = penetration(b, at_b, a, at_a).unwrap();
+        let apart = (found.depth - swapped.depth).abs();
+        assert!(apart <= DEPTH_TOLERANCE * found.depth, "{found:?}, {swapped:?}");
+        assert!(found.direction.dot(swapped.direction) < -0.99, "{found:?}, {swapped:?}");
+    });
 }
 
 /// The known failures of others: no depth for what coincides, a wrong face for boxes on a grid.
@@ -272,23 +254,18 @@ fn the_polytope_is_well_formed() {
 #[test]
 fn the_polytope_of_curved_shapes_is_well_formed() {
     let mut vertices = 0;
-    for (i, a) in shapes().iter().enumerate() {
-        for (j, b) in shapes().iter().enumerate() {
-            for k in 0..20 {
-                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
-                let difference = Difference::new(&**a, &at_a, &**b, &at_b);
-                let descent = descend(&difference, Goal::Separation);
-                let ended: Vec<_> = descent.simplex.points().copied().collect();
-                if descent.end != End::Inside || difference.is_polytope() {
-                    continue;
-                }
-                let Ok(mut polytope) = start(&difference, &ended) else { continue };
-                expand(&difference, &mut polytope);
-                polytope.assert_well_formed();
-                vertices += polytope.vertex_count();
-            }
+    for_each_pair(20, |_, [a, b], [at_a, at_b]| {
+        let difference = Difference::new(a, at_a, b, at_b);
+        let descent = descend(&difference, Goal::Separation);
+        let ended: Vec<_> = descent.simplex.points().copied().collect();
+        if descent.end != End::Inside || difference.is_polytope() {
+            return;
         }
-    }
+        let Ok(mut polytope) = start(&difference, &ended) else { return };
+        expand(&difference, &mut polytope);
+        polytope.assert_well_formed();
+        vertices += polytope.vertex_count();
+    });
     assert!(vertices > 3_000, "{vertices}");
 }
 
@@ -481,13 +458,27 @@ impl Support for Liar {
     fn reach(&self) -> DVec3 {
         DVec3::splat(1.5)
     }
+
+    fn locus(&self, point: DVec3) -> Locus {
+        let kinds = [
+            Locus::Point,
+            Locus::Circle { radius: 100.0 * point.x },
+            Locus::Sphere { center: point, radius: f64::INFINITY },
+            Locus::Sphere { center: DVec3::NAN, radius: point.y },
+        ];
+        kinds[point.z.to_bits() as usize % 4]
+    }
 }
 
 #[test]
 fn a_support_mapping_that_lies_is_survived() {
     for seed in 0..200 {
         let liar = Liar(seed.into());
-        penetration(&liar, &DAffine3::IDENTITY, &liar, &placement(seed));
+        let found = penetration(&liar, &DAffine3::IDENTITY, &liar, &placement(seed));
+        assert!(
+            found.is_none_or(|found| found.lower <= found.depth && found.depth <= found.upper),
+            "{found:?}"
+        );
         let calls = liar.0.load(std::sync::atomic::Ordering::Relaxed) - seed;
         assert!(calls as usize <= 4 * super::EXPANSIONS_MAX, "{calls} calls");
     }

@@ -14,31 +14,26 @@ use super::{
 };
 use crate::difference::Difference;
 use crate::simd;
-use crate::testing::{in_cube, placement, shapes};
+use crate::testing::{for_each_pair, in_cube, placement, shapes};
 use crate::{Capsule, Cone, Cuboid, Cylinder, Polytope, Sphere, Support};
 
 #[test]
 fn swapping_negates_the_axis() {
     let mut separated = 0;
-    for (i, a) in shapes().iter().enumerate() {
-        for (j, b) in shapes().iter().enumerate() {
-            for k in 0..50 {
-                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
-                let outcome = intersection(&**a, &at_a, &**b, &at_b);
-                let swapped = intersection(&**b, &at_b, &**a, &at_a);
-                match (outcome, swapped) {
-                    (Outcome::Separated { axis }, Outcome::Separated { .. }) => {
-                        separated += 1;
-                        assert!(separates(&-axis, &**b, &at_b, &**a, &at_a), "{axis} the other way round");
-                    }
-                    (Outcome::Separated { .. }, _) | (_, Outcome::Separated { .. }) => {
-                        panic!("{outcome:?}, {swapped:?}")
-                    }
-                    _ => {}
-                }
+    for_each_pair(50, |_, [a, b], [at_a, at_b]| {
+        let outcome = intersection(a, at_a, b, at_b);
+        let swapped = intersection(b, at_b, a, at_a);
+        match (outcome, swapped) {
+            (Outcome::Separated { axis }, Outcome::Separated { .. }) => {
+                separated += 1;
+                assert!(separates(&-axis, b, at_b, a, at_a), "{axis} the other way round");
             }
+            (Outcome::Separated { .. }, _) | (_, Outcome::Separated { .. }) => {
+                panic!("{outcome:?}, {swapped:?}")
+            }
+            _ => {}
         }
-    }
+    });
     assert!((375..875).contains(&separated), "{separated} of 1250: not representative");
 }
 
@@ -46,37 +41,30 @@ fn swapping_negates_the_axis() {
 /// that meet the distance is 0.
 #[test]
 fn touching_is_the_same_either_way_round_and_for_distances() {
-    let all = shapes();
     let (mut cases, mut hits) = (0, 0);
-    for (i, a) in all.iter().enumerate() {
-        for (j, b) in all.iter().enumerate() {
-            for k in 0..20 {
-                let (at_a, at_b) = (placement(k), placement(7 * k + (i + 5 * j) as u32 + 1));
-                let way = placement(3 * k + 2).translation.normalize() * 16.0;
-                let moved = |t: f64| DAffine3 { translation: at_b.translation + way * t, ..at_b };
-                let meet = |t: f64| intersects(&**a, &at_a, &**b, &moved(t));
-                if !meet(0.0) || meet(1.0) {
-                    continue;
-                }
-                let (mut near, mut far) = (0.0, 1.0);
-                for _ in 0..54 {
-                    let middle = f64::midpoint(near, far);
-                    *if meet(middle) { &mut near } else { &mut far } = middle;
-                }
-                for step in -8..8 {
-                    let at_b = moved(near + f64::from(step) * 1e-16);
-                    let (outcome, swapped) =
-                        (intersection(&**a, &at_a, &**b, &at_b), intersection(&**b, &at_b, &**a, &at_a));
-                    let apart = |outcome: &Outcome| outcome.witness().is_none();
-                    assert_eq!(apart(&outcome), apart(&swapped), "{i} {j} {k}: {outcome:?}, {swapped:?}");
-                    let distance = closest_points(&**a, &at_a, &**b, &at_b).distance;
-                    assert!(apart(&outcome) || distance == 0.0, "{i} {j} {k}: {outcome:?}, {distance:e}");
-                    cases += 1;
-                    hits += usize::from(!apart(&outcome));
-                }
-            }
+    for_each_pair(20, |[i, j, k], [a, b], [at_a, at_b]| {
+        let way = placement(3 * k + 2).translation.normalize() * 16.0;
+        let moved = |t: f64| DAffine3 { translation: at_b.translation + way * t, ..*at_b };
+        let meet = |t: f64| intersects(a, at_a, b, &moved(t));
+        if !meet(0.0) || meet(1.0) {
+            return;
         }
-    }
+        let (mut near, mut far) = (0.0, 1.0);
+        for _ in 0..54 {
+            let middle = f64::midpoint(near, far);
+            *if meet(middle) { &mut near } else { &mut far } = middle;
+        }
+        for step in -8..8 {
+            let at_b = &moved(near + f64::from(step) * 1e-16);
+            let (outcome, swapped) = (intersection(a, at_a, b, at_b), intersection(b, at_b, a, at_a));
+            let apart = |outcome: &Outcome| outcome.witness().is_none();
+            assert_eq!(apart(&outcome), apart(&swapped), "{i} {j} {k}: {outcome:?}, {swapped:?}");
+            let distance = closest_points(a, at_a, b, at_b).distance;
+            assert!(apart(&outcome) || distance == 0.0, "{i} {j} {k}: {outcome:?}, {distance:e}");
+            cases += 1;
+            hits += usize::from(!apart(&outcome));
+        }
+    });
     assert!(
         cases > 2_000 && (30..=70).contains(&(100 * hits / cases)),
         "{hits} of {cases}: not representative"

@@ -107,12 +107,17 @@ impl Frame {
 
     /// Bounds on how distances local to `A` and `B` show in the common frame.
     pub fn stretch(&self) -> [Stretch; 2] {
-        [self.stretch_of_a(), Stretch::new(&inverse_linear(&self.linear_b), self.scale)]
+        [self.stretch_of_a(), self.stretch_of_b()]
     }
 
     /// The same, of `A` alone.
     pub fn stretch_of_a(&self) -> Stretch {
         Stretch::new(&self.inverse_a, self.scale)
+    }
+
+    /// The same, of `B` alone.
+    pub fn stretch_of_b(&self) -> Stretch {
+        Stretch::new(&inverse_linear(&self.linear_b), self.scale)
     }
 
     /// A length of the common frame beyond a world length and the error of what is computed there: a search for what is below it

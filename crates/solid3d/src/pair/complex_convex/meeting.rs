@@ -15,7 +15,7 @@ use super::super::gaps::Gaps;
 use super::super::glance::Glance;
 use super::super::row::{Row, Verdict};
 use super::super::table::{PlacedComplex, PlacedConvex};
-use super::inside::Inside;
+use super::interior::Interior;
 use super::shadow::Shadow;
 use super::{CLEARLY_APART, frame};
 use crate::tree::{Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves, bits};
@@ -55,7 +55,7 @@ pub(super) fn primitives(
         direct: &direct,
         map,
         shadow,
-        inside: OnceCell::new(),
+        interior: OnceCell::new(),
         glance,
         opened: 0,
         gaps: None,
@@ -80,7 +80,7 @@ struct Meeting<'s> {
     map: DAffine3,
     shadow: Shadow<'s>,
     /// What finds corners in the shape, once a primitive is looked at by itself.
-    inside: OnceCell<Inside<'s>>,
+    interior: OnceCell<Interior<'s>>,
     /// What looks at images of triangles, where any that meets will do.
     glance: Option<(&'s Glance, &'s LeafImages)>,
     /// How many nodes were opened, and what bounds the distances of their boxes once they are many.
@@ -180,15 +180,15 @@ impl Meeting<'_> {
         let (complex, at_complex) = self.complex;
         let row = self.row.get_or_insert_default();
         // Of a shape that is known by its support mapping.
-        let inside = matches!(self.direct, Direct::None)
-            .then(|| self.inside.get_or_init(|| Inside::new(self.convex.0, self.frame, CLEARLY_APART)));
+        let interior = matches!(self.direct, Direct::None)
+            .then(|| self.interior.get_or_init(|| Interior::new(self.convex.0, self.frame, CLEARLY_APART)));
         while let Some(lane) = bits(near).next() {
             near &= near - 1;
             let primitive = row.primitive(lane);
             if !complex.primitive_bounds(primitive).overlaps(self.shadow.in_complex()) {
                 continue;
             }
-            let corner = inside.and_then(|inside| inside.corner_of(complex.points_of(primitive)));
+            let corner = interior.and_then(|interior| interior.corner_of(complex.points_of(primitive)));
             if let Some(corner) = corner {
                 (self.found)(primitive, Some(corner))?;
                 continue;
@@ -196,7 +196,7 @@ impl Meeting<'_> {
             let points = complex.primitive_hull(primitive);
             match gjk::intersection(&points, at_complex, self.convex.0, self.convex.1) {
                 Outcome::Separated { axis } => {
-                    if inside.is_some() {
+                    if interior.is_some() {
                         self.shadow.turn(axis);
                         if let Some(gaps) = &mut self.gaps {
                             gaps.look_along(simd, axis);

@@ -3,12 +3,12 @@
 //! Balls, capsules and boxes are held against eight triangles at a time in closed form ([`direct`](super::direct)), and what is clear
 //! is not asked of GJK; where any triangle that meets will do, images of triangles come first ([`glance`](mod@super::glance)). Of other
 //! shapes, what parts one primitive mostly parts its neighbours too: so an axis is kept, and leaves are tested along it before GJK looks
-//! at what remains, and has no corner in the shape ([`inside`]). Where the distance is sought, [`gaps`](super::gaps) bounds that of the boxes of a node and of the images of triangles, all
+//! at what remains, and has no corner in the shape ([`interior`]). Where the distance is sought, [`gaps`](super::gaps) bounds that of the boxes of a node and of the images of triangles, all
 //! eight at a time, and only what may be nearest is placed and measured.
 
 mod approach;
 mod ball;
-mod inside;
+mod interior;
 mod meeting;
 mod shadow;
 

@@ -4,21 +4,22 @@ use glam::{DAffine3, DVec3};
 use solid_convex::gjk::Ball;
 use solid_convex::{Support, Witness};
 
-use super::super::frame::{Frame, Stretch};
+use super::super::frame::Frame;
 
-/// What is surely in the convex shape, seen from the complex one.
-pub(super) struct Inside<'s> {
+/// The interior of the convex shape, seen from the complex one.
+pub(super) struct Interior<'s> {
     shape: &'s dyn Support,
     to_shape: DAffine3,
     /// How far a point must be from the surface. Space: that of the shape.
     margin: f64,
 }
 
-impl<'s> Inside<'s> {
+impl<'s> Interior<'s> {
     /// By a margin in the common frame.
     pub fn new(shape: &'s dyn Support, frame: &Frame, margin: f64) -> Self {
-        let (relative, [_, Stretch { least, .. }]) = (frame.relative(), frame.stretch());
-        Inside { shape, to_shape: relative.a_to_b, margin: margin / least + relative.slack_in_b }
+        let relative = frame.relative();
+        let margin = margin / frame.stretch_of_b().least + relative.slack_in_b;
+        Interior { shape, to_shape: relative.a_to_b, margin }
     }
 
     /// The first corner of a primitive that is in the shape, as a point of either.
