@@ -30,11 +30,6 @@ const DIAMETER: f64 = 8.0;
 /// not tilt it by more than some 1e-14.
 const WIDE_SQUARED: f64 = 1.0 / 1024.0;
 
-/// The greater of two numbers.
-fn greater(x: f64, y: f64) -> f64 {
-    if y > x { y } else { x }
-}
-
 impl Plane {
     /// Beyond everything.
     pub const BEYOND: Plane = Plane { normal: DVec3::ZERO, offset: f64::INFINITY, slack: 0.0, blur: 0.0 };
@@ -50,8 +45,7 @@ impl Plane {
         let (pq, pr) = (q - p, r - p);
         let normal = pq.cross(pr);
         let area_squared = normal.length_squared();
-        let longest_squared =
-            greater(greater(pq.length_squared(), pr.length_squared()), (r - q).length_squared());
+        let longest_squared = pq.length_squared().max(pr.length_squared()).max((r - q).length_squared());
         if area_squared <= WIDE_SQUARED * longest_squared {
             *self = Plane::narrow(difference, points);
             return;
