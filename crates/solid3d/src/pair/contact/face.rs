@@ -14,7 +14,7 @@ const RIM: u32 = 16;
 
 /// A face and a direction are aligned when the sine of the angle between them is at most this: half a degree. Faces need not be:
 /// a box that lands on an edge has its lower face for contacts too, with the gap at the other edge.
-const ALIGNED_SINE: f64 = 0.01;
+pub(super) const ALIGNED_SINE: f64 = 0.01;
 
 /// A face that is turned away further than this is no longer faced: its height along the direction loses its digits.
 const FACING_COSINE: f64 = 0.05;
@@ -50,10 +50,15 @@ pub(super) struct Face {
     pub cosine: f64,
 }
 
+/// Whether a normal and a direction at an angle with this cosine are aligned.
+pub(super) fn is_aligned(cosine: f64) -> bool {
+    cosine >= 1.0 - 0.5 * ALIGNED_SINE * ALIGNED_SINE
+}
+
 impl Face {
     /// Whether it is a polygon that lies across the direction it was asked for.
     pub fn is_aligned(&self) -> bool {
-        self.corners.len() >= 3 && self.cosine >= 1.0 - 0.5 * ALIGNED_SINE * ALIGNED_SINE
+        self.corners.len() >= 3 && is_aligned(self.cosine)
     }
 
     /// Whether it is not seen from its edge.
@@ -282,7 +287,7 @@ impl<'a> Placed<'a> {
     fn rim(&self, radius: f64, y: f64, first: u32, cosine: f64, local: DVec3) -> Corners {
         let mut places: Vec<(f64, u32)> =
             (0..RIM).map(|i| (TAU * f64::from(i) / f64::from(RIM), first + i)).collect();
-        if cosine < 1.0 - 0.5 * ALIGNED_SINE * ALIGNED_SINE {
+        if !is_aligned(cosine) {
             places.push((local.z.atan2(local.x).rem_euclid(TAU), 2 * RIM + 2));
             places.sort_by(|x, y| x.0.total_cmp(&y.0));
         }
@@ -338,12 +343,24 @@ impl<'a> Placed<'a> {
 
 /// The unit normal of a triangle; `None` for one without area.
 pub(super) fn triangle_normal([p, q, r]: [DVec3; 3]) -> Option<DVec3> {
+    /// The square of twice the least area whose squares lose no digits.
+    const PLAIN_MIN: f64 = 1e-200;
+    let (u, v) = (q - p, r - p);
+    if u.cross(v).length_squared() >= PLAIN_MIN { normal_across(u, v) } else { scaled_normal_across(u, v) }
+}
+
+/// The same in a unit of its own, where squares of its area do not vanish: the other shape may be any number of times as large.
+#[cold]
+fn scaled_normal_across(u: DVec3, v: DVec3) -> Option<DVec3> {
+    let unit = unit_scale(u.abs().max(v.abs()).max_element());
+    normal_across(u * unit, v * unit)
+}
+
+/// The unit normal of a triangle by two of its edges.
+#[inline(always)]
+fn normal_across(u: DVec3, v: DVec3) -> Option<DVec3> {
     /// The sine of the least angle at a corner beyond which the normal has no digits.
     const SINE_MIN: f64 = 1e-12;
-    let (u, v) = (q - p, r - p);
-    // In a unit of its own, where squares of its area do not vanish: the other shape may be any number of times as large.
-    let unit = unit_scale(u.abs().max(v.abs()).max_element());
-    let (u, v) = (u * unit, v * unit);
     let cross = u.cross(v);
     let area = cross.length();
     let longest = u.length_squared().max(v.length_squared()).max((v - u).length_squared());

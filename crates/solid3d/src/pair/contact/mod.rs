@@ -169,14 +169,7 @@ fn contacts_at_length(
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
     let (mut part_a, mut part_b) = (part(a), part(b));
-    let frame = Around::new(
-        [a.placement, b.placement],
-        [reach(a.shape), reach(b.shape)],
-        [world_bounds(a), world_bounds(b)],
-    );
-    let margin = options.margin * frame.scale;
-    let maps = frame.common.map(Map::new);
-    let pair = Pair { a, b, frame, maps, margin };
+    let pair = Pair::new(a, b, options.margin);
     // A surface that is taken for the body it bounds does not collide with what is inside.
     let hollow = is_hollow(a) || is_hollow(b);
     let apart = |scratch: &mut _| matches!(table::intersection(a, b, scratch), Relation::Separated { .. });
@@ -233,7 +226,18 @@ impl Patch {
     }
 }
 
-impl Pair<'_> {
+impl<'a> Pair<'a> {
+    /// With a margin in world units.
+    fn new(a: Placed<'a>, b: Placed<'a>, margin: f64) -> Self {
+        let frame = Around::new(
+            [a.placement, b.placement],
+            [reach(a.shape), reach(b.shape)],
+            [world_bounds(a), world_bounds(b)],
+        );
+        let (maps, margin) = (frame.common.map(Map::new), margin * frame.scale);
+        Pair { a, b, frame, maps, margin }
+    }
+
     /// How the two spaces lie to each other, as it is seen where it is decided which primitives meet, here as everywhere.
     fn placing(&self) -> Frame {
         let Pair { a, b, .. } = self;

@@ -34,7 +34,7 @@ impl On {
 /// The subject cut by each edge of a polygon of area. Cost: linear in the corners of both.
 pub(super) fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
     let area = area(by);
-    let (turn, slack) = (area.signum(), slack(by, area));
+    let (turn, slack) = (area.signum(), slack(extent_squared(by), area));
     let mut left = Ring::new(subject);
     for j in 0..by.len() {
         let (from, to) = (by[j], by[(j + 1) % by.len()]);
@@ -44,9 +44,13 @@ pub(super) fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
     left.corners()
 }
 
-/// How far outside an edge of a polygon, which has this area, a point is on it.
-fn slack(by: &[DVec2], area: f64) -> f64 {
-    let extent_squared = by.iter().map(|p| p.distance_squared(by[0])).fold(0.0, f64::max);
+/// The square of how far a polygon reaches from its first corner.
+fn extent_squared(polygon: &[DVec2]) -> f64 {
+    polygon.iter().map(|p| p.distance_squared(polygon[0])).fold(0.0, f64::max)
+}
+
+/// How far outside an edge of a polygon a point is on it, by the square of how far the polygon reaches from its first corner and by twice its area.
+pub(super) fn slack(extent_squared: f64, area: f64) -> f64 {
     (ON_EDGE * area.abs() / extent_squared).clamp(ON_EDGE_MIN, ON_EDGE)
 }
 
@@ -178,7 +182,7 @@ mod tests {
     /// The slow twin of [`against`]: each edge looks at each corner.
     fn against_all(subject: &[DVec2], by: &[DVec2]) -> Vec<Clipped> {
         let area = area(by);
-        let slack = slack(by, area);
+        let slack = slack(extent_squared(by), area);
         let corner = |(i, &at)| (Clipped { at, origin: Origin::OfA(i) }, On::Subject(i));
         let mut left: Vec<_> = subject.iter().enumerate().map(corner).collect();
         for j in 0..by.len() {

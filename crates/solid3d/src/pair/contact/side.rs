@@ -9,7 +9,7 @@
 use glam::DVec3;
 use smallvec::SmallVec;
 
-use super::ball::{Way, way};
+use super::ball::{is_beside, way, way_along};
 use super::inside::Inside;
 use super::other::Other;
 use super::stars::{LEVEL, SAME_NORMAL, Shortest, Stars, is_parallel};
@@ -55,17 +55,30 @@ impl<'a> Side<'a> {
     pub fn meeting_of_body(&self, inside: Option<&Inside>, mirrored: bool) -> Option<Meeting> {
         let &[p, q, r] = self.corners else { return None };
         let triangle = [p, q, r];
-        let Way { out, depth, foot } = match *self.other.corners {
+        let way = match *self.other.corners {
             [center] => way(&triangle, center, self.other.radius)?,
             _ => inside
                 .and_then(|inside| inside.way(&triangle))
                 .or_else(|| through::way(&triangle, self.body.plane?, &self.other))?,
         };
-        let on_body = foot - out * depth;
-        Some(match mirrored {
-            true => Meeting { normal: out, depth, on_a: on_body, on_b: foot },
-            false => Meeting { normal: -out, depth, on_a: foot, on_b: on_body },
-        })
+        Some(way.meeting(mirrored))
+    }
+
+    /// How a triangle and a ball that is over it lie to each other along a normal out of it that is its own, or nearly; `None` for others.
+    pub fn meeting_of_ball(&self, out: DVec3, mirrored: bool) -> Option<Meeting> {
+        let (&[p, q, r], normal) = (self.corners, self.body.plane?) else { return None };
+        let tip = self.other.furthest(-out);
+        let is_over = face::is_aligned(normal.dot(out).abs());
+        let way = is_over.then(|| way_along(&[p, q, r], normal, tip, out))??;
+        Some(way.meeting(mirrored))
+    }
+
+    /// Whether the other is a ball, or a point, that is not over the triangle along its normal, nor nearly.
+    fn has_ball_beside(&self, normal: DVec3) -> bool {
+        match (self.corners, self.other.corners) {
+            (&[p, q, r], &[center]) => is_beside(&[p, q, r], normal, center),
+            _ => false,
+        }
     }
 
     /// The normal of a triangle with a flat surface around it, to the side on which the way out is shorter.
@@ -83,15 +96,19 @@ impl<'a> Side<'a> {
         orientation != 0.0 && self.body.plane.is_some_and(points_in)
     }
 
-    /// The normal, if the surface has it where it is touched; else that of the triangle, or of a face next to it.
-    pub fn corrected(&self, out: DVec3) -> Corrected {
-        let Some(normal) = self.body.plane else { return Corrected::Kept(out) };
+    /// The normal, if the surface has it where it is touched; else that of the triangle, or of a face next to it. `None` where there is no contact
+    /// along any of these: a ball that is not over the triangle.
+    pub fn corrected(&self, out: DVec3) -> Option<Corrected> {
+        let Some(normal) = self.body.plane else { return Some(Corrected::Kept(out)) };
         let cosine = normal.dot(out);
         if is_parallel(normal, out) {
-            return Corrected::Kept(normal * cosine.signum());
+            return Some(Corrected::Kept(normal * cosine.signum()));
         }
         if self.stars.have(out, &self.stars.welded(self.body.primitive)) {
-            return Corrected::Kept(out);
+            return Some(Corrected::Kept(out));
+        }
+        if self.has_ball_beside(normal) {
+            return None;
         }
         let side = if self.stars.orientation != 0.0 {
             self.stars.orientation
@@ -101,7 +118,7 @@ impl<'a> Side<'a> {
             normal.dot(self.other.center() - self.corners[0])
         };
         let own = normal * side.signum();
-        self.shorter_around(own).map_or(Corrected::Replaced(own), Corrected::Adopted)
+        Some(self.shorter_around(own).map_or(Corrected::Replaced(own), Corrected::Adopted))
     }
 
     /// The normal of a face next to the triangle that the surface has where they meet, when the way out along it is shorter
@@ -165,7 +182,7 @@ mod tests {
     #[test]
     fn hubs_change_nothing() {
         let mut rng = seeded(151);
-        let [mut adopted, mut others] = [0; 2];
+        let [mut adopted, mut others, mut beside] = [0; 3];
         for case in 0..600 {
             let shape = fan(&mut rng, case % 2 == 0);
             let Class::Complex(complex) = shape.class() else { unreachable!("a mesh is complex") };
@@ -187,6 +204,11 @@ mod tests {
                     let placed = face::Placed::of_primitive(&body, triangle, &here, &corners);
                     Side::new(stars, placed, &corners, other).corrected(out)
                 });
+                let (Some(found), Some(expected)) = (found, expected) else {
+                    assert!(found.is_none() && expected.is_none(), "case {case}, triangle {triangle}");
+                    beside += 1;
+                    continue;
+                };
                 let depth = |corrected: Corrected| other.depths(&corners, corrected.normal())[0];
                 assert!(
                     (depth(found) - depth(expected)).abs() < LEVEL
@@ -196,6 +218,6 @@ mod tests {
                 *(if matches!(found, Corrected::Adopted(_)) { &mut adopted } else { &mut others }) += 1;
             }
         }
-        assert!(adopted > 2_000 && others > 2_000, "{adopted}, {others}");
+        assert!(adopted > 2_000 && others > 2_000 && beside > 2_000, "{adopted}, {others}, {beside}");
     }
 }

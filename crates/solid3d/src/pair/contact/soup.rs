@@ -21,7 +21,7 @@ use super::inside::Inside;
 use super::other::Other;
 use super::side::{Corrected, Side};
 use super::stars::Stars;
-use super::{Meeting, Pair, Part, Patch, Touch, face, facing};
+use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face, facing};
 use crate::shape::{Body, Complex};
 use crate::tree::{LeafPairs, bits, pairs_on};
 
@@ -68,9 +68,23 @@ pub(super) fn soup_body(
         let corners = stars.corners(primitive);
         let placed = face::Placed::of_primitive(&primitive_body, primitive, map_soup, &corners);
         let side = Side::new(&stars, placed, &corners, other);
-        let over = |normal: DVec3| match mirrored {
-            true => pair.over(&body, &side.body, normal, false),
-            false => pair.over(&side.body, &body, -normal, true),
+        let sign = if mirrored { 1.0 } else { -1.0 };
+        let touches = |meeting: &Meeting| match mirrored {
+            true => pair.touches(&body, &side.body, meeting),
+            false => pair.touches(&side.body, &body, meeting),
+        };
+        let ball_over = |out: DVec3| {
+            let meeting = side.meeting_of_ball(out, mirrored)?.within(pair.margin + SAME_DEPTH)?;
+            Some(touches(&meeting))
+        };
+        let over = |out: DVec3| match mirrored {
+            _ if body.is_ball() => ball_over(out).unwrap_or_default(),
+            true => pair.over(&body, &side.body, out, false),
+            false => pair.over(&side.body, &body, -out, true),
+        };
+        let across = |out: DVec3| match mirrored {
+            true => pair.across(&body, &side.body, out),
+            false => pair.across(&side.body, &body, -out),
         };
         let (out, touches) = match side.flat() {
             Some(normal) => (normal, over(normal)),
@@ -82,21 +96,17 @@ pub(super) fn soup_body(
                     None if mirrored => pair.meeting(*support, &hull, must)?,
                     None => pair.meeting(&hull, *support, must)?,
                 };
-                let corrected = side.corrected(if mirrored { meeting.normal } else { -meeting.normal });
+                let corrected = side.corrected(meeting.normal * sign)?;
                 let touches = match corrected {
-                    Corrected::Kept(_) if mirrored => {
-                        pair.touches(&body, &side.body, &meeting.along(&corrected, 1.0))
-                    }
-                    Corrected::Kept(_) => pair.touches(&side.body, &body, &meeting.along(&corrected, -1.0)),
-                    Corrected::Adopted(normal) if mirrored => pair.across(&body, &side.body, normal),
-                    Corrected::Adopted(normal) => pair.across(&side.body, &body, -normal),
-                    Corrected::Replaced(normal) => over(normal),
+                    Corrected::Kept(normal) => touches(&Meeting { normal: normal * sign, ..meeting }),
+                    Corrected::Adopted(normal) if !body.is_ball() => across(normal),
+                    Corrected::Adopted(normal) | Corrected::Replaced(normal) => over(normal),
                 };
                 (corrected.normal(), touches)
             }
         };
         let is_inward = side.is_inward(out);
-        let normal = if mirrored { out } else { -out };
+        let normal = out * sign;
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     };
     found.iter().filter_map(patch).collect()
@@ -216,14 +226,14 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let other_b = Other { primitive: j, support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
         let of_a = Side::new(&stars_a, placed_a, &corners_a, other_b);
         let of_b = Side::new(&stars_b, placed_b, &corners_b, other_a);
-        let (on_a, on_b) = (of_a.corrected(-meeting.normal), of_b.corrected(meeting.normal));
+        let (on_a, on_b) = (of_a.corrected(-meeting.normal)?, of_b.corrected(meeting.normal)?);
         let (normal, touches) = match (on_a, on_b) {
             (_, Corrected::Replaced(normal)) => (normal, pair.over(&of_a.body, &of_b.body, normal, false)),
             (Corrected::Replaced(normal), _) => (-normal, pair.over(&of_a.body, &of_b.body, -normal, true)),
             (_, Corrected::Adopted(normal)) => (normal, pair.across(&of_a.body, &of_b.body, normal)),
             (Corrected::Adopted(normal), _) => (-normal, pair.across(&of_a.body, &of_b.body, -normal)),
             (_, kept) => {
-                let meeting = meeting.along(&kept, 1.0);
+                let meeting = Meeting { normal: kept.normal(), ..meeting };
                 (meeting.normal, pair.touches(&of_a.body, &of_b.body, &meeting))
             }
         };
@@ -256,13 +266,13 @@ impl Pair<'_> {
     }
 
     /// The contacts along a normal, given from `b` to `a`, that may not be that of the deepest point.
-    fn across(&self, a: &face::Placed, b: &face::Placed, normal: DVec3) -> Vec<Touch> {
+    pub(super) fn across(&self, a: &face::Placed, b: &face::Placed, normal: DVec3) -> Vec<Touch> {
         let (face_a, face_b) = facing(a, b, normal);
         self.clipped(a, &face_a, b, &face_b, normal)
     }
 
     /// The contacts over a triangle along its own normal, given from `b` to `a`; `of_a` says whose it is.
-    fn over(&self, a: &face::Placed, b: &face::Placed, normal: DVec3, of_a: bool) -> Vec<Touch> {
+    pub(super) fn over(&self, a: &face::Placed, b: &face::Placed, normal: DVec3, of_a: bool) -> Vec<Touch> {
         let (mut face_a, mut face_b) = (a.face(-normal), b.face(normal));
         let other = if of_a { &mut face_b } else { &mut face_a };
         if !other.is_faced() {
@@ -282,10 +292,5 @@ impl Meeting {
     /// `None` for what is further apart than a margin.
     fn within(self, margin: f64) -> Option<Meeting> {
         (self.depth >= -margin).then_some(self)
-    }
-
-    /// The same with the normal as it was corrected; `sign` is that of the side it was corrected on.
-    fn along(&self, corrected: &Corrected, sign: f64) -> Meeting {
-        Meeting { normal: corrected.normal() * sign, ..*self }
     }
 }
