@@ -90,19 +90,25 @@ pub(super) fn ball_intersects(a: Placed, b: Placed) -> Option<bool> {
 
 /// How deep shapes are in each other that are known to intersect; `None` where EPA has to say.
 pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
-    of_ball(a, b, BallAndBody::penetration).or_else(|| of_rounds(a, b))
+    let is_round = |of: Placed| matches!(of.shape.simple(), Some(Simple::Round(_)));
+    let of_rounds = || quick_penetration(a, b).or_else(|| penetration_in_unit(a, b));
+    let found = if is_round(a) && is_round(b) { of_rounds() } else { None };
+    found.or_else(|| of_ball(a, b, BallAndBody::penetration))
 }
 
-/// The same of two capsules whose cores are apart.
-fn of_rounds(a: Placed, b: Placed) -> Option<Penetration> {
-    // Before a pair of boxes is made a pair.
-    let [Some(Simple::Round(_)), Some(Simple::Round(_))] = [a.shape.simple(), b.shape.simple()] else {
+/// What [`penetration`] says of balls and capsules of plain sizes whose cores are apart.
+fn quick_penetration(a: Placed, b: Placed) -> Option<Penetration> {
+    let (Simple::Round(of_a), Simple::Round(of_b)) = (a.shape.simple()?, b.shape.simple()?) else {
         return None;
     };
-    match Pair::new(a, b)? {
-        (Pair::Rounds(a, b), scale) => Cores::of_rounds(&a, &b).penetration(scale),
-        _ => None,
-    }
+    dispatch!(simd => quick::penetration(simd, [a.placement, b.placement], [of_a, of_b]))
+}
+
+/// The same in a unit of length near the size of the data.
+fn penetration_in_unit(a: Placed, b: Placed) -> Option<Penetration> {
+    let (found, scale) = in_unit(a, b, quick_penetration)?;
+    let Penetration { depth, lower, upper, .. } = found;
+    Some(Penetration { depth: depth / scale, lower: lower / scale, upper: upper / scale, ..found })
 }
 
 /// Whether they intersect, with the evidence; `None` where GJK has to say.
@@ -136,17 +142,23 @@ pub(crate) fn quickly_closest(a: Placed, b: Placed) -> Option<Closest> {
     dispatch!(simd => quick::closest(simd, a, b))
 }
 
-/// The same in a unit of length near the size of the data, so that answers do not depend on the unit.
-#[inline(never)]
+/// The same in a unit of length near the size of the data.
 fn closest_in_unit(a: Placed, b: Placed) -> Option<Closest> {
+    let (found, scale) = in_unit(a, b, quickly_closest)?;
+    Some(Closest { distance: found.distance / scale, ..found })
+}
+
+/// What is found in a unit of length near the size of the data, so that answers do not depend on the unit; and that unit: world lengths times it are
+/// lengths there.
+#[inline(never)]
+fn in_unit<T>(a: Placed, b: Placed, find: impl Fn(Placed, Placed) -> Option<T>) -> Option<(T, f64)> {
     let [of_a, of_b] = [a.shape.simple()?, b.shape.simple()?];
     let [at_a, at_b] = [a, b].map(|placed| &placed.placement.matrix3);
     let offset = b.placement.translation - a.placement.translation;
     let scale = unit_scale(size([of_a, of_b], [&Similarity::new(at_a)?, &Similarity::new(at_b)?], offset));
     let at_a = DAffine3 { matrix3: *at_a * scale, translation: DVec3::ZERO };
     let at_b = DAffine3 { matrix3: *at_b * scale, translation: offset * scale };
-    let closest = quickly_closest(Placed { placement: &at_a, ..a }, Placed { placement: &at_b, ..b })?;
-    Some(Closest { distance: closest.distance / scale, ..closest })
+    Some((find(Placed { placement: &at_a, ..a }, Placed { placement: &at_b, ..b })?, scale))
 }
 
 /// The size of the data: of the balls around the shapes and of the distance of their origins.

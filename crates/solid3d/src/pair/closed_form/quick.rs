@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::gjk::Glance;
 use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_squares};
-use solid_convex::{Closest, Witness};
+use solid_convex::{Closest, Penetration, Witness};
 
 use super::GAP_MIN;
 use super::round::{DISTANCE_ERROR, Products};
@@ -64,6 +64,12 @@ fn balls_meet([a, b]: [f64; 2], squares: [f64; 2], offset: DVec3) -> Option<bool
 #[inline(always)]
 pub(super) fn closest<S: Simd>(simd: S, a: Placed, b: Placed) -> Option<Closest> {
     View::of(simd, [a.placement, b.placement])?.closest(a.shape.simple()?, b.shape.simple()?)
+}
+
+/// How deep two balls or capsules are in each other; `None` where a closer look has to say.
+#[inline(always)]
+pub(super) fn penetration<S: Simd>(simd: S, at: [&DAffine3; 2], rounds: [Round; 2]) -> Option<Penetration> {
+    View::of(simd, at)?.penetration(rounds)
 }
 
 /// Two placements that are good, as far as all questions want them.
@@ -151,18 +157,20 @@ impl<'a> View<'a> {
         ((reach >= *PLAIN_SIZES.start()) & (apart | meet)).then_some(meet)
     }
 
+    /// The least gap or overlap that is decided where points are found, of shapes that reach so far; `None` for sizes that are not plain.
     #[inline(always)]
-    fn closest(&self, a: Simple, b: Simple) -> Option<Closest> {
-        let size = self.both([a.radius(), b.radius()]) + self.offset.abs().element_sum();
-        if !PLAIN_SIZES.contains(&size) {
-            return None;
-        }
-        let (margin, unit) = (GAP_MIN * size, size * size);
+    fn margin(&self, reach: [f64; 2]) -> Option<f64> {
+        let size = self.both(reach) + self.offset.abs().element_sum();
+        let unit = size * size;
         let is_plain =
             |square: f64| (unit * PLAIN_PARTS.start() <= square) & (square <= unit * PLAIN_PARTS.end());
-        if !(is_plain(self.squares[0]) & is_plain(self.squares[1])) {
-            return None;
-        }
+        (PLAIN_SIZES.contains(&size) && is_plain(self.squares[0]) & is_plain(self.squares[1]))
+            .then_some(GAP_MIN * size)
+    }
+
+    #[inline(always)]
+    fn closest(&self, a: Simple, b: Simple) -> Option<Closest> {
+        let margin = self.margin([a.radius(), b.radius()])?;
         match (a, b) {
             (Simple::Round(a), Simple::Round(b)) if a.is_ball() & b.is_ball() => {
                 self.of_cores(&self.centers(), [DVec3::ZERO; 2], [a.radius, b.radius], margin)
@@ -178,13 +186,45 @@ impl<'a> View<'a> {
                 self.of_cores(&cores.placed(self.at[0], -1.0), on_cores, [0.0, ball.radius], margin)
             }
             (Simple::Round(a), Simple::Round(b)) => {
-                let heights = [a.half_height, b.half_height];
-                let cores = self.segments(heights);
-                let [on_a, on_b] = [0, 1].map(|k| DVec3::Y * (heights[k] * cores.along[k]));
-                self.of_cores(&cores, [on_a, on_b], [a.radius, b.radius], margin)
+                let (cores, on_cores) = self.segments([a.half_height, b.half_height]);
+                self.of_cores(&cores, on_cores, [a.radius, b.radius], margin)
             }
             _ => None,
         }
+    }
+
+    /// How deep two balls or capsules are in each other, where their cores are apart.
+    #[inline(always)]
+    fn penetration(&self, [a, b]: [Round; 2]) -> Option<Penetration> {
+        let margin = self.margin([a.reach(), b.reach()])?;
+        let (cores, on_cores) = if a.is_ball() & b.is_ball() {
+            (self.centers(), [DVec3::ZERO; 2])
+        } else {
+            self.segments([a.half_height, b.half_height])
+        };
+        let radii = [a.radius * self.scales[0], b.radius * self.scales[1]];
+        let (both, length) = (radii[0] + radii[1], cores.square.sqrt());
+        let inverse = 1.0 / length;
+        let (least, error) = (cores.gap * inverse, margin * MARGIN_TO_ERROR);
+        let is_sure = (least > margin) & (length - least <= error) & (length - both < -margin);
+        is_sure.then(|| {
+            // So far along the way, and no further, are the cores apart.
+            let depth = both - least;
+            let on_surface = |k: usize| self.back(k, cores.v) * (radii[k] * inverse / self.squares[k]);
+            Penetration {
+                depth,
+                lower: depth - 2.0 * error,
+                upper: depth + error,
+                direction: cores.v * inverse,
+                points: Witness { on_a: on_cores[0] - on_surface(0), on_b: on_cores[1] + on_surface(1) },
+            }
+        })
+    }
+
+    /// A vector of the world in the space of a shape, times the square of its scale.
+    #[inline(always)]
+    fn back(&self, k: usize, v: DVec3) -> DVec3 {
+        self.at[k].matrix3.mul_transpose_vec3(v)
     }
 
     /// From the closest points of the cores, in the shapes' own spaces.
@@ -213,9 +253,8 @@ impl<'a> View<'a> {
             }
             (length - radii, radius_a * inverse, radius_b * inverse)
         };
-        let back = |k: usize| self.at[k].matrix3.mul_transpose_vec3(cores.v);
-        let on_a = on_cores[0] - back(0) * (part_a / self.squares[0]);
-        let on_b = on_cores[1] + back(1) * (part_b / self.squares[1]);
+        let on_a = on_cores[0] - self.back(0, cores.v) * (part_a / self.squares[0]);
+        let on_b = on_cores[1] + self.back(1, cores.v) * (part_b / self.squares[1]);
         Some(Closest { distance, points: Witness { on_a, on_b } })
     }
 
@@ -223,7 +262,7 @@ impl<'a> View<'a> {
     #[inline(always)]
     fn centers(&self) -> Cores {
         let square = self.offset.length_squared();
-        Cores { v: -self.offset, gap: square, square, along: [0.0; 2] }
+        Cores { v: -self.offset, gap: square, square }
     }
 
     #[inline(always)]
@@ -231,15 +270,16 @@ impl<'a> View<'a> {
         [self.at[0].matrix3.y_axis * a, self.at[1].matrix3.y_axis * b]
     }
 
-    /// Two segments, by half their heights.
+    /// Two segments, by half their heights, and the closest points in their own spaces.
     #[inline(always)]
-    fn segments(&self, heights: [f64; 2]) -> Cores {
+    fn segments(&self, heights: [f64; 2]) -> (Cores, [DVec3; 2]) {
         let [a, b] = self.half_axes(heights);
         let between = -self.offset;
         let [s, t] = Products::new(between, a, b).closest();
         let v = between + a * s - b * t;
         let gap = v.dot(between) - v.dot(a).abs() - v.dot(b).abs();
-        Cores { v, gap, square: v.length_squared(), along: [s, t] }
+        let on_cores = [DVec3::Y * (heights[0] * s), DVec3::Y * (heights[1] * t)];
+        (Cores { v, gap, square: v.length_squared() }, on_cores)
     }
 
     /// A ball, and the box that is the `cuboid`th of the two.
@@ -268,8 +308,6 @@ struct Cores {
     gap: f64,
     /// The square of its length: the distance of the cores is no more.
     square: f64,
-    /// Where on the segments, in half heights from the middles.
-    along: [f64; 2],
 }
 
 /// A point and a box, in the box's own space, times the square of its scale: there the way from the box is exactly along its axes where the point is
@@ -313,7 +351,7 @@ impl CenterAndBox {
     fn placed(&self, at: &DAffine3, sign: f64) -> Cores {
         let v = at.matrix3 * (self.way() * (sign / self.stretch_squared));
         let square = self.way().length_squared() / self.stretch_squared;
-        Cores { v, gap: square, square, along: [0.0; 2] }
+        Cores { v, gap: square, square }
     }
 }
 

@@ -1,11 +1,11 @@
 //! Balls and capsules: all points within a radius of a core. Their gap is that of the cores, less the radii.
 
 use glam::DVec3;
-use solid_convex::{Penetration, Witness};
+use solid_convex::Witness;
 
 use super::boxes::PlacedBox;
 use super::similarity::Similarity;
-use super::{GAP_MIN, Gap, Relation};
+use super::{Gap, Relation};
 use crate::shape::Round;
 
 /// A ball or a capsule, in the space of the pair.
@@ -99,25 +99,6 @@ impl<'a> Cores<'a> {
         } else {
             Relation::Separated { axis: Some(self.way.normalize()) }
         })
-    }
-
-    /// How deep the shapes are in each other; `None` where they are not, where their cores meet, and where it is not known to [`DISTANCE_ERROR`].
-    pub fn penetration(&self, scale: f64) -> Option<Penetration> {
-        let distance = self.way.length();
-        let is_sure = self.gap_along > GAP_MIN && distance - self.gap_along <= DISTANCE_ERROR;
-        if !(is_sure && self.gap().intersects()?) {
-            return None;
-        }
-        let [radius_a, radius_b] = self.radii;
-        let direction = self.way / distance;
-        // So far along the way, and no further, are the cores apart.
-        let depth = (radius_a + radius_b - self.gap_along) / scale;
-        let error = DISTANCE_ERROR / scale;
-        let points = Witness {
-            on_a: self.local[0] - self.at[0].local(direction * radius_a),
-            on_b: self.local[1] + self.at[1].local(direction * radius_b),
-        };
-        Some(Penetration { depth, lower: depth - 2.0 * error, upper: depth + error, direction, points })
     }
 
     /// A point between those of the cores, as far from each as its radius is of both; of a box without a radius, its own.

@@ -275,12 +275,12 @@ fn what_touches_is_left_to_gjk() {
     }
 }
 
-/// The quick look against the close one: the same answers; and closest points of the same bits in another unit of length, and on every level
+/// The quick look against the close one: the same answers; and closest points and depths of the same bits in another unit of length, and on every level
 /// of instructions.
 #[test]
 fn a_quick_look_says_what_a_close_one_says() {
     let mut rng = StdRng::seed_from_u64(SEED);
-    let (mut decided, mut measured, mut apart) = (0, 0, 0);
+    let [mut decided, mut measured, mut apart, mut deep] = [0; 4];
     for a in &kinds() {
         for b in &kinds() {
             for _ in 0..1_000 {
@@ -296,12 +296,15 @@ fn a_quick_look_says_what_a_close_one_says() {
                 let found = levels().map(|level| dispatch!(level, simd => quick::closest(simd, a, b)));
                 assert_eq!(found[0], found[1]);
                 assert_eq!(found[0], closest_in_unit(a, b));
+                deep += usize::from(quick_penetration(a, b).is_some());
+                assert_eq!(quick_penetration(a, b), penetration_in_unit(a, b));
                 measured += usize::from(found[0].is_some());
                 apart += usize::from(found[0].is_some_and(|found| found.distance > 0.0));
             }
         }
     }
     // Six of the nine pairs have closest points in closed form; of two boxes few are apart by the balls around them.
+    assert!(deep > 1_000, "{deep} are in each other");
     assert!(decided > 5_500 && measured > 5_000, "{decided} and {measured} of 9000");
     assert!((30..=70).contains(&(100 * apart / measured)), "{apart} of {measured} are apart");
 }

@@ -10,7 +10,7 @@ use super::map::{Map, unit};
 use crate::shape::{Body, Hulled};
 
 /// Corners of the polygon that stands for a circle: what is cut off is 2 % of the radius.
-const RIM: u32 = 16;
+pub(super) const RIM: u32 = 16;
 
 /// A face and a direction are aligned when the sine of the angle between them is at most this: half a degree. Faces need not be:
 /// a box that lands on an edge has its lower face for contacts too, with the gap at the other edge.
@@ -20,7 +20,7 @@ pub(super) const ALIGNED_SINE: f64 = 0.01;
 const FACING_COSINE: f64 = 0.05;
 
 /// The side of a capsule counts along its length up to 60 degrees.
-const SIDE_COSINE: f64 = 0.5;
+pub(super) const SIDE_COSINE: f64 = 0.5;
 
 /// How far beside a corner or an edge a point may be to be on it, in the unit of the pair.
 const BESIDE: f64 = 1e-6;

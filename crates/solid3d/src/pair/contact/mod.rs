@@ -17,6 +17,7 @@ mod joining;
 mod map;
 mod one_point;
 mod other;
+mod own_feature;
 mod planes;
 mod region;
 mod ring;
@@ -162,6 +163,7 @@ pub(crate) fn contacts(
 }
 
 /// The same, of all shapes.
+#[inline(never)]
 fn contacts_at_length(
     a: Placed,
     b: Placed,

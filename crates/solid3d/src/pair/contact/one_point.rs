@@ -1,12 +1,12 @@
 //! The one contact of a ball and a convex body that have a closed form, or of two capsules that do not lie along each other: no space around
 //! the two is needed for it.
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 
 use super::super::{Placed, closed_form};
 use super::clip::PARALLEL_SINE;
-use super::map::Map;
-use super::{ContactPoint, Feature, Manifold, face, touched};
+use super::own_feature::own_feature;
+use super::{ContactPoint, Feature, Manifold};
 use crate::placement::direction;
 use crate::shape::ShapeKind;
 
@@ -19,10 +19,12 @@ pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
     }
     let found = closed_form::penetration(a, b)?;
     // In the body's own space, as its placement changes no angle.
-    let own = Map::new(DAffine3::IDENTITY);
     let feature = |of: Placed, facing: DVec3| -> Option<Feature> {
+        if of.shape.is_ball() {
+            return Some(Feature::Vertex(0));
+        }
         let facing = direction(of.placement.matrix3.mul_transpose_vec3(facing))?;
-        Some(touched(&face::Placed::new(&of.shape.body()?, &own), facing))
+        Some(own_feature(&of.shape.body()?, facing))
     };
     let normal = found.direction;
     let features = [feature(a, -normal)?, feature(b, normal)?];
@@ -45,7 +47,7 @@ pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
 
 #[cfg(test)]
 mod tests {
-    use glam::DQuat;
+    use glam::{DAffine3, DQuat};
     use rand::Rng;
     use solid_oracle::generate::seeded;
 
