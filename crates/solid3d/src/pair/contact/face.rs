@@ -66,8 +66,8 @@ impl Face {
         self.corners.len() < 3 || self.cosine >= FACING_COSINE
     }
 
-    /// What of it is furthest along a direction: an edge that is aligned, or a corner.
-    pub fn slim(mut self, direction: DVec3) -> Face {
+    /// Leaves of it what is furthest along a direction: an edge that is aligned, or a corner.
+    pub fn slim(&mut self, direction: DVec3) {
         let height = |corner: &Corner| corner.point.dot(direction);
         let highest =
             *self.corners.iter().max_by(|x, y| height(x).total_cmp(&height(y))).expect("a face has a corner");
@@ -82,7 +82,6 @@ impl Face {
         self.corners.clear();
         self.corners.push(highest);
         self.corners.extend(other);
-        self
     }
 }
 
@@ -208,23 +207,36 @@ impl<'a> Placed<'a> {
 
     fn side_of_box(&self, cuboid: &Cuboid, direction: DVec3, local: DVec3) -> Face {
         let half = 0.5 * cuboid.size();
-        let rows = self.map.inverse().transpose();
-        let side = |axis: usize| {
-            let sign = if local[axis] < 0.0 { -1.0 } else { 1.0 };
-            let normal = unit(rows.col(axis) * sign);
-            (normal.dot(direction), axis, sign, normal)
+        let signs = DVec3::ONE.copysign(local);
+        let (axis, normal, cosine) = match self.map.stretch() {
+            // The sides of a cube are turned as its axes are.
+            Some(stretch) => {
+                let axis = local.abs().max_position();
+                let normal = self.map.linear().col(axis) * (signs[axis] / stretch);
+                (axis, normal, local[axis].abs() / stretch)
+            }
+            None => {
+                let rows = self.map.inverse().transpose();
+                let normals = [0, 1, 2].map(|axis| unit(rows.col(axis) * signs[axis]));
+                let cosine = |axis: &usize| normals[*axis].dot(direction);
+                let best = (0..3).max_by(|x, y| cosine(x).total_cmp(&cosine(y)));
+                let axis = best.expect("a box has three axes");
+                (axis, normals[axis], cosine(&axis))
+            }
         };
-        let sides = [side(0), side(1), side(2)];
-        let (cosine, axis, sign, normal) =
-            sides.into_iter().max_by(|x, y| x.0.total_cmp(&y.0)).expect("a box has three axes");
+        let sign = signs[axis];
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        let corner = |along_i: f64, along_j: f64| {
-            let mut signs = DVec3::splat(sign);
-            (signs[i], signs[j]) = (along_i, along_j);
-            let vertex = (0..3).map(|k| u32::from(signs[k] > 0.0) << k).sum();
-            self.corner(half * signs, vertex)
+        let way = |k: usize| self.map.linear().col(k) * half[k];
+        let (center, along_i, along_j) = (self.map.affine.translation + way(axis) * sign, way(i), way(j));
+        let corner = |i_is_up: bool, j_is_up: bool| {
+            let signed = |way: DVec3, is_up: bool| if is_up { way } else { -way };
+            Corner {
+                point: center + signed(along_i, i_is_up) + signed(along_j, j_is_up),
+                vertex: u32::from(sign > 0.0) << axis | u32::from(i_is_up) << i | u32::from(j_is_up) << j,
+            }
         };
-        let corners = smallvec![corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0), corner(1.0, -1.0)];
+        let corners =
+            smallvec![corner(true, true), corner(false, true), corner(false, false), corner(true, false)];
         Face { corners, normal, number: 2 * axis as u32 + u32::from(sign < 0.0), cosine }
     }
 
@@ -380,7 +392,35 @@ fn azimuth(local: DVec3) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use glam::{DAffine3, DMat3, DQuat};
+    use rand::Rng;
+    use solid_oracle::generate::{direction, in_cube, seeded};
+
     use super::*;
+    use crate::shape::Shape;
+
+    /// Law: where a box stays one, its sides are those that the inverse tells.
+    #[test]
+    fn sides_of_a_box_that_stays_one() {
+        let mut rng = seeded(176);
+        let shape = Shape::cuboid([1.2, 1.0, 0.8]).unwrap();
+        let body = shape.body().unwrap();
+        for case in 0..3_000 {
+            let turn = DMat3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 3.0));
+            let mirror = DVec3::new([1.0, -1.0][case % 2], 1.0, 1.0) * rng.random_range(0.01..1.0);
+            let at =
+                DAffine3 { matrix3: turn * DMat3::from_diagonal(mirror), translation: in_cube(&mut rng) };
+            let (quick, slow) = (Map::new(at), Map::of_any_shape(at));
+            assert!(quick.stretch().is_some());
+            let toward = direction(&mut rng);
+            let [x, y] = [&quick, &slow].map(|map| Placed::new(&body, map).face(toward));
+            assert_eq!(x.number, y.number, "{at}, {toward}");
+            assert!((x.normal - y.normal).length() < 1e-14 && (x.cosine - y.cosine).abs() < 1e-14, "{at}");
+            for (p, q) in x.corners.iter().zip(&y.corners) {
+                assert!(p.vertex == q.vertex && (p.point - q.point).length() < 1e-14, "{at}, {toward}");
+            }
+        }
+    }
 
     /// A triangle may be any number of times smaller than the pair that the frame is around.
     #[test]

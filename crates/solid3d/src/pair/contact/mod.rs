@@ -156,10 +156,21 @@ pub(crate) fn contacts(
     options: &ContactOptions,
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
-    match one_point::contact(a, b) {
-        Some(contact) => vec![contact],
-        None => contacts_at_length(a, b, options, scratch),
+    if let Some(contact) = one_point::contact(a, b) {
+        return vec![contact];
     }
+    let is_convex = |of: Placed| matches!(of.shape.class(), Class::Convex(_));
+    if is_convex(a) && is_convex(b) {
+        return contact_of_bodies(a, b, options).into_iter().collect();
+    }
+    contacts_at_length(a, b, options, scratch)
+}
+
+/// The same of two convex shapes.
+fn contact_of_bodies(a: Placed, b: Placed, options: &ContactOptions) -> Option<Manifold> {
+    let pair = Pair::new(a, b, options.margin);
+    let Patch { normal, touches, .. } = soup::body_body(&pair, &part(a), &part(b))?;
+    Some(pair.manifold(normal, touches, options))
 }
 
 /// The same, of all shapes.
@@ -194,7 +205,7 @@ fn contacts_at_length(
         patches.extend(soup::whole(&pair, scratch));
     }
     let regions = region::regions(&part_a, &part_b, patches);
-    regions.into_iter().map(|region| pair.manifold(region, options)).collect()
+    regions.into_iter().map(|region| pair.manifold(region.normal, region.points, options)).collect()
 }
 
 /// What a shape is in contact with: of a closed convex mesh the body that it bounds.
@@ -248,15 +259,14 @@ impl<'a> Pair<'a> {
 
     fn patches(&self, a: &Part, b: &Part, scratch: &mut Scratch) -> Vec<Patch> {
         match (a, b) {
-            (Part::Body(..), Part::Body(..)) => soup::body_body(self, a, b),
+            (Part::Body(..), Part::Body(..)) => soup::body_body(self, a, b).into_iter().collect(),
             (Part::Soup(_), Part::Body(..)) => soup::soup_body(self, a, b, false, scratch),
             (Part::Body(..), Part::Soup(_)) => soup::soup_body(self, b, a, true, scratch),
             (Part::Soup(of_a), Part::Soup(of_b)) => soup::soup_soup(self, of_a, of_b, scratch),
         }
     }
 
-    fn manifold(&self, region: region::Region, options: &ContactOptions) -> Manifold {
-        let region::Region { normal, mut points } = region;
+    fn manifold(&self, normal: DVec3, mut points: Vec<Touch>, options: &ContactOptions) -> Manifold {
         if let Some(most) = options.max_points {
             region::reduce(&mut points, normal, most.max(1));
         }
@@ -392,10 +402,10 @@ fn facing(a: &face::Placed, b: &face::Placed, normal: DVec3) -> (Face, Face) {
     let (mut face_a, mut face_b) = (a.face(-normal), b.face(normal));
     let across = face_a.is_aligned() || face_b.is_aligned();
     if !(across && face_a.is_faced()) {
-        face_a = face_a.slim(-normal);
+        face_a.slim(-normal);
     }
     if !(across && face_b.is_faced()) {
-        face_b = face_b.slim(normal);
+        face_b.slim(normal);
     }
     (face_a, face_b)
 }
@@ -405,8 +415,11 @@ fn touched(body: &face::Placed, direction: DVec3) -> Feature {
     if body.is_ball() {
         return Feature::Vertex(0);
     }
-    let face = body.face(direction);
-    feature_of(&if face.is_aligned() { face } else { face.slim(direction) })
+    let mut face = body.face(direction);
+    if !face.is_aligned() {
+        face.slim(direction);
+    }
+    feature_of(&face)
 }
 
 /// What a point within a face is of.

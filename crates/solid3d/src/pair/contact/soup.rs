@@ -26,13 +26,13 @@ use crate::shape::{Body, Complex};
 use crate::tree::{LeafPairs, bits, pairs_on};
 
 /// The contacts of two bodies.
-pub(super) fn body_body(pair: &Pair, a: &Part, b: &Part) -> Vec<Patch> {
-    let (Part::Body(kind_a, of_a), Part::Body(kind_b, of_b)) = (a, b) else { return Vec::new() };
-    let Some(meeting) = pair.meeting_of_bodies(*of_a, *of_b) else { return Vec::new() };
+pub(super) fn body_body(pair: &Pair, a: &Part, b: &Part) -> Option<Patch> {
+    let (Part::Body(kind_a, of_a), Part::Body(kind_b, of_b)) = (a, b) else { return None };
+    let meeting = pair.meeting_of_bodies(*of_a, *of_b)?;
     let [map_a, map_b] = &pair.maps;
     let (placed_a, placed_b) = (face::Placed::new(kind_a, map_a), face::Placed::new(kind_b, map_b));
     let touches = pair.touches(&placed_a, &placed_b, &meeting);
-    vec![Patch { normal: meeting.normal, touches, is_inward: false }]
+    Some(Patch { normal: meeting.normal, touches, is_inward: false })
 }
 
 /// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
@@ -277,7 +277,7 @@ impl Pair<'_> {
         let other = if of_a { &mut face_b } else { &mut face_a };
         if !other.is_faced() {
             let along = if of_a { normal } else { -normal };
-            *other = other.clone().slim(along);
+            other.slim(along);
         }
         self.clipped(a, &face_a, b, &face_b, normal)
     }
