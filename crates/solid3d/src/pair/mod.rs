@@ -42,10 +42,12 @@ use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
-pub(crate) use closed_form::{closest_to, contains, nearest_on_surface, quickly_closest};
+pub(crate) use closed_form::{
+    closest_to, contains, nearest_on_surface, quickly_closest, quickly_penetration,
+};
 pub(crate) use coherent::{closest_again, intersects_again, penetration_again};
-pub(crate) use contact::contacts;
 pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};
+pub(crate) use contact::{contacts, quick_contact};
 pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 
-use super::placed;
+use super::{placed, unchecked};
 use crate::error::{Error, Result};
 use crate::pair::{self, ContactOptions, Manifold, Scratch};
 use crate::shape::Shape;
@@ -54,8 +54,12 @@ pub fn contacts(
     placement_b: &DAffine3,
     options: &ContactOptions,
 ) -> Result<Vec<Manifold>> {
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
     let options = options.checked()?;
+    let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
+    if let Some(contact) = pair::quick_contact(on_a, on_b) {
+        return Ok(vec![contact]);
+    }
+    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
     Ok(Scratch::with(|scratch| pair::contacts(a, b, options, scratch)))
 }
 

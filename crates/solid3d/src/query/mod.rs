@@ -70,7 +70,7 @@ pub struct Distance {
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn intersects(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<bool> {
-    let pair = [Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b }];
+    let pair = [unchecked(a, placement_a), unchecked(b, placement_b)];
     dispatch!(move simd => match pair::glance(simd, pair[0], pair[1]) {
         Glance::Sure(answer) => Ok(answer),
         seen => intersects_at_length(&pair, seen),
@@ -186,7 +186,6 @@ pub fn separating_axis(
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<Distance> {
-    let unchecked = |shape, placement| Placed { shape, placement };
     let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
     if let Some(closest) = pair::quickly_closest(on_a, on_b) {
         return Ok(Distance::new(on_a, on_b, &closest));
@@ -281,6 +280,11 @@ pub fn intersection_curve(
 /// ```
 pub fn bounds(shape: &Shape, placement: &DAffine3) -> Result<Aabb> {
     Ok(pair::world_bounds(placed(shape, placement)?))
+}
+
+/// For a look that answers only where both placements are good.
+fn unchecked<'a>(shape: &'a Shape, placement: &'a DAffine3) -> Placed<'a> {
+    Placed { shape, placement }
 }
 
 #[inline]

@@ -5,9 +5,9 @@ use glam::DAffine3;
 use solid_convex::gjk::{Glance, Memory};
 use solid_convex::simd::dispatch;
 
-use super::{Distance, Penetration, placed};
+use super::{Distance, Penetration, placed, unchecked};
 use crate::error::Result;
-use crate::pair::{self, Placed, Scratch};
+use crate::pair::{self, Scratch};
 use crate::placement;
 use crate::shape::Shape;
 
@@ -65,10 +65,7 @@ impl PairCache {
         if let (Some(a), Some(b)) = (self.a.polytope(), self.b.polytope()) {
             return self.memory.glance_by(simd, (a, placement_a), (b, placement_b));
         }
-        let (a, b) = (
-            Placed { shape: &self.a, placement: placement_a },
-            Placed { shape: &self.b, placement: placement_b },
-        );
+        let (a, b) = (unchecked(&self.a, placement_a), unchecked(&self.b, placement_b));
         let seen = pair::glance(simd, a, b);
         if matches!(seen, Glance::Sure(_)) {
             self.memory.rest();
@@ -89,8 +86,7 @@ impl PairCache {
             placement::checked(placement_b)?;
         }
         let Self { a, b, memory, scratch } = self;
-        let (a, b) =
-            (Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b });
+        let (a, b) = (unchecked(a, placement_a), unchecked(b, placement_b));
         Ok(pair::intersects_again(a, b, memory, scratch))
     }
 
@@ -116,8 +112,7 @@ impl PairCache {
         {
             return Ok(found.into());
         }
-        let (on_a, on_b) =
-            (Placed { shape: a, placement: placement_a }, Placed { shape: b, placement: placement_b });
+        let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
         if let Some(closest) = pair::quickly_closest(on_a, on_b) {
             return Ok(Distance::new(on_a, on_b, &closest));
         }

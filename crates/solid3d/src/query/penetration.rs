@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use solid_convex::epa;
 
-use super::placed;
+use super::{placed, unchecked};
 use crate::error::Result;
 use crate::pair::{self, Placed, Scratch};
 use crate::shape::Shape;
@@ -67,7 +67,17 @@ pub fn penetration(
     b: &Shape,
     placement_b: &DAffine3,
 ) -> Result<Option<Penetration>> {
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
+    match pair::quickly_penetration(on_a, on_b) {
+        Some(found) => Ok(Some(Penetration::new(on_a, on_b, &found))),
+        None => penetration_at_length(on_a, on_b),
+    }
+}
+
+/// What [`penetration`] says, where nothing was said yet.
+#[inline(never)]
+fn penetration_at_length(a: Placed, b: Placed) -> Result<Option<Penetration>> {
+    let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
     let found = Scratch::with(|scratch| pair::penetration(a, b, scratch));
     Ok(found.map(|found| Penetration::new(a, b, &found)))
 }

@@ -1,21 +1,25 @@
 //! A ball, or a point, and a body that their placements leave what they are: all by how far the centre is from the surface of the body.
 
+use fearless_simd::Simd;
 use glam::DVec3;
 use solid_convex::{Closest, Penetration, Witness};
 
-use super::point::Seen;
-use super::round::DISTANCE_ERROR;
+use super::point::{Foot, Seen, extent, of_body};
+use super::quick::{MARGIN_TO_ERROR, View};
 use super::similarity::Similarity;
 use super::{Gap, Relation};
 use crate::pair::Placed;
 
 /// A ball and a body.
-pub(super) struct BallAndBody {
-    /// The centre.
-    seen: Seen,
+pub(super) struct BallAndBody<'a> {
+    view: View<'a>,
+    /// The centre, and where the surface is nearest to it: in the directions of the body's own space, from its origin. World units.
+    center: DVec3,
+    foot: Foot<DVec3>,
     /// World units.
     radius: f64,
-    ball: Similarity,
+    /// The least gap or overlap that is decided. World units.
+    margin: f64,
 }
 
 /// A ball, or a point, that its placement leaves one: with its radius in the world.
@@ -46,63 +50,86 @@ pub(crate) fn closest_to(body: Placed, point: DVec3) -> Option<(f64, DVec3)> {
     })
 }
 
-impl BallAndBody {
-    /// `None` for other shapes, and for placements that are not a rotation with a uniform scale.
+impl<'a> BallAndBody<'a> {
+    /// `None` for other shapes, for placements that are not a rotation with a uniform scale, and for sizes that are not plain.
     #[inline(always)] // most callers want a part of it
-    pub fn new(ball: Placed, body: Placed) -> Option<BallAndBody> {
-        let (at, radius) = placed_ball(ball)?;
-        Some(BallAndBody { seen: Seen::new(body, ball.placement.translation, radius)?, radius, ball: at })
+    pub fn new<S: Simd>(simd: S, ball: Placed<'a>, body: Placed<'a>) -> Option<Self> {
+        let (radius, kind) = (ball.shape.ball_radius()?, body.shape.body()?);
+        let extent = extent(&kind)?;
+        let view = View::of(simd, [ball.placement, body.placement])?;
+        let margin = view.margin([radius, extent])?;
+        let center = view.local(1, -view.offset) / view.scales[1];
+        let foot = of_body(&kind, view.scales[1], center)?;
+        let radius = radius * view.scales[0];
+        Some(BallAndBody { view, center, foot, radius, margin })
     }
 
-    /// In the unit of the pair.
+    #[inline(always)]
     fn gap(&self) -> f64 {
-        self.seen.distance() - self.radius * self.seen.scale
+        self.foot.distance - self.radius
+    }
+
+    /// The outward normal of the body where it is nearest to the centre. Space: world.
+    #[inline(always)]
+    fn normal(&self) -> DVec3 {
+        self.view.at[1].matrix3 * self.foot.normal / self.view.scales[1]
     }
 
     /// Whether they intersect; `None` where GJK has to say.
+    #[inline(always)]
     pub fn intersects(&self) -> Option<bool> {
-        intersects(self.gap())
+        (self.gap().abs() > self.margin).then_some(self.gap() < 0.0)
     }
 
     /// Whether they intersect, with the evidence.
+    #[inline(always)]
     pub fn relation(&self) -> Option<Relation> {
         Some(match self.intersects()? {
             true => Relation::Common(self.common_point()),
-            false => Relation::Separated { axis: Some(self.seen.normal()) },
+            false => Relation::Separated { axis: Some(self.normal()) },
         })
     }
 
     /// The closest points.
+    #[inline(always)]
     pub fn closest(&self) -> Option<Closest> {
         Some(match self.intersects()? {
             true => Closest { distance: 0.0, points: self.common_point() },
-            false => Closest { distance: self.gap() / self.seen.scale, points: self.facing(self.radius) },
+            false => Closest { distance: self.gap(), points: self.facing(self.radius) },
         })
     }
 
     /// How deep they are in each other, where they intersect.
+    #[inline(always)]
     pub fn penetration(&self) -> Option<Penetration> {
         if !self.intersects()? {
             return None;
         }
-        let (depth, error) = (-self.gap() / self.seen.scale, DISTANCE_ERROR / self.seen.scale);
+        let (depth, error) = (-self.gap(), self.margin * MARGIN_TO_ERROR);
         let points = self.facing(self.radius);
-        let (lower, upper) = (depth - error, depth + error);
-        Some(Penetration { depth, lower, upper, direction: self.seen.normal(), points })
+        Some(Penetration {
+            depth,
+            lower: depth - error,
+            upper: depth + error,
+            direction: self.normal(),
+            points,
+        })
     }
 
     /// The centre where it is in the body, else the point of the body that is nearest to it.
+    #[inline(always)]
     fn common_point(&self) -> Witness {
-        let distance = self.seen.distance();
-        if distance > 0.0 {
-            self.facing(distance / self.seen.scale)
+        if self.foot.distance > 0.0 {
+            self.facing(self.foot.distance)
         } else {
-            Witness { on_a: DVec3::ZERO, on_b: self.seen.point() }
+            Witness { on_a: DVec3::ZERO, on_b: self.center / self.view.scales[1] }
         }
     }
 
     /// The point of the body that is nearest to the centre, and the point so far from the centre towards it.
+    #[inline(always)]
     fn facing(&self, way: f64) -> Witness {
-        Witness { on_a: self.ball.local(self.seen.normal() * -way), on_b: self.seen.on_surface() }
+        let on_a = self.view.local(0, self.normal()) * (-way / self.view.squares[0]);
+        Witness { on_a, on_b: self.foot.at / self.view.scales[1] }
     }
 }

@@ -45,11 +45,23 @@ enum Pair {
     Boxes(PlacedBox, PlacedBox),
 }
 
+/// Whether both are [`Simple`].
+#[inline(always)]
+fn are_simple(a: Placed, b: Placed) -> bool {
+    a.shape.is_simple() && b.shape.is_simple()
+}
+
 /// Whether they intersect, as [`gjk::glance`](solid_convex::gjk::glance): placements have yet to be checked.
 #[inline(always)]
 pub(super) fn glance<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
     // Most pairs are of other shapes: nothing is looked at for them.
-    if a.shape.is_simple() && b.shape.is_simple() { quick::intersects(simd, a, b) } else { Glance::Unusual }
+    if are_simple(a, b) {
+        quick::intersects(simd, a, b)
+    } else if a.shape.is_ball() || b.shape.is_ball() {
+        quick::ball_intersects(simd, a, b)
+    } else {
+        Glance::Unusual
+    }
 }
 
 /// Whether they intersect; `None` where GJK has to say, and where placements have yet to be checked: those of an answer are good.
@@ -74,46 +86,60 @@ pub(super) fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
 }
 
 /// Something of a ball, or a point, and a body; of a body and a ball mirrored. `None` for other shapes, and where GJK has to say.
+fn of_ball<T: Mirror + Lengths>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) -> Option<T>) -> Option<T> {
+    ball_is_first(a, b)?;
+    let find = |a: Placed, b: Placed| quickly_of_ball(a, b, &what);
+    find(a, b).or_else(|| in_unit(a, b, find))
+}
+
+/// The same of plain sizes. Placements need not have been checked: those of an answer are good.
 #[inline]
-fn of_ball<T: Mirror>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) -> Option<T>) -> Option<T> {
-    // A point is a hull, which is no body here.
-    let in_order = a.shape.ball_radius().is_some() && b.shape.kind() != ShapeKind::ConvexHull;
+fn quickly_of_ball<T: Mirror>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) -> Option<T>) -> Option<T> {
+    let in_order = ball_is_first(a, b)?;
     let (ball, body) = if in_order { (a, b) } else { (b, a) };
-    let found = what(&BallAndBody::new(ball, body)?)?;
+    let found = dispatch!(simd => what(&BallAndBody::new(simd, ball, body)?))?;
     Some(if in_order { found } else { found.mirrored() })
+}
+
+/// Of a ball, or a point, and a body that is no hull, whether it is the first; `None` for other shapes.
+#[inline]
+fn ball_is_first(a: Placed, b: Placed) -> Option<bool> {
+    let is_ball = |of: Placed| of.shape.ball_radius().is_some();
+    let is_body =
+        |of: Placed| !matches!(of.shape.kind(), ShapeKind::ConvexHull | ShapeKind::Mesh | ShapeKind::Complex);
+    if is_body(b) && is_ball(a) { Some(true) } else { (is_body(a) && is_ball(b)).then_some(false) }
 }
 
 /// Whether a ball, or a point, and a body intersect; `None` for other shapes, and where GJK has to say.
 pub(super) fn ball_intersects(a: Placed, b: Placed) -> Option<bool> {
-    of_ball(a, b, BallAndBody::intersects)
+    of_ball(a, b, |pair| pair.intersects())
 }
 
 /// How deep shapes are in each other that are known to intersect; `None` where EPA has to say.
 pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
-    let is_round = |of: Placed| matches!(of.shape.simple(), Some(Simple::Round(_)));
-    let of_rounds = || quick_penetration(a, b).or_else(|| penetration_in_unit(a, b));
-    let found = if is_round(a) && is_round(b) { of_rounds() } else { None };
-    found.or_else(|| of_ball(a, b, BallAndBody::penetration))
+    let of_rounds = || quickly_penetration(a, b).or_else(|| in_unit(a, b, quickly_penetration));
+    let found = if are_round(a, b) { of_rounds() } else { None };
+    found.or_else(|| of_ball(a, b, |pair| pair.penetration()))
 }
 
-/// What [`penetration`] says of balls and capsules of plain sizes whose cores are apart.
-fn quick_penetration(a: Placed, b: Placed) -> Option<Penetration> {
-    let (Simple::Round(of_a), Simple::Round(of_b)) = (a.shape.simple()?, b.shape.simple()?) else {
-        return None;
-    };
-    dispatch!(simd => quick::penetration(simd, [a.placement, b.placement], [of_a, of_b]))
+/// What [`penetration`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.
+pub(crate) fn quickly_penetration(a: Placed, b: Placed) -> Option<Penetration> {
+    match (a.shape.simple(), b.shape.simple()) {
+        (Some(Simple::Round(of_a)), Some(Simple::Round(of_b))) => {
+            dispatch!(simd => quick::penetration(simd, [a.placement, b.placement], [of_a, of_b]))
+        }
+        _ => quickly_of_ball(a, b, |pair| pair.penetration()),
+    }
 }
 
-/// The same in a unit of length near the size of the data.
-fn penetration_in_unit(a: Placed, b: Placed) -> Option<Penetration> {
-    let (found, scale) = in_unit(a, b, quick_penetration)?;
-    let Penetration { depth, lower, upper, .. } = found;
-    Some(Penetration { depth: depth / scale, lower: lower / scale, upper: upper / scale, ..found })
+/// Whether both are balls or capsules.
+fn are_round(a: Placed, b: Placed) -> bool {
+    [a, b].iter().all(|of| matches!(of.shape.kind(), ShapeKind::Sphere | ShapeKind::Capsule))
 }
 
 /// Whether they intersect, with the evidence; `None` where GJK has to say.
 pub(super) fn intersection(a: Placed, b: Placed) -> Option<Relation> {
-    of_simple(a, b).or_else(|| of_ball(a, b, BallAndBody::relation))
+    of_simple(a, b).or_else(|| of_ball(a, b, |pair| pair.relation()))
 }
 
 /// The same of simple shapes.
@@ -132,33 +158,69 @@ fn of_simple(a: Placed, b: Placed) -> Option<Relation> {
 
 /// The closest points; `None` where GJK has to find them.
 pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
-    let of_simple = quickly_closest(a, b).or_else(|| closest_in_unit(a, b));
-    of_simple.or_else(|| of_ball(a, b, BallAndBody::closest))
+    let of_simple = || in_unit(a, b, quickly_closest);
+    let found = quickly_closest(a, b).or_else(|| if are_simple(a, b) { of_simple() } else { None });
+    found.or_else(|| of_ball(a, b, |pair| pair.closest()))
 }
 
 /// What [`closest`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.
 pub(crate) fn quickly_closest(a: Placed, b: Placed) -> Option<Closest> {
-    let (Some(_), Some(_)) = (a.shape.simple(), b.shape.simple()) else { return None };
-    dispatch!(simd => quick::closest(simd, a, b))
+    if are_simple(a, b) {
+        dispatch!(simd => quick::closest(simd, a, b))
+    } else if a.shape.is_ball() || b.shape.is_ball() {
+        quickly_of_ball(a, b, |pair| pair.closest())
+    } else {
+        None
+    }
 }
 
-/// The same in a unit of length near the size of the data.
-fn closest_in_unit(a: Placed, b: Placed) -> Option<Closest> {
-    let (found, scale) = in_unit(a, b, quickly_closest)?;
-    Some(Closest { distance: found.distance / scale, ..found })
-}
-
-/// What is found in a unit of length near the size of the data, so that answers do not depend on the unit; and that unit: world lengths times it are
-/// lengths there.
+/// What is found in a unit of length near the size of the data, so that answers do not depend on the unit.
 #[inline(never)]
-fn in_unit<T>(a: Placed, b: Placed, find: impl Fn(Placed, Placed) -> Option<T>) -> Option<(T, f64)> {
-    let [of_a, of_b] = [a.shape.simple()?, b.shape.simple()?];
-    let [at_a, at_b] = [a, b].map(|placed| &placed.placement.matrix3);
+fn in_unit<T: Lengths>(a: Placed, b: Placed, find: impl Fn(Placed, Placed) -> Option<T>) -> Option<T> {
+    let [reach_a, reach_b] = [reach(a)?, reach(b)?];
     let offset = b.placement.translation - a.placement.translation;
-    let scale = unit_scale(size([of_a, of_b], [&Similarity::new(at_a)?, &Similarity::new(at_b)?], offset));
-    let at_a = DAffine3 { matrix3: *at_a * scale, translation: DVec3::ZERO };
-    let at_b = DAffine3 { matrix3: *at_b * scale, translation: offset * scale };
-    Some((find(Placed { placement: &at_a, ..a }, Placed { placement: &at_b, ..b })?, scale))
+    let scale = unit_scale(reach_a + reach_b + offset.abs().element_sum());
+    let at_a = DAffine3 { matrix3: a.placement.matrix3 * scale, translation: DVec3::ZERO };
+    let at_b = DAffine3 { matrix3: b.placement.matrix3 * scale, translation: offset * scale };
+    let found = find(Placed { placement: &at_a, ..a }, Placed { placement: &at_b, ..b })?;
+    Some(found.divided(scale))
+}
+
+/// How far a shape reaches from its origin, or a bound on that; `None` for a hull or a complex shape, and for what its placement does not leave what it is.
+fn reach(placed: Placed) -> Option<f64> {
+    let radius = placed.shape.ball_radius().or_else(|| point::extent(&placed.shape.body()?))?;
+    Some(radius * Similarity::new(&placed.placement.matrix3)?.stretch)
+}
+
+/// What has lengths of the world.
+trait Lengths {
+    /// The same with all of these divided.
+    fn divided(self, by: f64) -> Self;
+}
+
+impl Lengths for bool {
+    fn divided(self, _: f64) -> Self {
+        self
+    }
+}
+
+impl Lengths for Relation {
+    fn divided(self, _: f64) -> Self {
+        self
+    }
+}
+
+impl Lengths for Closest {
+    fn divided(self, by: f64) -> Self {
+        Closest { distance: self.distance / by, ..self }
+    }
+}
+
+impl Lengths for Penetration {
+    fn divided(self, by: f64) -> Self {
+        let [depth, lower, upper] = [self.depth, self.lower, self.upper].map(|length| length / by);
+        Penetration { depth, lower, upper, ..self }
+    }
 }
 
 /// The size of the data: of the balls around the shapes and of the distance of their origins.

@@ -12,21 +12,19 @@ use crate::placement::length_and_direction;
 use crate::shape::{Body, ShapeKind};
 
 /// Where a surface is nearest to a point, in the space of the surface.
-struct Foot<V> {
+pub(super) struct Foot<V> {
     /// Negative inside.
-    distance: f64,
+    pub distance: f64,
     /// Outward, of length one.
-    normal: V,
+    pub normal: V,
     /// Where it is.
-    at: V,
+    pub at: V,
 }
 
 /// A point as a body sees it that its placement leaves what it is.
 pub(super) struct Seen {
     /// Where the surface is nearest, in the body's own directions and the unit of the pair.
     foot: Foot<DVec3>,
-    /// The point, in the same.
-    point: DVec3,
     at: Similarity,
     /// World lengths times this are lengths in the unit of the pair, in which the size of the data is in [1, 2).
     pub scale: f64,
@@ -49,7 +47,7 @@ impl Seen {
         let scale = unit_scale(extent * at.stretch + radius + offset.abs().element_sum());
         let point = DVec3::from(at.units().map(|axis| axis.dot(offset * scale)));
         let foot = of_body(&body, at.stretch * scale, point)?;
-        Some(Seen { foot, point, at, scale })
+        Some(Seen { foot, at, scale })
     }
 
     /// How far the point is from the surface, negative inside. In the unit of the pair.
@@ -72,20 +70,6 @@ impl Seen {
         let [x, y, z] = self.at.units();
         x * v.x + y * v.y + z * v.z
     }
-
-    /// The nearest point of the surface. Space: the body's own.
-    pub fn on_surface(&self) -> DVec3 {
-        self.local(self.foot.at)
-    }
-
-    /// The point. Space: the body's own.
-    pub fn point(&self) -> DVec3 {
-        self.local(self.point)
-    }
-
-    fn local(&self, p: DVec3) -> DVec3 {
-        p / self.scale / self.at.stretch
-    }
 }
 
 /// The point of the surface of a ball, box, cone, cylinder or capsule nearest to a point of the world; `None` for other shapes,
@@ -106,7 +90,7 @@ pub(in crate::pair) fn foot(body: &Body, at: &Similarity, offset: DVec3) -> Opti
 
 /// A bound on the coordinates of a body; `None` for a hull.
 #[inline(always)]
-fn extent(body: &Body) -> Option<f64> {
+pub(super) fn extent(body: &Body) -> Option<f64> {
     Some(match body {
         Body::Sphere(shape) => shape.radius(),
         Body::Cuboid(shape) => shape.size().max_element(),
@@ -119,7 +103,7 @@ fn extent(body: &Body) -> Option<f64> {
 
 /// For a body that is `stretch` times its own size.
 #[inline(always)]
-fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
+pub(super) fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
     let half = |height: f64| 0.5 * height * stretch;
     Some(match body {
         Body::Sphere(shape) => of_capsule(shape.radius() * stretch, 0.0, p),
@@ -154,6 +138,7 @@ fn of_box(half: DVec3, p: DVec3) -> Foot<DVec3> {
 }
 
 /// Of a body that turns about the axis y, by what its profile is nearest to.
+#[inline(always)]
 fn turned(p: DVec3, profile: impl Fn(DVec2) -> Foot<DVec2>) -> Foot<DVec3> {
     let (radius, outward) = polar(DVec3::new(p.x, 0.0, p.z), DVec3::X);
     let Foot { distance, normal, at } = profile(DVec2::new(radius, p.y));
@@ -162,6 +147,7 @@ fn turned(p: DVec3, profile: impl Fn(DVec2) -> Foot<DVec2>) -> Foot<DVec3> {
 }
 
 /// The profile of a cylinder: symmetric, up to the corner `half`.
+#[inline(always)]
 fn of_rectangle(half: DVec2, p: DVec2) -> Foot<DVec2> {
     let beyond = p.abs() - half;
     let up = 1f64.copysign(p.y);
@@ -176,6 +162,7 @@ fn of_rectangle(half: DVec2, p: DVec2) -> Foot<DVec2> {
 }
 
 /// The profile of a cone: the base at `-half_height`, the apex above.
+#[inline(always)]
 fn of_cone(radius: f64, half_height: f64, p: DVec2) -> Foot<DVec2> {
     let (apex, rim) = (DVec2::new(0.0, half_height), DVec2::new(radius, -half_height));
     let (length, side) = polar(DVec3::new(2.0 * half_height, radius, 0.0), DVec3::X);

@@ -9,9 +9,10 @@ use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_squares};
 use solid_convex::{Closest, Penetration, Witness};
 
 use super::GAP_MIN;
+use super::point::{extent, of_body};
 use super::round::{DISTANCE_ERROR, Products};
 use crate::pair::Placed;
-use crate::shape::{Round, Simple};
+use crate::shape::{Body, Round, Simple};
 
 /// Sizes of the data whose squares and the products of these neither overflow nor vanish.
 const PLAIN_SIZES: RangeInclusive<f64> = 1e-30..=1e30;
@@ -28,7 +29,7 @@ const PLAIN_PARTS: RangeInclusive<f64> = 1e-58..=1e58;
 const ROUGH_GAP_MIN: f64 = 8.0 * STRETCH_ERROR;
 
 /// The error of a distance that is given out, in the margins of an answer.
-const MARGIN_TO_ERROR: f64 = DISTANCE_ERROR / GAP_MIN;
+pub(super) const MARGIN_TO_ERROR: f64 = DISTANCE_ERROR / GAP_MIN;
 
 /// Whether two shapes intersect: squares of lengths against squares, and no evidence.
 #[inline(always)]
@@ -43,6 +44,20 @@ pub(super) fn intersects<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
         _ => return Glance::Unusual,
     };
     meet.map_or(Glance::Open, Glance::Sure)
+}
+
+/// Whether a ball and a cylinder or a cone intersect.
+#[inline(always)]
+pub(super) fn ball_intersects<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
+    let (ball, body, turned) = if a.shape.is_ball() { (a, b, 1) } else { (b, a, 0) };
+    let (Some(radius), Some(body @ (Body::Cylinder(_) | Body::Cone(_)))) =
+        (ball.shape.ball_radius(), body.shape.body())
+    else {
+        return Glance::Unusual;
+    };
+    let at = [a.placement, b.placement];
+    let Some(squares) = rough_squares(simd, at) else { return Glance::Unusual };
+    View::with_squares(at, squares).ball_meets(radius, turned, &body).map_or(Glance::Open, Glance::Sure)
 }
 
 /// Whether two balls intersect. Where they touch, the size of the data is less than three times the sum of their radii.
@@ -73,17 +88,17 @@ pub(super) fn penetration<S: Simd>(simd: S, at: [&DAffine3; 2], rounds: [Round; 
 }
 
 /// Two placements that are good, as far as all questions want them.
-struct View<'a> {
-    at: [&'a DAffine3; 2],
-    scales: [f64; 2],
-    squares: [f64; 2],
+pub(super) struct View<'a> {
+    pub at: [&'a DAffine3; 2],
+    pub scales: [f64; 2],
+    pub squares: [f64; 2],
     /// From the origin of the first to that of the second.
-    offset: DVec3,
+    pub offset: DVec3,
 }
 
 impl<'a> View<'a> {
     #[inline(always)]
-    fn of<S: Simd>(simd: S, at: [&'a DAffine3; 2]) -> Option<Self> {
+    pub fn of<S: Simd>(simd: S, at: [&'a DAffine3; 2]) -> Option<Self> {
         Some(View::with_squares(at, plain_squares(simd, at)?))
     }
 
@@ -129,6 +144,20 @@ impl<'a> View<'a> {
         pair.segment_meets(self.local(cuboid, axis), half * self.squares[cuboid], radii)
     }
 
+    /// Whether a ball and a body, the `k`th of the two, intersect: in the body's own space, times the square of its scale.
+    #[inline(always)]
+    fn ball_meets(&self, radius: f64, k: usize, body: &Body) -> Option<bool> {
+        let (unit, radius) = (self.scales[k], radius * self.scales[1 - k]);
+        let size = radius + extent(body)? * unit + self.offset.abs().element_sum();
+        if !PLAIN_SIZES.contains(&size) {
+            return None;
+        }
+        let center = self.local(k, if k == 1 { -self.offset } else { self.offset });
+        let gap = of_body(body, self.squares[k], center)?.distance - radius * unit;
+        let margin = ROUGH_GAP_MIN * size * unit;
+        (gap.abs() > margin).then_some(gap < 0.0)
+    }
+
     /// Whether two boxes intersect, by the balls around them and in them.
     #[inline(always)]
     fn boxes_meet(&self, [a, b]: [DVec3; 2]) -> Option<bool> {
@@ -159,7 +188,7 @@ impl<'a> View<'a> {
 
     /// The least gap or overlap that is decided where points are found, of shapes that reach so far; `None` for sizes that are not plain.
     #[inline(always)]
-    fn margin(&self, reach: [f64; 2]) -> Option<f64> {
+    pub fn margin(&self, reach: [f64; 2]) -> Option<f64> {
         let size = self.both(reach) + self.offset.abs().element_sum();
         let unit = size * size;
         let is_plain =
@@ -210,7 +239,7 @@ impl<'a> View<'a> {
         is_sure.then(|| {
             // So far along the way, and no further, are the cores apart.
             let depth = both - least;
-            let on_surface = |k: usize| self.back(k, cores.v) * (radii[k] * inverse / self.squares[k]);
+            let on_surface = |k: usize| self.local(k, cores.v) * (radii[k] * inverse / self.squares[k]);
             Penetration {
                 depth,
                 lower: depth - 2.0 * error,
@@ -219,12 +248,6 @@ impl<'a> View<'a> {
                 points: Witness { on_a: on_cores[0] - on_surface(0), on_b: on_cores[1] + on_surface(1) },
             }
         })
-    }
-
-    /// A vector of the world in the space of a shape, times the square of its scale.
-    #[inline(always)]
-    fn back(&self, k: usize, v: DVec3) -> DVec3 {
-        self.at[k].matrix3.mul_transpose_vec3(v)
     }
 
     /// From the closest points of the cores, in the shapes' own spaces.
@@ -253,8 +276,8 @@ impl<'a> View<'a> {
             }
             (length - radii, radius_a * inverse, radius_b * inverse)
         };
-        let on_a = on_cores[0] - self.back(0, cores.v) * (part_a / self.squares[0]);
-        let on_b = on_cores[1] + self.back(1, cores.v) * (part_b / self.squares[1]);
+        let on_a = on_cores[0] - self.local(0, cores.v) * (part_a / self.squares[0]);
+        let on_b = on_cores[1] + self.local(1, cores.v) * (part_b / self.squares[1]);
         Some(Closest { distance, points: Witness { on_a, on_b } })
     }
 
@@ -293,7 +316,7 @@ impl<'a> View<'a> {
 
     /// A vector of the world in the own space of one of the two, times the square of its scale.
     #[inline(always)]
-    fn local(&self, k: usize, v: DVec3) -> DVec3 {
+    pub fn local(&self, k: usize, v: DVec3) -> DVec3 {
         let DMat3 { x_axis, y_axis, z_axis } = self.at[k].matrix3;
         // Of the matrix, transposed; glam's product is not always inlined, and is then called without vectors.
         DVec3::new(x_axis.dot(v), y_axis.dot(v), z_axis.dot(v))

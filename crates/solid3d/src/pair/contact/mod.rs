@@ -149,6 +149,12 @@ enum Part<'a> {
     Soup(&'a Complex),
 }
 
+/// The contacts of two shapes that have one, known in closed form, and plain sizes; `None` of others. Placements need not have been checked: those of an
+/// answer are good.
+pub(crate) fn quick_contact(a: Placed, b: Placed) -> Option<Manifold> {
+    one_point::contact(a, b, closed_form::quickly_penetration)
+}
+
 /// All contacts of two shapes.
 pub(crate) fn contacts(
     a: Placed,
@@ -156,7 +162,7 @@ pub(crate) fn contacts(
     options: &ContactOptions,
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
-    if let Some(contact) = one_point::contact(a, b) {
+    if let Some(contact) = one_point::contact(a, b, closed_form::penetration) {
         return vec![contact];
     }
     let is_convex = |of: Placed| matches!(of.shape.class(), Class::Convex(_));

@@ -2,8 +2,9 @@
 //! the two is needed for it.
 
 use glam::DVec3;
+use solid_convex::Penetration;
 
-use super::super::{Placed, closed_form};
+use super::super::Placed;
 use super::clip::PARALLEL_SINE;
 use super::own_feature::own_feature;
 use super::{ContactPoint, Feature, Manifold};
@@ -11,13 +12,18 @@ use crate::placement::direction;
 use crate::shape::ShapeKind;
 
 /// The contact of a ball and a ball, box, cone, cylinder or capsule that are in each other, or of two capsules that are; `None` for other shapes,
-/// and where the general way has to say.
-pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
+/// and where the general way has to say. `penetration` is [`closed_form::penetration`](super::super::closed_form), or what that says of plain sizes.
+#[inline]
+pub(super) fn contact(
+    a: Placed,
+    b: Placed,
+    penetration: impl FnOnce(Placed, Placed) -> Option<Penetration>,
+) -> Option<Manifold> {
     let is_capsule = |of: Placed| of.shape.kind() == ShapeKind::Capsule;
     if !(a.shape.is_ball() || b.shape.is_ball() || is_capsule(a) && is_capsule(b)) {
         return None;
     }
-    let found = closed_form::penetration(a, b)?;
+    let found = penetration(a, b)?;
     // In the body's own space, as its placement changes no angle.
     let feature = |of: Placed, facing: DVec3| -> Option<Feature> {
         if of.shape.is_ball() {
@@ -51,6 +57,7 @@ mod tests {
     use rand::Rng;
     use solid_oracle::generate::seeded;
 
+    use super::super::super::closed_form;
     use super::super::contacts_at_length;
     use super::*;
     use crate::pair::Scratch;
@@ -94,7 +101,7 @@ mod tests {
                     pair.reverse();
                 }
                 let [a, b] = pair;
-                let Some(quick) = contact(a, b) else { continue };
+                let Some(quick) = contact(a, b, closed_form::penetration) else { continue };
                 found += 1;
                 let general = contacts_at_length(a, b, &ContactOptions::default(), &mut Scratch::default());
                 let extent = bounds(a.shape, a.placement).unwrap().max.abs().max_element();
