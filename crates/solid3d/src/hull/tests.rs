@@ -3,9 +3,9 @@
 use super::Hull;
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
+use rand::Rng;
 use rand::rngs::StdRng;
-use rand::{Rng, SeedableRng};
-use solid_oracle::generate::in_cube;
+use solid_oracle::generate::{in_cube, seeded};
 use std::f64::consts::TAU;
 
 fn hull_of(points: &[DVec3]) -> Hull {
@@ -94,7 +94,7 @@ fn facets_are_cut_in_depth() {
 
 #[test]
 fn random_clouds() {
-    let mut rng = StdRng::seed_from_u64(1);
+    let mut rng = seeded(1);
     for n in [4, 5, 8, 30, 300, 2000] {
         let points: Vec<_> = (0..n).map(|_| in_cube(&mut rng)).collect();
         let hull = hull_of(&points);
@@ -106,7 +106,7 @@ fn random_clouds() {
 
 #[test]
 fn all_points_of_a_sphere_are_vertices() {
-    let mut rng = StdRng::seed_from_u64(2);
+    let mut rng = seeded(2);
     let points: Vec<_> = (0..1000).map(|_| on_sphere(&mut rng)).collect();
     let hull = hull_of(&points);
     assert_eq!(hull.vertices().len(), 1000);
@@ -129,7 +129,7 @@ fn a_grid_has_the_corners_of_a_box() {
 
 #[test]
 fn a_grid_of_any_order_and_affine_image_has_eight_vertices() {
-    let mut rng = StdRng::seed_from_u64(3);
+    let mut rng = seeded(3);
     for _ in 0..20 {
         // Small integer matrices keep the image exact.
         let m = DMat3::from_cols_array(&std::array::from_fn(|_| f64::from(rng.random_range(-9..=9i32))));
@@ -175,7 +175,7 @@ fn a_prism_with_many_coplanar_points() {
 
 #[test]
 fn flattened_clouds() {
-    let mut rng = StdRng::seed_from_u64(4);
+    let mut rng = seeded(4);
     for flatness in [1e-3, 1e-15, 1e-17, 1e-100] {
         let points: Vec<_> = (0..300).map(|_| in_cube(&mut rng) * DVec3::new(1.0, 1.0, flatness)).collect();
         let hull = hull_of(&points);
@@ -192,7 +192,7 @@ fn flattened_clouds() {
 
 #[test]
 fn slivers() {
-    let mut rng = StdRng::seed_from_u64(5);
+    let mut rng = seeded(5);
     for _ in 0..50 {
         // Points within some units in the last place of a line or of few places.
         let axis = in_cube(&mut rng);
@@ -208,7 +208,7 @@ fn slivers() {
 
 #[test]
 fn the_range_reaches_from_1e_minus_100_to_1e100() {
-    let mut rng = StdRng::seed_from_u64(6);
+    let mut rng = seeded(6);
     let points: Vec<_> = (0..100).map(|_| in_cube(&mut rng)).collect();
     let vertices = hull_of(&points).vertices().to_vec();
     for exponent in [-332, -100, 100, 332] {
@@ -299,7 +299,7 @@ proptest! {
             (corners, hull.dimension(), hull.triangles().len())
         };
         let before = corners(&points);
-        let mut rng = StdRng::seed_from_u64(seed);
+        let mut rng = seeded(seed);
         for i in (1..points.len()).rev() {
             points.swap(i, rng.random_range(0..=i));
         }
@@ -381,7 +381,7 @@ fn the_hulls_of_jolt() {
 #[test]
 #[ignore = "reports times: cargo test --release -p solid3d hull -- --ignored --nocapture"]
 fn times() {
-    let mut rng = StdRng::seed_from_u64(7);
+    let mut rng = seeded(7);
     for n in [100, 1_000, 10_000, 100_000, 1_000_000] {
         let sphere: Vec<_> = (0..n).map(|_| on_sphere(&mut rng)).collect();
         let cube: Vec<_> = (0..n).map(|_| in_cube(&mut rng)).collect();

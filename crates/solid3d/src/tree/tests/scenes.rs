@@ -3,13 +3,14 @@
 use crate::Aabb;
 use crate::tree::Relative;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
+use rand::Rng;
 use rand::rngs::StdRng;
-use rand::{Rng, SeedableRng};
+use solid_oracle::generate::seeded;
 use std::f64::consts::TAU;
 
 pub fn rng(seed: u64) -> StdRng {
     eprintln!("seed {seed}");
-    StdRng::seed_from_u64(seed)
+    seeded(seed)
 }
 
 /// A point within the cube of half side `side`.
