@@ -214,6 +214,12 @@ fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
             assert_eq!(answer, hit, "{context}");
             glanced += 1;
         }
+        let seen = levels().map(|level| {
+            dispatch!(level, simd => {
+                BallAndBody::new(simd, placed[0], placed[1]).map(|pair| (pair.closest(), pair.penetration()))
+            })
+        });
+        assert_eq!(seen[0], seen[1], "{context}");
         let [closest, depth] = [quickly_closest(a, b).is_some(), quickly_penetration(a, b).is_some()];
         assert!(closest || case % 3 == 0, "{context}");
         assert!(depth == hit || case % 3 == 0 || case / 3 % 5 < 2, "{context}");
@@ -316,7 +322,14 @@ fn a_quick_look_says_what_a_close_one_says() {
                 let found = levels().map(|level| dispatch!(level, simd => quick::closest(simd, a, b)));
                 assert_eq!(found[0], found[1]);
                 assert_eq!(found[0], in_unit(a, b, quickly_closest));
-                deep += usize::from(quickly_penetration(a, b).is_some());
+                let depths = levels().map(|level| match (a.shape.simple(), b.shape.simple()) {
+                    (Some(Simple::Round(x)), Some(Simple::Round(y))) => {
+                        dispatch!(level, simd => quick::penetration(simd, [&at_a, &at_b], [x, y]))
+                    }
+                    _ => None,
+                });
+                assert_eq!(depths[0], depths[1]);
+                deep += usize::from(depths[0].is_some());
                 assert_eq!(quickly_penetration(a, b), in_unit(a, b, quickly_penetration));
                 measured += usize::from(found[0].is_some());
                 apart += usize::from(found[0].is_some_and(|found| found.distance > 0.0));
