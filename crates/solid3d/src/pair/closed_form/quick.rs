@@ -10,7 +10,7 @@ use solid_convex::{Closest, Penetration, Witness};
 
 use super::GAP_MIN;
 use super::point::{extent, of_body};
-use super::round::{DISTANCE_ERROR, Products};
+use super::round::Products;
 use crate::pair::Placed;
 use crate::shape::{Body, Round, Simple};
 
@@ -28,7 +28,10 @@ const PLAIN_PARTS: RangeInclusive<f64> = 1e-58..=1e58;
 /// mapped there and back; more is as good, since few pairs are nearer.
 const ROUGH_GAP_MIN: f64 = 8.0 * STRETCH_ERROR;
 
-/// The error of a distance that is given out, in the margins of an answer.
+/// The error of a distance that is given out, relative to the size of the data: no more than GJK's.
+const DISTANCE_ERROR: f64 = 0.25 * solid_convex::gjk::TOUCHING_ERROR;
+
+/// The same in the margins of an answer.
 pub(super) const MARGIN_TO_ERROR: f64 = DISTANCE_ERROR / GAP_MIN;
 
 /// Whether two shapes intersect: squares of lengths against squares, and no evidence.

@@ -109,9 +109,6 @@ impl<'a> Cores<'a> {
     }
 }
 
-/// The error of a distance that is given out, relative to the size of the data: no more than GJK's.
-pub(super) const DISTANCE_ERROR: f64 = 0.25 * solid_convex::gjk::TOUCHING_ERROR;
-
 /// The scalar products of two segments: of their half axes `a` and `b`, and of the way `between` their middles, from the second to the first.
 pub(super) struct Products {
     aa: f64,
