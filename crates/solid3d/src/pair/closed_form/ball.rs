@@ -58,7 +58,7 @@ impl<'a> BallAndBody<'a> {
         let extent = extent(&kind)?;
         let view = View::of(simd, [ball.placement, body.placement])?;
         let margin = view.margin([radius, extent])?;
-        let center = view.local(1, -view.offset) / view.scales[1];
+        let center = view.other_origin(1) / view.scales[1];
         let foot = of_body(&kind, view.scales[1], center)?;
         let radius = radius * view.scales[0];
         Some(BallAndBody { view, center, foot, radius, margin })

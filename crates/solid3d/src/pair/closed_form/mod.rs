@@ -158,8 +158,8 @@ fn of_simple(a: Placed, b: Placed) -> Option<Relation> {
 
 /// The closest points; `None` where GJK has to find them.
 pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
-    let of_simple = || in_unit(a, b, quickly_closest);
-    let found = quickly_closest(a, b).or_else(|| if are_simple(a, b) { of_simple() } else { None });
+    let of_simple = || quickly_closest(a, b).or_else(|| in_unit(a, b, quickly_closest));
+    let found = if are_simple(a, b) { of_simple() } else { None };
     found.or_else(|| of_ball(a, b, |pair| pair.closest()))
 }
 

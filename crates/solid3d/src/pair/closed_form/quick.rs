@@ -96,7 +96,7 @@ pub(super) struct View<'a> {
     pub scales: [f64; 2],
     pub squares: [f64; 2],
     /// From the origin of the first to that of the second.
-    pub offset: DVec3,
+    offset: DVec3,
 }
 
 impl<'a> View<'a> {
@@ -155,7 +155,7 @@ impl<'a> View<'a> {
         if !PLAIN_SIZES.contains(&size) {
             return None;
         }
-        let center = self.local(k, if k == 1 { -self.offset } else { self.offset });
+        let center = self.other_origin(k);
         let gap = of_body(body, self.squares[k], center)?.distance - radius * unit;
         let margin = ROUGH_GAP_MIN * size * unit;
         (gap.abs() > margin).then_some(gap < 0.0)
@@ -311,10 +311,16 @@ impl<'a> View<'a> {
     /// A ball, and the box that is the `cuboid`th of the two.
     #[inline(always)]
     fn ball_and_box(&self, cuboid: usize, half: DVec3) -> CenterAndBox {
-        let center = self.local(cuboid, if cuboid == 1 { -self.offset } else { self.offset });
+        let center = self.other_origin(cuboid);
         let stretch_squared = self.squares[cuboid];
         let half = half * stretch_squared;
         CenterAndBox { center, on_box: center.clamp(-half, half), stretch_squared }
+    }
+
+    /// The origin of the other in the own space of one of the two, times the square of its scale.
+    #[inline(always)]
+    pub fn other_origin(&self, k: usize) -> DVec3 {
+        self.local(k, if k == 1 { -self.offset } else { self.offset })
     }
 
     /// A vector of the world in the own space of one of the two, times the square of its scale.

@@ -447,8 +447,7 @@ fn projected(face: &Face, flat: impl Fn(DVec3) -> DVec2) -> (SmallVec<[usize; 4]
     if all.len() >= 3 {
         let area = clip::area(&all).abs();
         // No two are further apart than twice what one is from the first: of most that is enough.
-        let extent_squared = all.iter().map(|p| p.distance_squared(all[0])).fold(0.0, f64::max);
-        if area <= THIN * 4.0 * extent_squared {
+        if area <= THIN * 4.0 * ring::extent_squared(&all) {
             let from = far(all[0]);
             let to = far(all[from]);
             if area <= THIN * all[from].distance_squared(all[to]) {

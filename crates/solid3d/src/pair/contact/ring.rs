@@ -45,7 +45,7 @@ pub(super) fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
 }
 
 /// The square of how far a polygon reaches from its first corner.
-fn extent_squared(polygon: &[DVec2]) -> f64 {
+pub(super) fn extent_squared(polygon: &[DVec2]) -> f64 {
     polygon.iter().map(|p| p.distance_squared(polygon[0])).fold(0.0, f64::max)
 }
 

@@ -10,7 +10,6 @@ use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::simd::level;
 
-use super::super::closed_form::Similarity;
 use super::super::frame::Frame;
 use super::super::reach::core;
 use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
@@ -49,9 +48,9 @@ pub(super) fn soup_body(
     let [map_a, map_b] = &pair.maps;
     let [map_soup, map_body] = if mirrored { [map_b, map_a] } else { [map_a, map_b] };
     let body = face::Placed::new(kind, map_body);
-    let round = core(*support).zip(Similarity::new(map_body.linear()));
-    let (ends, radius) = round.map_or(([DVec3::ZERO; 2], 0.0), |((ends, radius), similarity)| {
-        (ends.map(|end| map_body.point(end)), radius * similarity.stretch)
+    let round = core(*support).zip(map_body.stretch());
+    let (ends, radius) = round.map_or(([DVec3::ZERO; 2], 0.0), |((ends, radius), stretch)| {
+        (ends.map(|end| map_body.point(end)), radius * stretch)
     });
     let corners = match round {
         Some(_) if ends[0] == ends[1] => &ends[..1],
