@@ -123,17 +123,27 @@ fn bad_placements() -> Vec<(DAffine3, Vec<String>)> {
 
 #[test]
 fn bad_placements_are_refused_by_queries_on_either_side() {
-    let shapes = [Shape::sphere(1.0).unwrap(), Shape::mesh([DVec3::ZERO], [[0; 3]]).unwrap()];
+    // Of balls and bodies placements are looked at before they are checked.
+    let shapes = [
+        Shape::sphere(1.0),
+        Shape::mesh([DVec3::ZERO], [[0; 3]]),
+        Shape::capsule(0.5, 1.0),
+        Shape::cuboid([1.0, 2.0, 3.0]),
+        Shape::cylinder(0.5, 1.0),
+        Shape::convex_hull(&[DVec3::ZERO]),
+    ]
+    .map(Result::unwrap);
     let good = DAffine3::IDENTITY;
     for (bad, words) in bad_placements() {
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-            let (a, b) = (&shapes[a], &shapes[b]);
+        for (a, b) in shapes.iter().flat_map(|a| shapes.iter().map(move |b| (a, b))) {
             for (at_a, at_b) in [(&bad, &good), (&good, &bad), (&bad, &bad)] {
                 refused(query::intersects(a, at_a, b, at_b), &words);
                 refused(query::common_point(a, at_a, b, at_b), &words);
                 refused(query::distance(a, at_a, b, at_b), &words);
                 refused(query::separating_axis(a, at_a, b, at_b), &words);
+                refused(query::penetration(a, at_a, b, at_b), &words);
+                refused(query::contacts(a, at_a, b, at_b, &query::ContactOptions::default()), &words);
             }
         }
     }
