@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use foldhash::fast::RandomState;
 use glam::DVec3;
+use smallvec::SmallVec;
 
 use super::{Part, Patch};
 
@@ -30,13 +31,16 @@ enum Connections {
     /// By pairs of vertices, one of each surface: those of patch `i` are the groups `groups_of[starts[i]..starts[i + 1]]`.
     Grouped { groups: Vec<Neighbours>, groups_of: Vec<usize>, starts: Vec<usize> },
     /// All others that are not taken are looked at: there are fewer of them than of pairs of vertices, or those would be too many to keep.
-    Any(Vec<usize>),
+    Any(Members),
 }
+
+/// Members of the patches: at a pair of vertices mostly few.
+type Members = SmallVec<[usize; 4]>;
 
 /// Patches that have a vertex of each surface in common.
 struct Neighbours {
     /// Those of no region yet, and perhaps some that are of one.
-    patches: Vec<usize>,
+    patches: Members,
     /// The seed of the region that looked at them last.
     seen_by: Option<usize>,
 }
@@ -75,8 +79,8 @@ impl<'p> Joining<'p> {
         while let Some(&member) = members.get(next) {
             next += 1;
             // Of some patches those that are connected with the member become members, and those that are taken are left out.
-            let mut join = |some: &mut Vec<usize>, is_connected: &dyn Fn(usize) -> bool| {
-                some.retain(|&i| {
+            let mut join = |some: &mut Members, is_connected: &dyn Fn(usize) -> bool| {
+                some.retain(|&mut i| {
                     if !is_taken[i] && is_same(patches[i].normal, patches[seed].normal) && is_connected(i) {
                         is_taken[i] = true;
                         members.push(i);
@@ -105,20 +109,19 @@ impl<'p> Joining<'p> {
 
 impl Connections {
     fn grouped([of_a, of_b]: &[Corners; 2], patches: &[Patch]) -> Connections {
-        let (mut vertices, mut starts) = (Vec::new(), vec![0]);
-        for patch in patches {
-            let [i, j] = patch.touches[0].primitives;
-            vertices.extend(of_a[&i].iter().flat_map(|&x| of_b[&j].iter().map(move |&y| [x, y])));
-            starts.push(vertices.len());
-        }
-        let mut order: Vec<usize> = (0..vertices.len()).collect();
-        order.sort_unstable_by_key(|&place| (vertices[place], place));
-        let mut groups_of = vec![0; vertices.len()];
-        let mut groups = Vec::new();
-        for same in order.chunk_by(|&x, &y| vertices[x] == vertices[y]) {
-            same.iter().for_each(|&place| groups_of[place] = groups.len());
-            let patch = |&place: &usize| starts.partition_point(|&start| start <= place) - 1;
-            groups.push(Neighbours { patches: same.iter().map(patch).collect(), seen_by: None });
+        let mut group_of: HashMap<[u32; 2], usize, RandomState> = HashMap::default();
+        let (mut groups, mut groups_of, mut starts) = (Vec::new(), Vec::new(), vec![0]);
+        for (patch, Patch { touches, .. }) in patches.iter().enumerate() {
+            let [i, j] = touches[0].primitives;
+            for vertices in of_a[&i].iter().flat_map(|&x| of_b[&j].iter().map(move |&y| [x, y])) {
+                let group = *group_of.entry(vertices).or_insert(groups.len());
+                if group == groups.len() {
+                    groups.push(Neighbours { patches: Members::new(), seen_by: None });
+                }
+                groups[group].patches.push(patch);
+                groups_of.push(group);
+            }
+            starts.push(groups_of.len());
         }
         Connections::Grouped { groups, groups_of, starts }
     }

@@ -11,6 +11,7 @@
 
 mod ball;
 mod clip;
+mod difference;
 mod face;
 mod inside;
 mod joining;

@@ -10,6 +10,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use super::ball::{is_beside, way, way_along};
+use super::difference::{self, Polytope};
 use super::inside::Inside;
 use super::other::Other;
 use super::stars::{LEVEL, SAME_NORMAL, Shortest, Stars, is_parallel};
@@ -52,14 +53,20 @@ impl<'a> Side<'a> {
     }
 
     /// How a triangle and a body lie to each other, where that is known in closed form.
-    pub fn meeting_of_body(&self, inside: Option<&Inside>, mirrored: bool) -> Option<Meeting> {
+    pub fn meeting_of_body(
+        &self,
+        inside: Option<&Inside>,
+        cuboid: Option<&Polytope>,
+        mirrored: bool,
+    ) -> Option<Meeting> {
         let &[p, q, r] = self.corners else { return None };
         let triangle = [p, q, r];
         let way = match *self.other.corners {
             [center] => way(&triangle, center, self.other.radius)?,
             _ => inside
                 .and_then(|inside| inside.way(&triangle))
-                .or_else(|| through::way(&triangle, self.body.plane?, &self.other))?,
+                .or_else(|| through::way(&triangle, self.body.plane?, &self.other))
+                .or_else(|| difference::way(&Polytope::triangle(triangle), cuboid?))?,
         };
         Some(way.meeting(mirrored))
     }

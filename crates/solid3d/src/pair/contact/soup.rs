@@ -16,6 +16,8 @@ use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
 use super::super::table::PlacedConvex;
 use super::super::triangle_triangle::Triangle;
 use super::super::{Scratch, complex_convex, table, triangle_triangle};
+use super::ball::Way;
+use super::difference::{self, Polytope};
 use super::inside::Inside;
 use super::other::Other;
 use super::side::{Corrected, Side};
@@ -61,6 +63,7 @@ pub(super) fn soup_body(
     let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
     let stars = Stars::new(complex, map_soup, found.len());
     let inside = LazyCell::new(|| Inside::new(&body, found.len()));
+    let cuboid = LazyCell::new(|| Polytope::of(&body));
     let patch = |&primitive: &u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
@@ -89,12 +92,13 @@ pub(super) fn soup_body(
             Some(normal) => (normal, over(normal)),
             None => {
                 let must = pair.margin == 0.0;
-                let meeting = match side.meeting_of_body(inside.as_ref(), mirrored) {
-                    Some(meeting) if must => meeting.touching(),
-                    Some(meeting) => meeting.within(pair.margin)?,
-                    None if mirrored => pair.meeting(*support, &hull, must)?,
-                    None => pair.meeting(&hull, *support, must)?,
-                };
+                let meeting =
+                    match side.meeting_of_body(inside.as_ref(), cuboid.as_ref().filter(|_| must), mirrored) {
+                        Some(meeting) if must => meeting.touching(),
+                        Some(meeting) => meeting.within(pair.margin)?,
+                        None if mirrored => pair.meeting(*support, &hull, must)?,
+                        None => pair.meeting(&hull, *support, must)?,
+                    };
                 let corrected = side.corrected(meeting.normal * sign)?;
                 let touches = match corrected {
                     Corrected::Kept(normal) => touches(&Meeting { normal: normal * sign, ..meeting }),
@@ -216,30 +220,42 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     let patch = |(primitives, must): ([u32; 2], bool)| {
         let [i, j] = primitives;
         let (hull_a, hull_b) = (a.primitive_hull(i), b.primitive_hull(j));
-        let meeting = pair.meeting(&hull_a, &hull_b, must)?;
         let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
         let (corners_a, corners_b) = (stars_a.corners(i), stars_b.corners(j));
+        let in_each_other = must.then(|| way_of([&corners_a, &corners_b])).flatten();
+        let meeting = match in_each_other {
+            Some(way) => way.meeting(false),
+            None => pair.meeting(&hull_a, &hull_b, must)?,
+        };
         let placed_a = face::Placed::of_primitive(&body_a, i, map_a, &corners_a);
         let placed_b = face::Placed::of_primitive(&body_b, j, map_b, &corners_b);
         let other_a = Other { primitive: i, support: &hull_a, map: map_a, corners: &corners_a, radius: 0.0 };
         let other_b = Other { primitive: j, support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
         let of_a = Side::new(&stars_a, placed_a, &corners_a, other_b);
         let of_b = Side::new(&stars_b, placed_b, &corners_b, other_a);
-        let (on_a, on_b) = (of_a.corrected(-meeting.normal)?, of_b.corrected(meeting.normal)?);
-        let (normal, touches) = match (on_a, on_b) {
-            (_, Corrected::Replaced(normal)) => (normal, pair.over(&of_a.body, &of_b.body, normal, false)),
-            (Corrected::Replaced(normal), _) => (-normal, pair.over(&of_a.body, &of_b.body, -normal, true)),
-            (_, Corrected::Adopted(normal)) => (normal, pair.across(&of_a.body, &of_b.body, normal)),
-            (Corrected::Adopted(normal), _) => (-normal, pair.across(&of_a.body, &of_b.body, -normal)),
-            (_, kept) => {
-                let meeting = Meeting { normal: kept.normal(), ..meeting };
-                (meeting.normal, pair.touches(&of_a.body, &of_b.body, &meeting))
-            }
+        let (in_a, in_b) = (&of_a.body, &of_b.body);
+        let (normal, touches) = match of_b.corrected(meeting.normal)? {
+            Corrected::Replaced(normal) => (normal, pair.over(in_a, in_b, normal, false)),
+            on_b => match (of_a.corrected(-meeting.normal)?, on_b) {
+                (Corrected::Replaced(normal), _) => (-normal, pair.over(in_a, in_b, -normal, true)),
+                (_, Corrected::Adopted(normal)) => (normal, pair.across(in_a, in_b, normal)),
+                (Corrected::Adopted(normal), _) => (-normal, pair.across(in_a, in_b, -normal)),
+                (_, kept) => {
+                    let meeting = Meeting { normal: kept.normal(), ..meeting };
+                    (meeting.normal, pair.touches(in_a, in_b, &meeting))
+                }
+            },
         };
         let is_inward = of_a.is_inward(-normal) || of_b.is_inward(normal);
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     };
     found.into_iter().filter_map(patch).collect()
+}
+
+/// The shortest way out of two triangles that have a common point.
+fn way_of(corners: [&[DVec3]; 2]) -> Option<Way> {
+    let [&[p, q, r], &[x, y, z]] = corners else { return None };
+    difference::way(&Polytope::triangle([p, q, r]), &Polytope::triangle([x, y, z]))
 }
 
 /// The deepest point of two shapes as wholes: of what is wholly inside a solid, or touches by so little that no pair of primitives

@@ -22,14 +22,14 @@ pub(crate) struct Depths {
 }
 
 /// Roundings of 2^-53 of a cross product, relative to the product of the lengths of two edges.
-const CROSS_ERROR: f64 = 8.0 / (1u64 << 53) as f64;
+pub(crate) const CROSS_ERROR: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// The sine of the angle of two edges that are taken for parallel. Turning one of them into the direction of the other, after which they
 /// span no facet, moves no point of the difference by more than its length times this.
-const PARALLEL_SINE: f64 = 1.0 / (1u64 << 49) as f64;
+pub(crate) const PARALLEL_SINE: f64 = 1.0 / (1u64 << 49) as f64;
 
 /// The square of the length of an axis whose coordinates have been rounded as they should, not to numbers below the normal ones.
-const SQUARED_MIN: f64 = 1e-290;
+pub(crate) const SQUARED_MIN: f64 = 1e-290;
 
 /// How deep a triangle is in those of a row that meet it, in some lanes, given as bits. Whether a depth is below `bound` is all that need be
 /// known of it.

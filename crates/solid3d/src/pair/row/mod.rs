@@ -20,7 +20,7 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::{DAffine3, DVec3};
 
-pub(super) use depth::depths;
+pub(super) use depth::{CROSS_ERROR, PARALLEL_SINE, SQUARED_MIN, depths};
 pub(super) use distance::{CONFIRMED, Near, distances, distances_of_core};
 pub(crate) use rows::Rows;
 pub(super) use unit_box::{Cube, stretch_max};
