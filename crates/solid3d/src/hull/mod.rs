@@ -62,8 +62,8 @@ impl Hull {
     /// Exact while, on each axis, the coordinates other than zero differ in magnitude by a factor of at most 10^188;
     /// smaller ones count as zero. No other limit of range: the points are scaled by a power of two on each axis.
     ///
-    /// Expected cost O(n log n): 10,000 points on a sphere take about 25 ms. Bad inputs can make it O(n^2), as any
-    /// quickhull; nothing makes it fail.
+    /// Expected cost O(n log n), of prisms and other rings of many points, too: 10,000 points on a sphere take about 25 ms. Bad inputs can
+    /// make it O(n^2), as any quickhull; nothing makes it fail.
     ///
     /// # Panics
     /// If a coordinate is not finite, or if there are more than `u32::MAX / 8` points.

@@ -12,6 +12,8 @@
 //!
 //! A face coplanar with the new site stays, and the new face beside it continues its plane; `facets` merges them.
 
+use std::collections::VecDeque;
+
 use super::exact::{Site, Sites};
 
 /// No face or no site.
@@ -53,32 +55,46 @@ struct Quickhull<'a> {
 /// The triangles of the hull of the sites, given four that span space. Corners, and the indices of the faces beyond the
 /// edges.
 pub(super) fn surface(sites: &Sites, simplex: [Site; 4]) -> Vec<Face> {
-    let mut hull = Quickhull {
-        sites,
-        faces: Vec::new(),
-        free: Vec::new(),
-        next_outside: vec![NONE; sites.len() as usize],
-        new_face_from: vec![NONE; sites.len() as usize],
-    };
-    hull.start(simplex);
-    let mut to_do: Vec<u32> = vec![0, 1, 2, 3];
-    let (mut visible, mut new_faces) = (Vec::new(), Vec::new());
-    // Each turn drops a face from the list or makes a site a vertex; a site is made a vertex at most once.
-    while let Some(&face) = to_do.last() {
-        let Face { outside, state, .. } = hull.faces[face as usize];
-        if state != State::OnHull || outside == NONE {
-            to_do.pop();
-            continue;
-        }
-        hull.find_visible(face, outside, &mut visible);
-        hull.make_cone(outside, &visible, &mut new_faces);
-        hull.hand_over(outside, &visible, &new_faces);
-        to_do.extend_from_slice(&new_faces);
-    }
+    let mut hull = Quickhull::new(sites);
+    hull.grow(simplex);
     hull.compacted()
 }
 
-impl Quickhull<'_> {
+impl<'a> Quickhull<'a> {
+    fn new(sites: &'a Sites) -> Self {
+        let of_each = vec![NONE; sites.len() as usize];
+        Quickhull {
+            sites,
+            faces: Vec::new(),
+            free: Vec::new(),
+            next_outside: of_each.clone(),
+            new_face_from: of_each,
+        }
+    }
+
+    /// Makes a vertex of each site that is one. Returns how many faces were made on the way.
+    fn grow(&mut self, simplex: [Site; 4]) -> usize {
+        self.start(simplex);
+        // The oldest first, so that the hull grows on all sides: of two rings, one after the other, each site of the second sees half of a ring.
+        let mut to_do = VecDeque::from([0, 1, 2, 3]);
+        let (mut visible, mut new_faces) = (Vec::new(), Vec::new());
+        let mut made = to_do.len();
+        // Each turn drops a face from the list or makes a site a vertex; a site is made a vertex at most once.
+        while let Some(&face) = to_do.front() {
+            let Face { outside, state, .. } = self.faces[face as usize];
+            if state != State::OnHull || outside == NONE {
+                to_do.pop_front();
+                continue;
+            }
+            self.find_visible(face, outside, &mut visible);
+            self.make_cone(outside, &visible, &mut new_faces);
+            self.hand_over(outside, &visible, &new_faces);
+            made += new_faces.len();
+            to_do.extend(new_faces.iter().filter(|&&face| self.faces[face as usize].outside != NONE));
+        }
+        made
+    }
+
     fn start(&mut self, [a, b, c, d]: [Site; 4]) {
         let (b, c) = if self.sites.height([a, b, c], d) > 0.0 { (c, b) } else { (b, c) };
         let faces =
@@ -199,5 +215,41 @@ impl Quickhull<'_> {
             face.beyond = face.beyond.map(|old| new_index[old as usize]);
         }
         faces
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use glam::DVec3;
+
+    use super::*;
+
+    /// Law: a site makes as many faces as it sees edges of the horizon, on average a few, also of a prism, of two rings that are linked, and of one in
+    /// front of another, where half of them would be seen if one ring were done first.
+    #[test]
+    fn a_site_makes_few_faces() {
+        const SIDES: u32 = 4000;
+        let ring = |at: &dyn Fn(f64, f64) -> DVec3| -> Vec<DVec3> {
+            (0..SIDES)
+                .map(|i| (f64::from(i) / f64::from(SIDES) * TAU).sin_cos())
+                .map(|(s, c)| at(s, c))
+                .collect()
+        };
+        let bottom = ring(&|s, c| DVec3::new(c, -1.0, s));
+        let beside: [Vec<DVec3>; 3] = [
+            ring(&|s, c| DVec3::new(c, 1.0, s)),
+            ring(&|s, c| DVec3::new(0.5 * c, 1.0, 0.5 * s)),
+            ring(&|s, c| DVec3::new(c + 1.0, s - 1.0, 0.0)),
+        ];
+        for (case, other) in beside.into_iter().enumerate() {
+            let sites = Sites::new(&[&bottom[..], &other].concat());
+            let quarter = [0, SIDES / 3, 2 * SIDES / 3, SIDES + 1].map(|i| {
+                (0..sites.len()).find(|&site| sites.input(site) == i).expect("no two points are one")
+            });
+            let made = Quickhull::new(&sites).grow(quarter);
+            assert!(made < 8 * sites.len() as usize, "case {case}: {made} faces for {} sites", sites.len());
+        }
     }
 }
