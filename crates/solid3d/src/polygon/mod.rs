@@ -85,7 +85,7 @@ pub struct Polygon {
 impl Polygon {
     /// The polygon bounded by a closed chain: the last vertex is joined to the first. Vertices may be collinear, repeated, even
     /// all the same; they must be coplanar, up to [`FLATNESS_TOLERANCE`]. That edges do not cross is not checked here, since it
-    /// costs O(n^2): see [`simple`](Polygon::simple). Cost: O(n).
+    /// takes longer: see [`simple`](Polygon::simple). Cost: O(n).
     ///
     /// ```
     /// use solid3d::{glam::DVec3, polygon::Polygon};
@@ -169,7 +169,8 @@ impl Polygon {
         Polygon::new(chain.iter().map(|&i| vertices[i as usize]).collect::<Vec<_>>())?.simple()
     }
 
-    /// The polygon itself, if none of its edges cross. Exact. Edges that touch, also along a piece, do not cross. Cost: O(n^2).
+    /// The polygon itself, if none of its edges cross. Exact. Edges that touch, also along a piece, do not cross. Cost: O(n log n), and a
+    /// look at each pair of edges that are about the same x.
     ///
     /// ```
     /// use solid3d::{glam::DVec3, polygon::Polygon};

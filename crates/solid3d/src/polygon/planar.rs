@@ -45,13 +45,20 @@ pub(super) fn contains_beside(chain: &[DVec2], x: DVec2, through: DVec2, sense: 
     edges(chain).filter(crosses).count() % 2 == 1
 }
 
-/// Two edges that cross, by their places.
+/// The first two edges that cross, by their places. Cost: O(n log n), and a look at each pair that is about the same x.
 pub(super) fn crossing(chain: &[DVec2]) -> Option<[usize; 2]> {
     let edge = |i: usize| (chain[i], chain[(i + 1) % chain.len()]);
-    (0..chain.len()).find_map(|i| {
-        let (p, q) = edge(i);
-        (i + 1..chain.len()).find(|&j| segments_cross(p, q, edge(j).0, edge(j).1)).map(|j| [i, j])
-    })
+    let from = |i: usize| edge(i).0.x.min(edge(i).1.x);
+    let mut order: Vec<usize> = (0..chain.len()).collect();
+    order.sort_by(|&i, &j| from(i).total_cmp(&from(j)));
+    let crossing_later = |k: usize| {
+        let (p, q) = edge(order[k]);
+        let to = p.x.max(q.x);
+        let near = order[k + 1..].iter().take_while(move |&&j| from(j) <= to);
+        let crossed = near.filter(move |&&j| segments_cross(p, q, edge(j).0, edge(j).1));
+        crossed.map(|&j| [j.min(order[k]), j.max(order[k])]).min()
+    };
+    (0..order.len()).filter_map(crossing_later).min()
 }
 
 /// Twice the area, positive when the chain runs counter-clockwise; up to rounding.
@@ -79,4 +86,34 @@ pub(super) fn is_convex(chain: &[DVec2]) -> bool {
         reversals += u32::from(goes_up(p, q) != goes_up(q, r));
     }
     !(left && right) && reversals <= 2
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
+    use super::*;
+
+    /// Law: two edges cross when looking at all pairs finds some, and they are the first of those; also where many edges share an x.
+    #[test]
+    fn the_first_crossing_is_found() {
+        let mut rng = seeded(178);
+        let (mut crossed, mut not) = (0, 0);
+        for case in 0..4000 {
+            let count = rng.random_range(3..[5, 12][case % 2]);
+            let mut coordinate = || match case % 3 {
+                0 => f64::from(rng.random_range(0..4)),
+                _ => rng.random_range(-1.0..1.0),
+            };
+            let chain: Vec<DVec2> = (0..count).map(|_| DVec2::new(coordinate(), coordinate())).collect();
+            let all: Vec<_> = edges(&chain).collect();
+            let crosses = |&[i, j]: &[usize; 2]| segments_cross(all[i].0, all[i].1, all[j].0, all[j].1);
+            let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| [i, j]));
+            let expected = pairs.into_iter().find(crosses);
+            assert_eq!(crossing(&chain), expected, "case {case}: {chain:?}");
+            *(if expected.is_some() { &mut crossed } else { &mut not }) += 1;
+        }
+        assert!(crossed > 1000 && not > 1000, "{crossed}, {not}");
+    }
 }

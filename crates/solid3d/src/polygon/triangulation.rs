@@ -5,6 +5,8 @@
 //! it stays a covering of the polygon when the vertices move. (The crate `earcut` drops collinear vertices, which leaves gaps once
 //! they move, and all that has no area.)
 
+use std::collections::BTreeSet;
+
 use glam::DVec2;
 
 use super::exact::turn;
@@ -15,13 +17,14 @@ use super::planar;
 /// For a chain that crosses itself the triangles are n - 2 all the same, but cover something else.
 pub(super) fn triangulate(chain: &[DVec2]) -> Vec<[u32; 3]> {
     let sense = if planar::doubled_area(chain) < 0.0 { -1.0 } else { 1.0 };
-    let mut rest = Rest { chain, sense, places: (0..chain.len()).collect() };
+    let mut rest = Rest { chain, sense, places: (0..chain.len()).collect(), folds: BTreeSet::new() };
+    (0..chain.len()).for_each(|i| rest.note(i));
     let mut triangles = Vec::with_capacity(chain.len().saturating_sub(2));
     let mut start = 0;
     while rest.places.len() > 3 {
         let ear = rest.find(start);
         triangles.push(rest.corner(ear).map(|place| place as u32));
-        rest.places.remove(ear);
+        rest.cut(ear);
         // Going on behind the neighbour makes fewer slivers than cutting a fan.
         start = if ear + 1 < rest.places.len() { ear + 1 } else { 0 };
     }
@@ -37,6 +40,8 @@ struct Rest<'a> {
     /// 1 for a chain that runs counter-clockwise, else -1.
     sense: f64,
     places: Vec<usize>,
+    /// The places where it folds: where it turns back, or a vertex is repeated.
+    folds: BTreeSet<usize>,
 }
 
 impl Rest<'_> {
@@ -44,23 +49,40 @@ impl Rest<'_> {
     fn find(&self, start: usize) -> usize {
         let n = self.places.len();
         let around = || (0..n).map(|k| (start + k) % n);
-        let first = around().find(|&i| self.is_tip(i)).or_else(|| around().find(|&i| self.is_ear(i)));
+        let tip = if self.folds.is_empty() { None } else { around().find(|&i| self.is_tip(i)) };
+        let first = tip.or_else(|| around().find(|&i| self.is_ear(i)));
         first.or_else(|| around().find(|&i| self.turn(self.corner(i)) == 0.0)).unwrap_or(start)
+    }
+
+    /// Cuts off a corner.
+    fn cut(&mut self, i: usize) {
+        let n = self.places.len() - 1;
+        self.folds.remove(&self.places.remove(i));
+        self.note((i + n - 1) % n);
+        self.note(i % n);
+    }
+
+    /// Notes whether a corner is a fold, once it or one beside it is another.
+    fn note(&mut self, i: usize) {
+        let corner = self.corner(i);
+        let [a, v, b] = corner.map(|place| self.chain[place]);
+        let repeats = a == v || v == b;
+        if repeats || self.turn(corner) == 0.0 && (a - v).dot(b - v) > 0.0 {
+            self.folds.insert(corner[1]);
+        } else {
+            self.folds.remove(&corner[1]);
+        }
     }
 
     /// Whether the corner is the tip of an antenna, or repeats a vertex. Such corners go first: beside them others look like
     /// ears that are not. A slit has a tip, too, but with the polygon around it.
     fn is_tip(&self, i: usize) -> bool {
-        let corner = self.corner(i);
-        let [a, v, b] = corner.map(|place| self.chain[place]);
-        if a == v || v == b {
-            return true;
-        }
-        let turns_back = self.turn(corner) == 0.0 && (a - v).dot(b - v) > 0.0;
-        turns_back && {
-            let others: Vec<DVec2> =
-                self.places.iter().filter(|&&place| place != corner[1]).map(|&p| self.chain[p]).collect();
-            !planar::contains_strictly(&others, v)
+        let place = self.places[i];
+        self.folds.contains(&place) && {
+            let [a, v, b] = self.corner(i).map(|place| self.chain[place]);
+            let others =
+                || self.places.iter().filter(|&&other| other != place).map(|&other| self.chain[other]);
+            a == v || v == b || !planar::contains_strictly(&others().collect::<Vec<_>>(), v)
         }
     }
 
@@ -96,12 +118,12 @@ impl Rest<'_> {
         let [a, v, b] = ear;
         let [at_a, at_v, at_b] = ear.map(|place| self.chain[place]);
         let (low, high) = (at_a.min(at_v).min(at_b), at_a.max(at_v).max(at_b));
-        (0..self.places.len()).all(|j| {
-            let [before, w, after] = self.corner(j);
+        self.places.iter().enumerate().all(|(j, &w)| {
             let x = self.chain[w];
-            if w == a || w == v || w == b || x.cmplt(low).any() || x.cmpgt(high).any() {
+            if x.cmplt(low).any() || x.cmpgt(high).any() || w == a || w == v || w == b {
                 return true;
             }
+            let [before, _, after] = self.corner(j);
             if x == at_v {
                 // The chain comes by again; it may leave into the triangle and out of its far side.
                 let enters = |y: usize| self.turn([a, v, y]) > 0.0 && self.turn([v, b, y]) > 0.0;
