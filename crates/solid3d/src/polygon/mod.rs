@@ -20,9 +20,11 @@
 //!
 //! From the ground: `exact` (signs), `planar` (chains in the plane), `chain` (the vertices, and three that stand for the plane),
 //! `segment` (segment against polygon), `section` (polygon against plane), `overlap` (Algorithms 3.1 and 3.2), `pair` and
-//! `intersection` (polygon against polygon), `sphere`, `cuboid`; `triangulation` and `holes` work on chains in the plane.
+//! `intersection` (polygon against polygon), `sphere`, `cuboid`; `triangulation` and `holes`, with `bridges` and `corner`, work on chains in the plane.
 
+mod bridges;
 mod chain;
+mod corner;
 mod counters;
 mod cuboid;
 mod error;
@@ -352,7 +354,7 @@ impl Polygon {
 /// Makes one closed chain of a boundary and the holes in it, by doubled edges; all are indices into `vertices`, and so is the
 /// result, which runs as `outer` does (thesis, section 2.1.1). Each hole is connected by the shortest of the edges between vertices
 /// that touch nothing else, which is decided exactly. Holes may run either way, and may touch the boundary and each other, along edges too.
-/// Cost: O(n^2 log n), at worst O(n^3).
+/// Cost: O(n^2), at worst O(n^3).
 ///
 /// ```
 /// use solid3d::{glam::DVec3, polygon::join_holes};
