@@ -189,7 +189,7 @@ mod tests {
     #[test]
     fn hubs_change_nothing() {
         let mut rng = seeded(151);
-        let [mut adopted, mut others, mut beside] = [0; 3];
+        let [mut adopted, mut others, mut beside, mut laid_out] = [0; 4];
         for case in 0..600 {
             let shape = fan(&mut rng, case % 2 == 0);
             let Class::Complex(complex) = shape.class() else { unreachable!("a mesh is complex") };
@@ -224,7 +224,9 @@ mod tests {
                 );
                 *(if matches!(found, Corrected::Adopted(_)) { &mut adopted } else { &mut others }) += 1;
             }
+            laid_out += usize::from(with_hubs.has_laid_out());
         }
         assert!(adopted > 2_000 && others > 2_000 && beside > 2_000, "{adopted}, {others}, {beside}");
+        assert!(laid_out > 100, "{laid_out}");
     }
 }

@@ -1,10 +1,11 @@
 //! What lies around the vertices of a placed soup, and which normals its surface has there.
 
 use std::cell::{Cell, OnceCell, RefCell};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use glam::DVec3;
 use smallvec::SmallVec;
+use solid_convex::{Polytope, Support};
 
 use super::face;
 use super::map::Map;
@@ -21,6 +22,12 @@ pub(super) const SAME_NORMAL: f64 = 1e-6;
 /// What is kept of a vertex takes longer than looking at so few triangles again.
 const HUB_MIN: usize = 32;
 
+/// All around a hub are looked at so often, one after the other, before their corners are laid out for vectors.
+const LOOKS: usize = 8;
+
+/// So many corners of them are compared at once.
+const PART: usize = 128;
+
 /// The stars of the vertices of a soup: the primitives around each.
 pub(super) struct Stars<'a> {
     complex: &'a Complex,
@@ -32,11 +39,20 @@ pub(super) struct Stars<'a> {
     /// What was found at a hub, or at an edge from one vertex to another, beside a primitive of the other shape: all around it ask for the same.
     /// Two of them, along normals that are not parallel, for whom one is that of its own.
     shortest: RefCell<HashMap<[u32; 3], [Shortest; 2]>>,
+    /// What is around a hub, or around an edge from one to another.
+    hubs: RefCell<HashMap<[u32; 2], Hub>>,
     /// The last vertex that had a normal, and that in local space: a face lies on all around it.
     last: Cell<Option<(u32, DVec3)>>,
     /// The planes of triangles around those that meet the other, of which there are so many; once they are asked for.
     planes: OnceCell<Planes>,
     found: usize,
+}
+
+/// How many of the primitives around a hub were looked at, one after the other, and the corners of all, once these were many.
+#[derive(Default)]
+struct Hub {
+    looked_at: usize,
+    parts: Vec<Polytope>,
 }
 
 /// The normal along which the way out is the shortest.
@@ -52,8 +68,9 @@ impl<'a> Stars<'a> {
         let turned = map.linear().determinant().signum();
         let orientation =
             if complex.is_solid() { complex.topology().enclosed().orientation * turned } else { 0.0 };
-        let (shortest, last, planes) = (RefCell::default(), Cell::new(None), OnceCell::new());
-        Stars { complex, map, orientation, hub_min: HUB_MIN, shortest, last, planes, found }
+        let (shortest, hubs) = (RefCell::default(), RefCell::default());
+        let (last, planes) = (Cell::new(None), OnceCell::new());
+        Stars { complex, map, orientation, hub_min: HUB_MIN, shortest, hubs, last, planes, found }
     }
 
     /// Where the corners of a primitive are.
@@ -89,17 +106,50 @@ impl<'a> Stars<'a> {
         let highest = vertices.iter().map(|&i| height(i)).fold(f64::NEG_INFINITY, f64::max);
         let is_touched = |vertex: &u32| height(*vertex) >= highest - LEVEL;
         let touched: SmallVec<[u32; 4]> = vertices.iter().copied().filter(is_touched).collect();
-        let is_below =
-            |primitive| self.complex.points_of(primitive).all(|point| local.dot(point) <= highest + LEVEL);
         let star = (touched.len() == 1).then(|| (touched[0], local));
         if star.is_some() && star == self.last.get() {
             return true;
         }
-        let has = self.around_all(&touched).all(is_below);
+        let has = self.are_below(&touched, local, highest + LEVEL);
         if has {
             self.last.set(star);
         }
         has
+    }
+
+    /// Whether all primitives that have some vertices are below a height along a direction. Space: local.
+    fn are_below(&self, vertices: &[u32], direction: DVec3, height: f64) -> bool {
+        let around = || self.around_all(vertices).map(|primitive| self.complex.primitive(primitive));
+        let place = |&vertex: &u32| self.complex.vertices()[vertex as usize];
+        let is_below = |corners: &[u32]| corners.iter().all(|corner| direction.dot(place(corner)) <= height);
+        let Some(ends) = self.hub(vertices) else { return around().all(is_below) };
+        let hubs = &mut *self.hubs.borrow_mut();
+        let Hub { looked_at, parts } = hubs.entry(ends).or_default();
+        if *looked_at > LOOKS * self.around(ends[0]).len() {
+            if parts.is_empty() {
+                let corners: BTreeSet<u32> = around().flatten().copied().collect();
+                let corners: Vec<DVec3> = corners.iter().map(place).collect();
+                parts.extend(corners.chunks(PART).filter_map(|part| Polytope::new(part.to_vec())));
+            }
+            return parts.iter().all(|part| direction.dot(part.support(direction)) <= height);
+        }
+        around().inspect(|_| *looked_at += 1).all(is_below)
+    }
+
+    /// The hub, or the ends of an edge from one to another, if that is what some vertices are.
+    fn hub(&self, vertices: &[u32]) -> Option<[u32; 2]> {
+        let ends = match *vertices {
+            [hub] => [hub; 2],
+            [from, to] => [from.min(to), from.max(to)],
+            _ => return None,
+        };
+        ends.iter().all(|&end| self.is_hub(end)).then_some(ends)
+    }
+
+    /// Whether some hub was looked at so often that what is around it is laid out.
+    #[cfg(test)]
+    pub fn has_laid_out(&self) -> bool {
+        self.hubs.borrow().values().any(|hub| !hub.parts.is_empty())
     }
 
     /// Whether the surface is flat all around a triangle.
