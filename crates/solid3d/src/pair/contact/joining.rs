@@ -12,6 +12,15 @@ use super::{Part, Patch};
 /// Normals that differ by less than this angle, in radians, are one.
 const SAME_NORMAL: f64 = 1e-3;
 
+/// Among more patches than so many, those are looked up whose normals are about as high along [`SKEW`].
+const MANY: usize = 16;
+
+/// A direction along which normals seldom are equally high that are not the same.
+const SKEW: DVec3 = DVec3::new(0.36, 0.48, 0.8);
+
+/// Normals that are one are no further from each other along that.
+const SAME_HEIGHT: f64 = 1.01 * SAME_NORMAL;
+
 /// So many pairs of vertices are kept of each patch, on average: two boxes have 64.
 const MOST_CONNECTIONS: usize = 100;
 
@@ -28,19 +37,25 @@ type Corners = HashMap<u32, Vec<u32>, RandomState>;
 
 /// How the patches are found with which one is connected.
 enum Connections {
-    /// By pairs of vertices, one of each surface: those of patch `i` are the groups `groups_of[starts[i]..starts[i + 1]]`.
-    Grouped { groups: Vec<Neighbours>, groups_of: Vec<usize>, starts: Vec<usize> },
+    /// By pairs of vertices, one of each surface.
+    Grouped(Groups),
     /// All others that are not taken are looked at: there are fewer of them than of pairs of vertices, or those would be too many to keep.
-    Any(Members),
+    Any(Vec<usize>),
 }
 
-/// Members of the patches: at a pair of vertices mostly few.
-type Members = SmallVec<[usize; 4]>;
+/// The patches at each pair of vertices. Those of patch `i` are the groups `groups_of[starts[i]..starts[i + 1]]`.
+struct Groups {
+    groups: Vec<Neighbours>,
+    groups_of: Vec<usize>,
+    starts: Vec<usize>,
+    /// How high the normal of each patch is along [`SKEW`].
+    heights: Vec<f64>,
+}
 
 /// Patches that have a vertex of each surface in common.
 struct Neighbours {
-    /// Those of no region yet, and perhaps some that are of one.
-    patches: Members,
+    /// Mostly few; more than [`MANY`] by their heights.
+    patches: SmallVec<[usize; 4]>,
     /// The seed of the region that looked at them last.
     seen_by: Option<usize>,
 }
@@ -61,7 +76,7 @@ impl<'p> Joining<'p> {
             count += of_a as u64 * of_b as u64;
         }
         let connections = if count <= most as u64 * patches.len() as u64 {
-            Connections::grouped(&corners, patches)
+            Connections::Grouped(Groups::new(&corners, patches))
         } else {
             Connections::Any((0..patches.len()).collect())
         };
@@ -78,28 +93,20 @@ impl<'p> Joining<'p> {
         let mut next = 0;
         while let Some(&member) = members.get(next) {
             next += 1;
-            // Of some patches those that are connected with the member become members, and those that are taken are left out.
-            let mut join = |some: &mut Members, is_connected: &dyn Fn(usize) -> bool| {
-                some.retain(|&mut i| {
-                    if !is_taken[i] && is_same(patches[i].normal, patches[seed].normal) && is_connected(i) {
-                        is_taken[i] = true;
-                        members.push(i);
-                    }
-                    !is_taken[i]
-                });
+            let mut take = |i: usize, is_connected: &dyn Fn() -> bool| {
+                if !is_taken[i] && is_same(patches[i].normal, patches[seed].normal) && is_connected() {
+                    is_taken[i] = true;
+                    members.push(i);
+                }
+                is_taken[i]
             };
             match connections {
                 Connections::Any(left) => {
-                    join(left, &|i| are_connected(corners, &patches[i], &patches[member]))
+                    left.retain(|&i| !take(i, &|| are_connected(corners, &patches[i], &patches[member])));
                 }
-                Connections::Grouped { groups, groups_of, starts } => {
-                    for &group in &groups_of[starts[member]..starts[member + 1]] {
-                        let neighbours = &mut groups[group];
-                        if neighbours.seen_by.replace(seed) != Some(seed) {
-                            join(&mut neighbours.patches, &|_| true);
-                        }
-                    }
-                }
+                Connections::Grouped(groups) => groups.look_around(member, seed, |i| {
+                    take(i, &|| true);
+                }),
             }
         }
         members.sort_unstable();
@@ -107,8 +114,9 @@ impl<'p> Joining<'p> {
     }
 }
 
-impl Connections {
-    fn grouped([of_a, of_b]: &[Corners; 2], patches: &[Patch]) -> Connections {
+impl Groups {
+    fn new([of_a, of_b]: &[Corners; 2], patches: &[Patch]) -> Groups {
+        let heights: Vec<f64> = patches.iter().map(|patch| patch.normal.dot(SKEW)).collect();
         let mut group_of: HashMap<[u32; 2], usize, RandomState> = HashMap::default();
         let (mut groups, mut groups_of, mut starts) = (Vec::new(), Vec::new(), vec![0]);
         for (patch, Patch { touches, .. }) in patches.iter().enumerate() {
@@ -116,14 +124,37 @@ impl Connections {
             for vertices in of_a[&i].iter().flat_map(|&x| of_b[&j].iter().map(move |&y| [x, y])) {
                 let group = *group_of.entry(vertices).or_insert(groups.len());
                 if group == groups.len() {
-                    groups.push(Neighbours { patches: Members::new(), seen_by: None });
+                    groups.push(Neighbours { patches: SmallVec::new(), seen_by: None });
                 }
                 groups[group].patches.push(patch);
                 groups_of.push(group);
             }
             starts.push(groups_of.len());
         }
-        Connections::Grouped { groups, groups_of, starts }
+        for Neighbours { patches, .. } in groups.iter_mut().filter(|group| group.patches.len() > MANY) {
+            patches.sort_by(|&i, &j| heights[i].total_cmp(&heights[j]));
+        }
+        Groups { groups, groups_of, starts, heights }
+    }
+
+    /// Tells all patches that have a pair of vertices with one in common, and may have the normal of a seed that has not been there.
+    fn look_around(&mut self, patch: usize, seed: usize, mut tell: impl FnMut(usize)) {
+        let Groups { groups, groups_of, starts, heights } = self;
+        for &group in &groups_of[starts[patch]..starts[patch + 1]] {
+            let Neighbours { patches, seen_by } = &mut groups[group];
+            if seen_by.replace(seed) == Some(seed) {
+                continue;
+            }
+            let [from, to] = [-1.0, 1.0].map(|sign| heights[seed] + sign * SAME_HEIGHT);
+            let near = match patches.len() > MANY {
+                true => {
+                    patches.partition_point(|&i| heights[i] < from)
+                        ..patches.partition_point(|&i| heights[i] <= to)
+                }
+                false => 0..patches.len(),
+            };
+            patches[near].iter().for_each(|&i| tell(i));
+        }
     }
 }
 

@@ -171,17 +171,44 @@ impl<'a> Stars<'a> {
             let all = [from, to];
             let vertices = if from == to { &all[..1] } else { &all };
             let corners: SmallVec<[DVec3; 2]> = vertices.iter().map(|&vertex| self.place(vertex)).collect();
-            let besides = |known: Option<DVec3>| {
-                let mut shortest = Shortest { depth: f64::INFINITY, normal: None };
-                for triangle in self.around_all(vertices) {
-                    self.shorten(&mut shortest, triangle, (vertices, &corners), known, other);
-                }
-                shortest
-            };
+            let besides = |known| self.shortest_of_all((vertices, &corners), known, other);
             let first = besides(None);
             [first, first.normal.map_or(first, |normal| besides(Some(normal)))]
         });
         if first.normal.is_some_and(|normal| is_parallel(normal, known)) { second } else { first }
+    }
+
+    /// The shortest way out along the normal of a triangle that has all of some vertices, or its opposite, as far as the surface has that there. The
+    /// others go first, so that few are looked at around the vertices.
+    fn shortest_of_all(
+        &self,
+        (vertices, corners): (&[u32], &[DVec3]),
+        known: Option<DVec3>,
+        other: &Other,
+    ) -> Shortest {
+        let mut ways = Vec::new();
+        for triangle in self.around_all(vertices) {
+            let Plane { normal, depths, .. } = self.plane(triangle, other);
+            let is_other = known.is_none_or(|known| !is_parallel(normal, known));
+            if is_other && depths[0] < f64::INFINITY {
+                ways.extend([(depths[0], triangle, 1.0), (depths[1], triangle, -1.0)]);
+            }
+        }
+        let leads_out = |&&(_, triangle, sign): &&(f64, u32, f64)| {
+            self.leads_out(&self.plane(triangle, other), sign, triangle, (vertices, corners))
+        };
+        let by_depth = |x: &(f64, u32, f64), y: &(f64, u32, f64)| x.0.total_cmp(&y.0);
+        let shortest = |&(depth, triangle, sign): &(f64, u32, f64)| Shortest {
+            depth,
+            normal: Some(self.plane(triangle, other).normal * sign),
+        };
+        // It mostly is the first; to find that takes less than to sort all.
+        let first = ways.iter().min_by(|x, y| by_depth(x, y)).filter(leads_out).map(shortest);
+        first.unwrap_or_else(|| {
+            ways.sort_by(by_depth); // stable
+            let found = ways.iter().find(leads_out).map(shortest);
+            found.unwrap_or(Shortest { depth: f64::INFINITY, normal: None })
+        })
     }
 
     /// Takes the way out along the normal of a triangle, or its opposite, where it is shorter and the surface has that at what the
@@ -195,8 +222,7 @@ impl<'a> Stars<'a> {
         known: Option<DVec3>,
         other: &Other,
     ) {
-        let planes = self.planes.get_or_init(|| Planes::new(self.found));
-        let plane = planes.beside(other, triangle, || self.normal_and_point(triangle));
+        let plane = self.plane(triangle, other);
         if plane.depths[0] < shortest.depth || plane.depths[1] < shortest.depth {
             self.shorten_along(plane, shortest, triangle, (vertices, corners), known);
         }
@@ -204,25 +230,43 @@ impl<'a> Stars<'a> {
 
     fn shorten_along(
         &self,
-        Plane { normal, height, depths }: Plane,
+        plane: Plane,
         shortest: &mut Shortest,
         triangle: u32,
-        (vertices, corners): (&[u32], &[DVec3]),
+        shared: (&[u32], &[DVec3]),
         known: Option<DVec3>,
     ) {
-        if known.is_some_and(|known| is_parallel(normal, known)) {
+        if known.is_some_and(|known| is_parallel(plane.normal, known)) {
             return;
         }
-        for (sign, depth) in [1.0, -1.0].into_iter().zip(depths) {
-            let is_outward = self.orientation * sign >= 0.0;
-            let is_above = |corner: &DVec3| sign * (normal.dot(*corner) - height) > LEVEL;
-            if depth < shortest.depth && is_outward && !corners.iter().any(is_above) {
-                let shared = vertices.iter().copied().filter(|&vertex| self.has(triangle, vertex));
-                if self.have(normal * sign, &shared.collect::<SmallVec<[u32; 4]>>()) {
-                    *shortest = Shortest { depth, normal: Some(normal * sign) };
-                }
+        for (sign, depth) in [1.0, -1.0].into_iter().zip(plane.depths) {
+            if depth < shortest.depth && self.leads_out(&plane, sign, triangle, shared) {
+                *shortest = Shortest { depth, normal: Some(plane.normal * sign) };
             }
         }
+    }
+
+    /// Whether the surface has the normal of a triangle, or its opposite, at what the triangle shares with some vertices, which are at `corners`.
+    fn leads_out(
+        &self,
+        plane: &Plane,
+        sign: f64,
+        triangle: u32,
+        (vertices, corners): (&[u32], &[DVec3]),
+    ) -> bool {
+        let is_outward = self.orientation * sign >= 0.0;
+        let is_above = |corner: &DVec3| sign * (plane.normal.dot(*corner) - plane.height) > LEVEL;
+        is_outward && !corners.iter().any(is_above) && {
+            let shared = vertices.iter().copied().filter(|&vertex| self.has(triangle, vertex));
+            self.have(plane.normal * sign, &shared.collect::<SmallVec<[u32; 4]>>())
+        }
+    }
+
+    /// The plane of a triangle beside another shape.
+    #[inline(always)]
+    fn plane(&self, triangle: u32, other: &Other) -> Plane {
+        let planes = self.planes.get_or_init(|| Planes::new(self.found));
+        planes.beside(other, triangle, || self.normal_and_point(triangle))
     }
 
     /// The normal of a triangle that has one, and a point of its plane.
