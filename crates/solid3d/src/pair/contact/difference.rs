@@ -195,7 +195,6 @@ fn crossing([p, q]: [DVec3; 2], [r, s]: [DVec3; 2], along: DVec3) -> Option<DVec
 #[cfg(test)]
 mod tests {
     use glam::{DAffine3, DMat3, DQuat};
-    use rand::Rng;
     use solid_convex::{Cuboid, Points, Support, epa, gjk};
     use solid_oracle::generate::{in_cube, seeded};
 

@@ -222,13 +222,15 @@ mod tests {
         complex
     }
 
-    /// A patch for each pair of primitives, or one in so many; their normals are one of few.
-    fn patches(rng: &mut StdRng, [a, b]: [u32; 2], one_in: u32) -> Vec<Patch> {
+    /// A patch for each pair of primitives, or one in so many; their normals are one of few, or off it by no more than an angle.
+    fn patches(rng: &mut StdRng, [a, b]: [u32; 2], one_in: u32, angle: f64) -> Vec<Patch> {
         let pairs = (0..a).flat_map(|i| (0..b).map(move |j| [i, j]));
         let mut patch = |primitives| {
             let [on_a, on_b] = [DVec3::ZERO; 2];
             let touch = Touch { on_a, on_b, depth: 0.0, primitives, features: [Feature::Face(0); 2] };
-            Patch { normal: DVec3::AXES[rng.random_range(0..3)], touches: vec![touch], is_inward: false }
+            let off = direction(rng) * (angle * rng.random::<f64>());
+            let normal = (DVec3::AXES[rng.random_range(0..3)] + off).normalize();
+            Patch { normal, touches: vec![touch], is_inward: false }
         };
         pairs.filter(|[i, j]| (i + j) % one_in == 0).map(&mut patch).collect()
     }
@@ -242,7 +244,7 @@ mod tests {
     fn pairs_of_vertices_are_a_shortcut() {
         let mut rng = seeded(163);
         let mut joined = 0;
-        for _ in 0..300 {
+        for angle in [0.0, 0.5, 2.0].map(|part| part * SAME_NORMAL).into_iter().cycle().take(300) {
             let [a, b] = [(); 2].map(|()| {
                 let (count, corners) = (rng.random_range(1..15), rng.random_range(1..40));
                 let share = rng.random_range(0.02..0.3);
@@ -250,7 +252,8 @@ mod tests {
             });
             let [a, b] = [&a, &b].map(complex);
             let one_in = rng.random_range(1..4);
-            let patches = patches(&mut rng, [a, b].map(|complex| complex.primitive_count() as u32), one_in);
+            let patches =
+                patches(&mut rng, [a, b].map(|complex| complex.primitive_count() as u32), one_in, angle);
             let [a, b] = [a, b].map(Part::Soup);
             let grouped = grown(Joining::keeping(&a, &b, &patches, 40 * 40));
             assert_eq!(grouped, grown(Joining::keeping(&a, &b, &patches, 0)));
@@ -265,7 +268,7 @@ mod tests {
         let mut rng = seeded(167);
         let shape = pieces(&mut rng, 30, 1000, 1.0);
         let [a, b] = [(); 2].map(|()| Part::Soup(complex(&shape)));
-        let patches = patches(&mut rng, [30; 2], 1);
+        let patches = patches(&mut rng, [30; 2], 1, 0.0);
         let joining = Joining::new(&a, &b, &patches);
         assert!(matches!(joining.connections, Connections::Any(_)));
         assert_eq!(grown(joining).iter().flatten().count(), 3, "one region of each normal");

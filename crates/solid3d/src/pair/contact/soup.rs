@@ -224,7 +224,7 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let (corners_a, corners_b) = (stars_a.corners(i), stars_b.corners(j));
         let in_each_other = must.then(|| way_of([&corners_a, &corners_b])).flatten();
         let meeting = match in_each_other {
-            Some(way) => way.meeting(false),
+            Some(way) => way.meeting(false).touching(),
             None => pair.meeting(&hull_a, &hull_b, must)?,
         };
         let placed_a = face::Placed::of_primitive(&body_a, i, map_a, &corners_a);

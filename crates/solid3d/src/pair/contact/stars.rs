@@ -62,6 +62,9 @@ pub(super) struct Shortest {
     pub normal: Option<DVec3>,
 }
 
+/// How deep the other is along the normal of a triangle, times a sign.
+type Along = (f64, u32, f64);
+
 impl<'a> Stars<'a> {
     /// For the contacts of so many of the primitives.
     pub fn new(complex: &'a Complex, map: &'a Map, found: usize) -> Stars<'a> {
@@ -178,8 +181,8 @@ impl<'a> Stars<'a> {
         if first.normal.is_some_and(|normal| is_parallel(normal, known)) { second } else { first }
     }
 
-    /// The shortest way out along the normal of a triangle that has all of some vertices, or its opposite, as far as the surface has that there. The
-    /// others go first, so that few are looked at around the vertices.
+    /// The shortest way out along the normal of a triangle that has all of some vertices, or its opposite, that the surface has there. The shorter
+    /// ones are tried first, so that it is seldom asked what the surface has.
     fn shortest_of_all(
         &self,
         (vertices, corners): (&[u32], &[DVec3]),
@@ -194,11 +197,11 @@ impl<'a> Stars<'a> {
                 ways.extend([(depths[0], triangle, 1.0), (depths[1], triangle, -1.0)]);
             }
         }
-        let leads_out = |&&(_, triangle, sign): &&(f64, u32, f64)| {
+        let leads_out = |&&(_, triangle, sign): &&Along| {
             self.leads_out(&self.plane(triangle, other), sign, triangle, (vertices, corners))
         };
-        let by_depth = |x: &(f64, u32, f64), y: &(f64, u32, f64)| x.0.total_cmp(&y.0);
-        let shortest = |&(depth, triangle, sign): &(f64, u32, f64)| Shortest {
+        let by_depth = |x: &Along, y: &Along| x.0.total_cmp(&y.0);
+        let shortest = |&(depth, triangle, sign): &Along| Shortest {
             depth,
             normal: Some(self.plane(triangle, other).normal * sign),
         };
