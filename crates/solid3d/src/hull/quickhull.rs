@@ -79,11 +79,10 @@ impl<'a> Quickhull<'a> {
         let mut to_do = VecDeque::from([0, 1, 2, 3]);
         let (mut visible, mut new_faces) = (Vec::new(), Vec::new());
         let mut made = to_do.len();
-        // Each turn drops a face from the list or makes a site a vertex; a site is made a vertex at most once.
-        while let Some(&face) = to_do.front() {
+        // Each turn drops a face from the list and may make a site a vertex, which sees the face; a site is made a vertex at most once.
+        while let Some(face) = to_do.pop_front() {
             let Face { outside, state, .. } = self.faces[face as usize];
             if state != State::OnHull || outside == NONE {
-                to_do.pop_front();
                 continue;
             }
             self.find_visible(face, outside, &mut visible);

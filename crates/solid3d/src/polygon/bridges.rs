@@ -141,12 +141,8 @@ impl<'p> Bridges<'p> {
 
     /// Whether a bridge touches a chain at its own ends at most.
     fn is_clear(&self, p: DVec2, q: DVec2, chain: &[usize]) -> bool {
-        let (low, high) = (p.min(q), p.max(q));
         (0..chain.len()).all(|k| {
             let (r, s) = (self.points[chain[k]], self.points[chain[(k + 1) % chain.len()]]);
-            if r.max(s).cmplt(low).any() || r.min(s).cmpgt(high).any() {
-                return true;
-            }
             let touches_at_ends = [r, s].iter().any(|&end| end == p || end == q);
             // An edge that begins where the bridge ends must not run along it, nor reach to its other end.
             if touches_at_ends { !segments_overlap(p, q, r, s) } else { !segments_meet(p, q, r, s) }

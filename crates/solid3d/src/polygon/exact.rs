@@ -29,7 +29,6 @@ pub(super) fn segment_contains(p: DVec2, q: DVec2, x: DVec2) -> bool {
 
 /// Whether two segments of a plane share more than a point.
 pub(super) fn segments_overlap(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {
-    let collinear = turn(p, q, r) == 0.0 && turn(p, q, s) == 0.0;
     let (low, high) = (p.min(q).max(r.min(s)), p.max(q).min(r.max(s)));
-    collinear && low.cmple(high).all() && low != high
+    low.cmple(high).all() && low != high && turn(p, q, r) == 0.0 && turn(p, q, s) == 0.0
 }

@@ -28,11 +28,11 @@ pub(super) fn join(points: &[DVec2], outer: &[usize], holes: &[Vec<usize>]) -> R
             return Err(PolygonError::HoleOutside { hole });
         }
     }
-    let sense = sense_of(&outer_points);
+    let sense = planar::sense(&outer_points);
     // Holes run the other way round.
     let mut waiting: Waiting = holes.iter().cloned().enumerate().collect();
     for (chain, placed) in waiting.values_mut().zip(&hole_points) {
-        if sense_of(placed) == sense {
+        if planar::sense(placed) == sense {
             chain.reverse();
         }
     }
@@ -53,11 +53,6 @@ pub(super) fn join(points: &[DVec2], outer: &[usize], holes: &[Vec<usize>]) -> R
     Ok(joined)
 }
 
-/// 1 for a chain that runs counter-clockwise, else -1.
-fn sense_of(chain: &[DVec2]) -> f64 {
-    if planar::doubled_area(chain) < 0.0 { -1.0 } else { 1.0 }
-}
-
 /// The least and the greatest coordinates of a chain.
 fn bounds(chain: &[DVec2]) -> [DVec2; 2] {
     chain.iter().fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], &p| [low.min(p), high.max(p)])
@@ -67,16 +62,16 @@ fn bounds(chain: &[DVec2]) -> [DVec2; 2] {
 fn is_inside(hole: &[DVec2], outer: &[DVec2]) -> bool {
     let is_outside = |x: DVec2| !planar::contains(outer, x);
     let inside = |x: DVec2| planar::contains_strictly(hole, x);
-    !invades(hole, outer, -sense_of(outer), &is_outside)
-        && !invades(outer, hole, sense_of(hole), &inside)
-        && !run_along(hole, outer, -sense_of(hole) * sense_of(outer))
+    !invades(hole, outer, -planar::sense(outer), &is_outside)
+        && !invades(outer, hole, planar::sense(hole), &inside)
+        && !run_along(hole, outer, -planar::sense(hole) * planar::sense(outer))
 }
 
 /// Whether two holes have more in common than parts of their boundaries.
 fn overlap(a: &[DVec2], b: &[DVec2]) -> bool {
-    invades(a, b, sense_of(b), &|x| planar::contains_strictly(b, x))
-        || invades(b, a, sense_of(a), &|x| planar::contains_strictly(a, x))
-        || run_along(a, b, sense_of(a) * sense_of(b))
+    invades(a, b, planar::sense(b), &|x| planar::contains_strictly(b, x))
+        || invades(b, a, planar::sense(a), &|x| planar::contains_strictly(a, x))
+        || run_along(a, b, planar::sense(a) * planar::sense(b))
 }
 
 /// Whether an edge of `chain` enters the open region that lies to the left of `border`, when `sense` is 1.

@@ -67,6 +67,11 @@ pub(super) fn doubled_area(chain: &[DVec2]) -> f64 {
     edges(chain).map(|(p, q)| (p - first).perp_dot(q - first)).sum()
 }
 
+/// 1 for a chain that runs counter-clockwise, else -1.
+pub(super) fn sense(chain: &[DVec2]) -> f64 {
+    if doubled_area(chain) < 0.0 { -1.0 } else { 1.0 }
+}
+
 /// Whether a chain goes around a convex region once, without turning back.
 pub(super) fn is_convex(chain: &[DVec2]) -> bool {
     let mut corners: Vec<DVec2> = chain.to_vec();

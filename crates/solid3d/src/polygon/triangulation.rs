@@ -16,8 +16,12 @@ use super::planar;
 ///
 /// For a chain that crosses itself the triangles are n - 2 all the same, but cover something else.
 pub(super) fn triangulate(chain: &[DVec2]) -> Vec<[u32; 3]> {
-    let sense = if planar::doubled_area(chain) < 0.0 { -1.0 } else { 1.0 };
-    let mut rest = Rest { chain, sense, places: (0..chain.len()).collect(), folds: BTreeSet::new() };
+    let mut rest = Rest {
+        chain,
+        sense: planar::sense(chain),
+        places: (0..chain.len()).collect(),
+        folds: BTreeSet::new(),
+    };
     (0..chain.len()).for_each(|i| rest.note(i));
     let mut triangles = Vec::with_capacity(chain.len().saturating_sub(2));
     let mut start = 0;

@@ -63,7 +63,9 @@ pub(super) fn soup_body(
     let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
     let stars = Stars::new(complex, map_soup, found.len());
     let inside = LazyCell::new(|| Inside::new(&body, found.len()));
-    let cuboid = LazyCell::new(|| Polytope::of(&body));
+    // Without a margin all of them are known to meet the body.
+    let must = pair.margin == 0.0;
+    let cuboid = LazyCell::new(|| if must { Polytope::of(&body) } else { None });
     let patch = |&primitive: &u32| {
         let hull = complex.primitive_hull(primitive);
         let primitive_body = Body::of_primitive(complex, primitive);
@@ -91,14 +93,12 @@ pub(super) fn soup_body(
         let (out, touches) = match side.flat() {
             Some(normal) => (normal, over(normal)),
             None => {
-                let must = pair.margin == 0.0;
-                let meeting =
-                    match side.meeting_of_body(inside.as_ref(), cuboid.as_ref().filter(|_| must), mirrored) {
-                        Some(meeting) if must => meeting.touching(),
-                        Some(meeting) => meeting.within(pair.margin)?,
-                        None if mirrored => pair.meeting(*support, &hull, must)?,
-                        None => pair.meeting(&hull, *support, must)?,
-                    };
+                let meeting = match side.meeting_of_body(inside.as_ref(), cuboid.as_ref(), mirrored) {
+                    Some(meeting) if must => meeting.touching(),
+                    Some(meeting) => meeting.within(pair.margin)?,
+                    None if mirrored => pair.meeting(*support, &hull, must)?,
+                    None => pair.meeting(&hull, *support, must)?,
+                };
                 let corrected = side.corrected(meeting.normal * sign)?;
                 let touches = match corrected {
                     Corrected::Kept(normal) => touches(&Meeting { normal: normal * sign, ..meeting }),
