@@ -98,24 +98,21 @@ fn main() -> Result<()> {
         Command::Run { name, measuring, out, docs } => {
             let out = docs.as_ref().map_or(out, |docs| docs.join("experiments"));
             let effort = if measuring.quick { experiments::Effort::Quick } else { experiments::Effort::Full };
-            threads::stay_on_one()?;
-            run(&name, &Settings { effort, seed: measuring.seed, out_dir: out }, docs.as_deref())?;
-            if name == "all" {
-                let chart = docs.as_ref().map(|docs| docs.join("peers.svg"));
-                compare(measuring, &[], None, chart.as_deref(), docs.as_deref())?;
-                ask(measuring, docs.as_deref())?;
-                one_and_two(measuring, docs.as_deref())?;
-            }
-            Ok(())
+            threads::on_one(|| {
+                run(&name, &Settings { effort, seed: measuring.seed, out_dir: out }, docs.as_deref())?;
+                if name == "all" {
+                    let chart = docs.as_ref().map(|docs| docs.join("peers.svg"));
+                    compare(measuring, &[], None, chart.as_deref(), docs.as_deref())?;
+                    ask(measuring, docs.as_deref())?;
+                }
+                anyhow::Ok(())
+            })??;
+            if name == "all" { one_and_two(measuring, docs.as_deref()) } else { Ok(()) }
         }
         Command::Peers { measuring, only, json, chart } => {
-            threads::stay_on_one()?;
-            compare(measuring, &only, json.as_deref(), chart.as_deref(), None)
+            threads::on_one(|| compare(measuring, &only, json.as_deref(), chart.as_deref(), None))?
         }
-        Command::Questions { measuring, docs } => {
-            threads::stay_on_one()?;
-            ask(measuring, docs.as_deref())
-        }
+        Command::Questions { measuring, docs } => threads::on_one(|| ask(measuring, docs.as_deref()))?,
         Command::Threads { measuring, docs } => one_and_two(measuring, docs.as_deref()),
     }
 }
@@ -203,6 +200,7 @@ fn ask(measuring: Measuring, docs: Option<&Path>) -> Result<()> {
 }
 
 fn one_and_two(measuring: Measuring, docs: Option<&Path>) -> Result<()> {
+    threads::two_by_default()?;
     let start = Instant::now();
     let report = threads::run(effort(measuring), measuring.seed, |name| {
         eprintln!("{:5.1} s: {name}", start.elapsed().as_secs_f64());

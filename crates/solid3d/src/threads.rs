@@ -1,6 +1,9 @@
 //! Work on the parts of a slice: on one thread, or with the feature `rayon`, where there is enough of it, on those of the current pool.
 //!
 //! What is done to a part depends on it alone, and parts do not depend on the number of threads: so neither do results.
+//!
+//! Work is shared by the threads of the pool alone. A thread from outside would wait for the pool to wake, and to be woken by it, at each
+//! work that it shared, for some 20 us each: it [enters](in_pool) the pool once for all that an operation has to do.
 
 /// Calls `work` with each part of `items`, of `part` elements but for the last, and its number. `enough` elements are worth another
 /// thread.
@@ -59,10 +62,55 @@ pub(crate) fn both(worth: bool, one: impl FnOnce() + Send, other: impl FnOnce() 
     other();
 }
 
-/// Whether so many elements are worth another thread, there is one, and it may be asked.
+/// Does an operation that shares several works, some 200 us or more of them if `worth`: then a thread of the current pool does it, where the
+/// calling one is from outside.
+pub(crate) fn in_pool<R: Send>(worth: bool, operation: impl FnOnce() -> R + Send) -> R {
+    #[cfg(feature = "rayon")]
+    if worth && may_share() && rayon::current_thread_index().is_none() {
+        return rayon::scope(|_| operation());
+    }
+    let _ = worth;
+    operation()
+}
+
+/// Does what this thread does alone between works that are shared. Another stays awake meanwhile, if `shares`: to wake one takes some 20 us,
+/// and it sleeps after 2 us without work.
+pub(crate) fn between<R: Send>(shares: bool, work: impl FnOnce() -> R + Send) -> R {
+    #[cfg(feature = "rayon")]
+    if share(usize::from(shares), 1) {
+        use std::sync::atomic::{AtomicBool, Ordering};
+        /// Then, after some 100 us, it may sleep all the same.
+        const LOOKS_MAX: u32 = 5_000;
+        struct Done<'a>(&'a AtomicBool);
+        impl Drop for Done<'_> {
+            fn drop(&mut self) {
+                self.0.store(true, Ordering::Relaxed);
+            }
+        }
+        let done = AtomicBool::new(false);
+        let work = || {
+            let _done = Done(&done);
+            work()
+        };
+        let wait = || {
+            (0..LOOKS_MAX).take_while(|_| !done.load(Ordering::Relaxed)).for_each(|_| std::hint::spin_loop())
+        };
+        return rayon::join(work, wait).0;
+    }
+    let _ = shares;
+    work()
+}
+
+/// Whether so many elements are worth another thread, there is one, and this one may ask it.
 #[cfg(feature = "rayon")]
 pub(crate) fn share(elements: usize, enough: usize) -> bool {
-    elements >= enough && rayon::current_num_threads() > 1 && !ALONE.get()
+    elements >= enough && may_share() && rayon::current_thread_index().is_some()
+}
+
+/// Whether there is another thread, and this one may wait for it.
+#[cfg(feature = "rayon")]
+fn may_share() -> bool {
+    rayon::current_num_threads() > 1 && !ALONE.get()
 }
 
 #[cfg(feature = "rayon")]
@@ -108,11 +156,37 @@ mod tests {
                 both(worth, || one += 1, || other += 2);
             }
             assert_eq!((one, other), (2, 4));
+            for shares in [true, false] {
+                assert_eq!(between(shares, || in_pool(shares, || one)), 2);
+            }
         };
         run();
         alone(run);
         #[cfg(feature = "rayon")]
         rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap().install(run);
+    }
+
+    /// Law: a thread from outside shares nothing; it enters the pool for what is worth it, unless it must not wait.
+    #[cfg(feature = "rayon")]
+    #[test]
+    fn who_is_outside_enters_the_pool() {
+        let is_inside = || rayon::current_thread_index().is_some();
+        let has_threads = rayon::current_num_threads() > 1;
+        assert!(!share(10, 10) && !is_inside());
+        assert!(!in_pool(false, is_inside) && !alone(|| in_pool(true, is_inside)));
+        assert_eq!(in_pool(true, || (is_inside(), share(10, 10))), (has_threads, has_threads));
+    }
+
+    /// Law: who is kept awake is let go, also when what it waits for panics.
+    #[cfg(feature = "rayon")]
+    #[test]
+    fn who_is_kept_awake_is_let_go() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        for _ in 0..100 {
+            let failed = pool.install(|| std::panic::catch_unwind(|| between(true, || panic!("as it may"))));
+            assert!(failed.is_err_and(|it: Box<_>| it.downcast_ref() == Some(&"as it may")));
+        }
+        assert_eq!(pool.install(|| between(true, || 7)), 7);
     }
 
     #[cfg(feature = "rayon")]

@@ -1,7 +1,8 @@
-//! One thread against two: the same work on copies of the same data, in one process, in turns.
+//! One thread against two: the same work on copies of the same data, in one process, in turns. Two are asked by one of them, and from
+//! outside of their pool, as most programs do.
 //!
-//! Each round gives both a turn, and the speed-up is the median of the rounds' ratios: what slows the machine down for a while
-//! slows both, and each thread keeps to a core. Times are of the clock on the wall, so a machine that is busy shows less than it could.
+//! Each round gives all a turn, and the speed-up is the median of the rounds' ratios: what slows the machine down for a while
+//! slows all, and each thread keeps to a core. Times are of the clock on the wall, so a machine that is busy shows less than it could.
 //!
 //! | file | holds |
 //! |---|---|
@@ -39,10 +40,12 @@ const PASSES_MAX: usize = 10_000;
 pub struct Row {
     /// Which.
     pub work: String,
-    /// Microseconds on one thread and on two.
-    pub micros: [Spread; 2],
-    /// How many times as long one thread takes.
+    /// Microseconds on one thread, on two, and on two asked from outside.
+    pub micros: [Spread; 3],
+    /// How many times as long one thread takes as two.
     pub speed_up: Spread,
+    /// The same, asked from outside.
+    pub speed_up_outside: Spread,
     /// What it is to be at least.
     pub target: f64,
 }
@@ -67,15 +70,27 @@ pub struct Report {
     pub rows: Vec<Row>,
 }
 
-/// Makes the calling thread the only one of the pool that everything runs on by default: for what is measured on one thread.
+/// Does work on one thread.
+///
+/// # Errors
+/// When it cannot be had.
+pub fn on_one<R: Send>(work: impl FnOnce() -> R + Send) -> Result<R, ThreadPoolBuildError> {
+    Ok(pool_of(1).build()?.install(work))
+}
+
+/// Has two threads in the pool that works are shared on by default.
 ///
 /// # Errors
 /// When that pool was there already.
-pub fn stay_on_one() -> Result<(), ThreadPoolBuildError> {
-    ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()
+pub fn two_by_default() -> Result<(), ThreadPoolBuildError> {
+    pool_of(2).build_global()
 }
 
-/// Measures everything. `progress` is told the name of each work before its turn.
+fn pool_of(threads: usize) -> ThreadPoolBuilder {
+    ThreadPoolBuilder::new().num_threads(threads).start_handler(keep_to_a_core)
+}
+
+/// Measures everything, from outside on the default pool. `progress` is told the name of each work before its turn.
 ///
 /// # Errors
 /// When no threads can be had.
@@ -84,13 +99,12 @@ pub fn run(
     seed: u64,
     mut progress: impl FnMut(&str),
 ) -> Result<Report, ThreadPoolBuildError> {
-    let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).start_handler(keep_to_a_core).build();
-    let pools = [pool(1)?, pool(2)?];
+    let pools = [pool_of(1).build()?, pool_of(2).build()?];
     let bench = Bench::new(effort, seed);
     let mut rows = Vec::new();
     for (name, target, make) in works::all(&bench) {
         progress(&name);
-        rows.push(race(effort, &pools, name, target, [make(), make()]));
+        rows.push(race(effort, &pools, name, target, [make(), make(), make()]));
     }
     Ok(Report { seed, machine: machine(), date: date(), rows })
 }
@@ -102,16 +116,20 @@ fn keep_to_a_core(thread: usize) {
     }
 }
 
-/// Lets both pools take turns at a work.
-fn race(effort: Effort, pools: &[ThreadPool; 2], work: String, target: f64, mut works: [Work; 2]) -> Row {
+/// Lets both pools, and this thread, take turns at a work.
+fn race(effort: Effort, pools: &[ThreadPool; 2], work: String, target: f64, mut works: [Work; 3]) -> Row {
     let mut turn = |k: usize, passes: usize| -> Duration {
         let work = &mut works[k];
-        pools[k].install(|| (0..passes).map(|_| work()).sum::<Duration>())
+        let mut all = || (0..passes).map(|_| work()).sum();
+        match pools.get(k) {
+            Some(pool) => pool.install(all),
+            None => all(),
+        }
     };
-    let once = turn(0, 1).max(turn(1, 1)).as_secs_f64().max(1e-9);
+    let once = turn(0, 1).max(turn(1, 1)).max(turn(2, 1)).as_secs_f64().max(1e-9);
     let passes = ((TURN_MIN.as_secs_f64() / once).ceil() as usize).clamp(1, PASSES_MAX);
     let passes = if effort == Effort::Smoke { 1 } else { passes };
-    let mut micros = [Vec::new(), Vec::new()];
+    let mut micros = [const { Vec::new() }; 3];
     let start = Instant::now();
     while micros[0].len() < effort.rounds_min()
         || (start.elapsed() < 2 * effort.budget() && micros[0].len() < ROUNDS_MAX)
@@ -120,8 +138,11 @@ fn race(effort: Effort, pools: &[ThreadPool; 2], work: String, target: f64, mut 
             micros.push(1e6 * turn(k, passes).as_secs_f64() / passes as f64);
         }
     }
-    let ratios = micros[0].iter().zip(&micros[1]).map(|(one, two)| one / two.max(1e-9)).collect();
-    Row { work, micros: micros.map(Spread::of), speed_up: Spread::of(ratios), target }
+    let [speed_up, speed_up_outside] = [1, 2].map(|k| {
+        let ratios = micros[0].iter().zip(&micros[k]).map(|(one, two): (&f64, &f64)| one / two.max(1e-9));
+        Spread::of(ratios.collect())
+    });
+    Row { work, micros: micros.map(Spread::of), speed_up, speed_up_outside, target }
 }
 
 #[cfg(test)]

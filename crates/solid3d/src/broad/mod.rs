@@ -38,6 +38,9 @@ pub type Proxy = u32;
 /// Writes the boxes of some proxies beside them: some at a time, so that what it prepares serves several.
 pub type BoundsOf<'a> = dyn Fn(&mut [(Proxy, Aabb)]) + Sync + 'a;
 
+/// So many boxes that are asked for are worth another thread.
+pub(crate) const ASKED_MANY: usize = 1 << 12;
+
 /// The box of a proxy alone.
 fn bounds_of_one(proxy: Proxy, bounds: &BoundsOf) -> Aabb {
     let mut one = [(proxy, Aabb::EMPTY)];

@@ -253,14 +253,16 @@ impl PairLists {
     /// Which pairs overlap is written down first, and what changed is acted upon afterwards, because nobody can foretell it: where each was
     /// a branch, the boxes of the pairs that follow were not fetched from memory before the branch was taken. The processor waits for the
     /// boxes of as many pairs at a time as it has room for the instructions of: so a pair takes few.
-    pub fn refresh_all(&mut self, boxes: &Boxes) {
+    ///
+    /// Of boxes that several threads were told (`shared`), less of this is worth another thread: some are nearer to it.
+    pub fn refresh_all(&mut self, boxes: &Boxes, shared: bool) {
         let Self { ends, in_use, overlaps, touched, found, .. } = self;
         /// More boxes than this are not in the caches.
         const NEAR_MAX: usize = 1 << 19;
         let (level, near) = (level(), boxes.len() <= NEAR_MAX);
         found.clear();
         extend(found, in_use.words());
-        for_each_word(ends, found, |(pairs, found): (&[[Proxy; 2]], &mut u64)| {
+        for_each_word(ends, found, shared, |(pairs, found): (&[[Proxy; 2]], &mut u64)| {
             *found &= if found.count_ones() <= SPARSE {
                 let overlap = |&at: &usize| boxes.overlap(pairs[at][0], pairs[at][1]);
                 bits(*found).filter(overlap).fold(0, |all, at| all | 1 << at)
@@ -496,6 +498,7 @@ fn overlapping<S: Simd, const FAR: bool>(simd: S, pairs: &[[Proxy; 2]], boxes: &
 fn for_each_word(
     pairs: &[[Proxy; 2]],
     words: &mut [u64],
+    shared: bool,
     find: impl Fn((&[[Proxy; 2]], &mut u64)) + Sync + Send,
 ) {
     #[cfg(feature = "rayon")]
@@ -503,11 +506,13 @@ fn for_each_word(
         use rayon::prelude::*;
         /// Fewer words than this, of pairs that take some 3 ns each, are not worth another thread.
         const SHARE_MIN: usize = 512;
-        if crate::threads::share(words.len(), SHARE_MIN) {
+        let enough = if shared { SHARE_MIN / 8 } else { SHARE_MIN };
+        if crate::threads::share(words.len(), enough) {
             let blocks = pairs.par_chunks(WORD).zip(words);
-            return blocks.with_min_len(SHARE_MIN / 2).for_each(find);
+            return blocks.with_min_len(enough / 2).for_each(find);
         }
     }
+    let _ = shared;
     pairs.chunks(WORD).zip(words).for_each(find);
 }
 

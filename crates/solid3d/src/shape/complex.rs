@@ -13,8 +13,12 @@ use super::topology::{Positioned, Topology};
 use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
-use crate::threads::{both, for_each_part};
+use crate::threads::{both, for_each_part, in_pool};
 use crate::tree::{LeafImages, LeafPoints, Slabs, Tree};
+
+/// To build a tree of so many primitives, or to refit it, is worth entering the pool of threads.
+const BUILT_MANY: usize = 1 << 13;
+const REFITTED_MANY: usize = 1 << 16;
 
 /// A soup of convex primitives. Clones share what a deformation leaves alone.
 #[derive(Clone, Debug)]
@@ -120,14 +124,17 @@ impl Complex {
     pub fn mesh(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
         validate::vertex_count("vertices", vertices.len())?;
         validate::primitive_count("triangles", triangles.len())?;
-        validate::triangles(&triangles, vertices.len())?;
-        Self::new(vertices, Primitives::Triangles(triangles))
+        in_pool(triangles.len() >= BUILT_MANY, || {
+            validate::triangles(&triangles, vertices.len())?;
+            Self::new(vertices, Primitives::Triangles(triangles))
+        })
     }
 
     /// The vertices are checked here; the primitives were by the caller.
     pub(super) fn new(vertices: Vec<DVec3>, primitives: Primitives) -> Result<Self> {
-        validate::vertices(&vertices)?;
-        let tree = build(&primitives, &vertices);
+        let tree = in_pool(primitives.len() >= BUILT_MANY, || {
+            validate::vertices(&vertices).map(|()| build(&primitives, &vertices))
+        })?;
         Ok(Complex {
             primitives: Arc::new(primitives),
             vertices,
@@ -328,7 +335,7 @@ impl Complex {
         min.abs().max(max.abs())
     }
 
-    pub fn check_positions(&self, positions: &[DVec3]) -> Result<()> {
+    fn check_positions(&self, positions: &[DVec3]) -> Result<()> {
         if positions.len() != self.vertices.len() {
             return Err(Error::PositionCount { count: positions.len(), expected: self.vertices.len() });
         }
@@ -336,8 +343,17 @@ impl Complex {
         self.solid.as_ref().map_or(Ok(()), |solid| solid.check(positions))
     }
 
+    /// Has a shape take new positions, if they may be taken.
+    pub fn deform(complex: &mut Arc<Self>, positions: &[DVec3]) -> Result<()> {
+        in_pool(complex.primitives.len() >= REFITTED_MANY, || {
+            complex.check_positions(positions)?;
+            Arc::make_mut(complex).take_positions(positions);
+            Ok(())
+        })
+    }
+
     /// Takes new positions, which were checked.
-    pub fn deform(&mut self, positions: &[DVec3]) {
+    pub(super) fn take_positions(&mut self, positions: &[DVec3]) {
         let Complex { primitives, vertices, tree, leaf_points, .. } = self;
         let points = leaf_points
             .get_or_init(|| Arc::new(LeafPoints::new(tree, |primitive| primitives.get(primitive))));

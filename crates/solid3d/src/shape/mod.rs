@@ -299,11 +299,7 @@ impl Shape {
     /// ```
     pub fn deform(&mut self, positions: &[DVec3]) -> Result<()> {
         match &mut self.geometry {
-            Geometry::Complex(complex) => {
-                complex.check_positions(positions)?;
-                Arc::make_mut(complex).deform(positions);
-                Ok(())
-            }
+            Geometry::Complex(complex) => Complex::deform(complex, positions),
             _ => Err(Error::NotDeformable { kind: self.kind() }),
         }
     }

@@ -79,7 +79,7 @@ mod tests {
             let mut soup = Complex::mesh(vertices.clone(), triangles).unwrap();
             if round == 5 {
                 let deformed: Vec<DVec3> = vertices.iter().map(|v| *v * (1.0 + 0.001 * v.x)).collect();
-                soup.deform(&deformed);
+                soup.take_positions(&deformed);
             }
             let (fast, slow) = (soup.hull(), soup.corners());
             assert_eq!((fast.reach(), fast.center()), (slow.reach(), slow.center()));

@@ -19,7 +19,7 @@ use super::normal::{COORDINATE_MAX, Normal};
 use super::packed::PackedBox;
 use super::split::{Item, Set, Spare};
 use crate::Aabb;
-use crate::threads::both;
+use crate::threads::{both, in_pool};
 use glam::DVec3;
 
 /// From this depth of the binary tree on, sets are split evenly: a heuristic that peels off one primitive at a time ends here.
@@ -52,7 +52,9 @@ impl Tree {
 
     /// Builds by the heuristic down to a depth, and evenly below.
     pub(super) fn build_with(boxes: &[Aabb], heuristic_depth: u32) -> Self {
-        Tree::build_of_with(boxes.len(), heuristic_depth, |i| boxes[i as usize])
+        in_pool(boxes.len() >= MANY, || {
+            Tree::build_of_with(boxes.len(), heuristic_depth, |i| boxes[i as usize])
+        })
     }
 
     /// Builds over primitives `0..count`, of which `box_of` gives the boxes; it is called three times for each. With the feature `rayon` on

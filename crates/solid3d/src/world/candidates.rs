@@ -13,13 +13,17 @@ use super::lapsed::Lapsed;
 use super::near::{Near, Nearness};
 use super::pair_map::{PairMap, Place};
 use super::stirred::Staleness;
+use super::threads::Workers;
 use super::{Contact, ObjectId, World};
 use crate::broad::room::{give_back, push};
-use crate::broad::{PairChange, PairId};
-use crate::threads::for_each_part;
+use crate::broad::{ASKED_MANY, PairChange, PairId};
+use crate::threads::{between, for_each_part, in_pool};
 
 /// When one in so many objects changed, all candidates are looked at in one pass, rather than those of each that did.
 const MANY: usize = 4;
+
+/// A look at so many candidates, of some 5 ns each, is worth another thread.
+const LOOKED_AT_MANY: usize = 1 << 13;
 
 /// Two objects by their places in the order of pairs, the earlier first: the order of the results.
 pub(super) type PairKey = (u64, u64);
@@ -119,16 +123,19 @@ impl Candidates {
 
     /// The same with every candidate: each is looked at once, in the order in which they are kept.
     fn enqueue_where(&mut self, is_concerned: impl Fn(&Candidate) -> bool + Sync + Send) {
-        /// So many candidates, of some 5 ns each, are worth another thread.
-        const MANY: usize = 1 << 13;
         /// One thread looks at so many at a time.
         const PART: usize = 1 << 10;
         self.more_wait = true;
-        for_each_part(self.slots.values_mut(), PART, MANY, |_, part| {
+        for_each_part(self.slots.values_mut(), PART, LOOKED_AT_MANY, |_, part| {
             for candidate in part.iter_mut().flatten().filter(|candidate| is_concerned(candidate)) {
                 candidate.stir();
             }
         });
+    }
+
+    /// Whether a look at all is worth another thread.
+    fn are_many(&self) -> bool {
+        self.slots.values().len() >= LOOKED_AT_MANY
     }
 
     /// Puts the candidates side by side where most are gone that once were: so passes over all follow how many there are.
@@ -163,6 +170,11 @@ impl Candidates {
     /// Forgets what was learned about pairs that may help to examine them.
     pub fn forget_proofs(&mut self) {
         self.slots.values_mut().iter_mut().flatten().for_each(|candidate| candidate.proof = Proof::None);
+    }
+
+    /// How many wait to be examined at most.
+    pub fn waiting_max(&self) -> usize {
+        if self.more_wait { self.slots.values().len() } else { self.queue.len() }
     }
 
     /// Moves those that wait to be examined to `places`, each once.
@@ -240,11 +252,30 @@ impl World {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn refresh(&mut self) {
-        if !std::mem::replace(&mut self.stale, false) {
-            return;
+        if std::mem::replace(&mut self.stale, false) {
+            in_pool(Workers::is_worth_entering(self.work_ahead()), || {
+                let shared = self.stirred.len() >= ASKED_MANY;
+                between(shared, || self.stirred.sort());
+                self.update_broad();
+                between(shared, || self.begin_and_end_candidates());
+                between(shared && !self.candidates.are_many(), || self.enqueue_changed());
+            });
         }
-        self.update_broad();
-        let Self { broad, candidates, findings, objects, stirred, .. } = self;
+    }
+
+    /// What a test will cost, as far as is known before the boxes are: in units of [`Statistics::units_for`](super::Statistics::units_for).
+    pub(super) fn work_ahead(&self) -> u64 {
+        const UNITS_PER_BOX: u64 = 2;
+        let (all, stirred) = (self.objects.len(), self.stirred.len());
+        // Of the pairs of an object those with others that changed are counted twice.
+        let changed = if self.caching && !self.default_changed { all.min(2 * stirred) } else { all };
+        let candidates = self.candidates.count as usize * changed / all.max(1);
+        UNITS_PER_BOX * stirred as u64 + self.statistics.units_for(candidates)
+    }
+
+    /// Begins and ends candidates as pairs of boxes came and went.
+    fn begin_and_end_candidates(&mut self) {
+        let Self { broad, candidates, objects, .. } = self;
         for &PairChange { pair, proxies, overlaps } in broad.changes() {
             if overlaps {
                 let [a, b] = proxies.map(|proxy| objects.id_of(proxy));
@@ -254,6 +285,11 @@ impl World {
                 candidates.end(pair);
             }
         }
+    }
+
+    /// Has those examined about which something changed.
+    fn enqueue_changed(&mut self) {
+        let Self { broad, candidates, findings, objects, stirred, .. } = self;
         let stale = stirred.sorted();
         if MANY * stale.iter().map(|slots| slots.len()).sum::<usize>() >= objects.len() {
             candidates.enqueue_where(|candidate| {
@@ -279,7 +315,6 @@ impl World {
     /// Gives the broad phase the boxes of what moved: in the order of slots, in which both have them in memory.
     fn update_broad(&mut self) {
         let Self { broad, objects, stirred, clearances, .. } = self;
-        stirred.sort();
         broad.update_with(stirred.sorted()[0], &|boxes| {
             dispatch!(simd => for (slot, bounds) in &mut *boxes {
                 let object = objects.at(*slot).expect("what is elsewhere is in the world");

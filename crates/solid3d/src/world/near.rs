@@ -10,6 +10,7 @@ use super::response::ResponseTable;
 use super::threads::{Items, PART, Workers};
 use super::{ObjectId, Response, Statistics, World};
 use crate::pair::{self, Approach, Scratch};
+use crate::threads::in_pool;
 
 /// Two objects that are nearer to each other than their clearance, as they are now: see [`World::near`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,18 +70,24 @@ impl World {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn near(&mut self) -> Vec<Near> {
+        in_pool(Workers::is_worth_entering(self.work_ahead()), || self.look_at_changed());
+        let mut near: Vec<Near> = self.candidates.near().copied().collect();
+        // Each key waits for the memory of two objects.
+        near.sort_by_cached_key(|near| self.key(near.a, near.b));
+        near
+    }
+
+    /// Looks at the candidates about which something changed.
+    fn look_at_changed(&mut self) {
         self.refresh();
         if !self.caching {
             self.candidates.forget_nearness();
         }
         let mut places = std::mem::take(&mut self.to_examine);
         self.candidates.take_unknown(&mut places);
-        self.look_at_all(&places);
+        let units = self.statistics.units_for(places.len());
+        in_pool(Workers::is_worth_entering(units), || self.look_at_all(&places));
         self.to_examine = places;
-        let mut near: Vec<Near> = self.candidates.near().copied().collect();
-        // Each key waits for the memory of two objects.
-        near.sort_by_cached_key(|near| self.key(near.a, near.b));
-        near
     }
 
     /// Looks at candidates, and keeps what that gave.

@@ -71,6 +71,11 @@ impl Stirred {
         self.of(slot) == Staleness::Bounds
     }
 
+    /// How many there are at most.
+    pub fn len(&self) -> usize {
+        self.elsewhere.len() + self.others.len()
+    }
+
     /// Those of whose objects the broad phase has earlier boxes.
     pub fn elsewhere(&self) -> impl Iterator<Item = Proxy> {
         self.elsewhere.iter().copied().filter(|&slot| self.is_elsewhere(slot))

@@ -9,7 +9,7 @@ use super::pair_map::Place;
 use super::threads::{BATCH, Items, PART, Workers};
 use super::{Collision, ObjectId, Response, World};
 use crate::error::Result;
-use crate::threads::both;
+use crate::threads::{between, both, in_pool};
 
 /// How far a test has come that is made collision by collision: see [`World::test_next`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,9 +65,11 @@ impl World {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn test_into(&mut self, collisions: &mut Vec<Collision>) {
-        self.begin_test();
-        self.statistics.collisions += self.findings.len() as u64;
-        self.findings.copy_to(collisions);
+        in_pool(Workers::is_worth_entering(self.work_ahead()), || {
+            self.begin_test();
+            self.statistics.collisions += self.findings.len() as u64;
+            self.findings.copy_to(collisions);
+        });
     }
 
     /// Like [`test`](World::test), but calls `respond` with each collision as it is found, and lets it change the world: move,
@@ -160,8 +162,10 @@ impl World {
         self.candidates.lapsed.take_all(&mut self.findings);
         let before = self.statistics.examined;
         let mut places = std::mem::take(&mut self.to_examine);
-        self.candidates.take_queue(&mut places);
-        self.examine_all(&mut places);
+        let shares = Workers::share(self.statistics.units_for(self.candidates.waiting_max()));
+        between(shares, || self.candidates.take_queue(&mut places));
+        let units = self.statistics.units_for(places.len());
+        in_pool(Workers::is_worth_entering(units), || self.examine_all(&mut places));
         self.to_examine = places;
         self.statistics.examined - before
     }

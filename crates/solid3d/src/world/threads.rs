@@ -6,10 +6,9 @@
 use super::pair_map::Place;
 use crate::pair::Scratch;
 
-/// Work that is worth more than one thread, in units of [`Statistics::units_for`](super::Statistics::units_for), of some 25 ns each. To
-/// wake a sleeping thread and to wait for it takes some 10 us.
-#[cfg(feature = "rayon")]
-const WORK_MIN: u64 = 4_000;
+/// Work that is worth more than one thread, in units of [`Statistics::units_for`](super::Statistics::units_for), of some 12 ns each. To
+/// wake a sleeping thread takes some 20 us.
+const WORK_MIN: u64 = 8_000;
 
 /// Items of which the results are kept at a time, where work is shared: what they take is bounded by it.
 pub(super) const BATCH: usize = 4096;
@@ -34,13 +33,18 @@ impl Workers {
     /// Whether work is worth more than one thread, and there is more than one.
     #[cfg(feature = "rayon")]
     pub fn share(units: u64) -> bool {
-        units >= WORK_MIN && rayon::current_num_threads() > 1
+        crate::threads::share(usize::from(units >= WORK_MIN), 1)
     }
 
     /// Whether work is shared: it never is.
     #[cfg(not(feature = "rayon"))]
     pub fn share(_units: u64) -> bool {
         false
+    }
+
+    /// Whether work is worth entering the pool of threads.
+    pub fn is_worth_entering(units: u64) -> bool {
+        units >= 2 * WORK_MIN
     }
 
     /// Of how many items the results are to be kept at a time.

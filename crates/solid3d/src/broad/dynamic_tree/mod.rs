@@ -41,7 +41,7 @@ use super::{
     BoundsOf, BroadPhase, Counters, PROXY_MAX, PairChange, PairId, Proxy, assert_valid, bounds_of_one,
 };
 use crate::bounds::Aabb;
-use crate::threads::both;
+use crate::threads::{between, both, in_pool};
 use build::Builder;
 use fat_box::FatBox;
 use notes::Notes;
@@ -134,12 +134,11 @@ impl DynamicTree {
         }
     }
 
-    /// Moves many boxes; which one is refused, if one is.
-    fn move_many(&mut self, told: Told) -> Option<usize> {
+    /// Adds or moves many boxes; how many were, and which one is refused, if one is.
+    fn tell_many(&mut self, told: Told) -> (usize, Option<usize>) {
         let moved_max = self.moved_max();
         let (slots, notes) = self.slots();
-        let (_, refused) = slots.many(told, notes, moved_max);
-        refused
+        in_pool(told.is_worth_entering(), || slots.many(told, notes, moved_max))
     }
 
     #[cold]
@@ -194,10 +193,10 @@ impl DynamicTree {
     }
 
     /// Decides again which tight boxes overlap, among the pairs of boxes that moved.
-    fn refresh_moved(&mut self) {
+    fn refresh_moved(&mut self, shared: bool) {
         let Self { tight, pairs, notes, .. } = self;
         if notes.all_moved {
-            pairs.refresh_all(tight);
+            pairs.refresh_all(tight, shared);
         } else {
             for &proxy in &notes.moved {
                 pairs.refresh_of(proxy, |partner| tight.overlap(proxy, partner));
@@ -280,22 +279,62 @@ impl DynamicTree {
         });
     }
 
-    /// Brings the tree and the pairs of fat boxes up to date.
-    fn admit_queued(&mut self) {
-        let few = self.notes.queue.len() <= self.queue_max();
-        if few {
-            // Boxes that are near one another find the same nodes, and those are then at hand. Since the tree was built, its nodes are
-            // about in the order of space.
-            let tree = &self.tree;
-            self.notes.queue.sort_unstable_by_key(|&proxy| (tree.place(proxy), proxy));
-            self.part_queued();
+    /// Whether what a flush has to do is worth entering the pool of threads.
+    fn is_worth_entering(&self) -> bool {
+        /// Of so many boxes the tree is built anew, or all pairs are looked at.
+        const BUILT_MANY: usize = 1 << 13;
+        const LOOKED_AT_MANY: usize = 1 << 16;
+        let builds = self.notes.queue.len() > self.queue_max();
+        let many = if builds { BUILT_MANY } else { LOOKED_AT_MANY };
+        (builds || self.notes.all_moved) && self.alive >= many
+    }
+
+    /// Does what a [`flush`](BroadPhase::flush) has to do where something changed.
+    fn bring_up_to_date(&mut self) {
+        let rebuilds = self.counters.rebuilds;
+        let shared = std::mem::take(&mut self.notes.shared);
+        self.refresh_moved(shared);
+        self.drop_removed();
+        if !self.notes.queue.is_empty() {
+            self.admit_queued(shared);
         }
-        if few && self.place_queued() {
-            self.pair_queued();
+        for proxy in self.notes.queue.drain(..) {
+            self.status[proxy as usize].set(Status::QUEUED, false);
+        }
+        if self.counters.rebuilds > rebuilds && rebuilds == 0 {
+            self.trim();
+        }
+        if std::mem::take(&mut self.notes.all_moved) {
+            self.status.iter_mut().for_each(|status| status.set(Status::MOVED, false));
         } else {
+            for &proxy in &self.notes.moved {
+                self.status[proxy as usize].set(Status::MOVED, false);
+            }
+        }
+        self.notes.moved.clear();
+    }
+
+    /// Brings the tree and the pairs of fat boxes up to date.
+    fn admit_queued(&mut self, shared: bool) {
+        let few = self.notes.queue.len() <= self.queue_max();
+        if !few || !between(shared, || self.admit_few()) {
             self.rebuild();
             self.pair_all();
         }
+    }
+
+    /// The same box by box; false, and only begun, if the tree is no longer as it should be.
+    fn admit_few(&mut self) -> bool {
+        // Boxes that are near one another find the same nodes, and those are then at hand. Since the tree was built, its nodes are
+        // about in the order of space.
+        let tree = &self.tree;
+        self.notes.queue.sort_unstable_by_key(|&proxy| (tree.place(proxy), proxy));
+        self.part_queued();
+        let placed = self.place_queued();
+        if placed {
+            self.pair_queued();
+        }
+        placed
     }
 }
 
@@ -333,9 +372,7 @@ impl BroadPhase for DynamicTree {
         let mut rest = boxes;
         // Ends, because there are fewer boxes each time.
         while !rest.is_empty() {
-            let moved_max = self.moved_max();
-            let (slots, notes) = self.slots();
-            let (taken, refused) = slots.many(Told::New(rest), notes, moved_max);
+            let (taken, refused) = self.tell_many(Told::New(rest));
             self.alive += taken;
             let Some(refused) = refused else { return };
             let (proxy, bounds) = rest[refused];
@@ -345,14 +382,14 @@ impl BroadPhase for DynamicTree {
     }
 
     fn update_many(&mut self, boxes: &[(Proxy, Aabb)]) {
-        if let Some(refused) = self.move_many(Told::Moved(boxes)) {
+        if let (_, Some(refused)) = self.tell_many(Told::Moved(boxes)) {
             let (proxy, bounds) = boxes[refused];
             self.refuse_update(proxy, &bounds);
         }
     }
 
     fn update_with(&mut self, proxies: &[Proxy], bounds: &BoundsOf) {
-        if let Some(refused) = self.move_many(Told::MovedTo(proxies, bounds)) {
+        if let (_, Some(refused)) = self.tell_many(Told::MovedTo(proxies, bounds)) {
             let proxy = proxies[refused];
             self.refuse_update(proxy, &bounds_of_one(proxy, bounds));
         }
@@ -377,29 +414,9 @@ impl BroadPhase for DynamicTree {
 
     fn flush(&mut self) {
         self.pairs.begin();
-        if !std::mem::take(&mut self.notes.changed) {
-            return;
+        if std::mem::take(&mut self.notes.changed) {
+            in_pool(self.is_worth_entering(), || self.bring_up_to_date());
         }
-        let rebuilds = self.counters.rebuilds;
-        self.refresh_moved();
-        self.drop_removed();
-        if !self.notes.queue.is_empty() {
-            self.admit_queued();
-        }
-        for proxy in self.notes.queue.drain(..) {
-            self.status[proxy as usize].set(Status::QUEUED, false);
-        }
-        if self.counters.rebuilds > rebuilds && rebuilds == 0 {
-            self.trim();
-        }
-        if std::mem::take(&mut self.notes.all_moved) {
-            self.status.iter_mut().for_each(|status| status.set(Status::MOVED, false));
-        } else {
-            for &proxy in &self.notes.moved {
-                self.status[proxy as usize].set(Status::MOVED, false);
-            }
-        }
-        self.notes.moved.clear();
     }
 
     fn for_each_pair(&self, visit: &mut dyn FnMut(Proxy, Proxy)) {

@@ -19,6 +19,8 @@ pub(super) struct Notes {
     pub queue: Vec<Proxy>,
     /// Whether any of those was removed.
     pub queued_removed: bool,
+    /// Whether several threads were told boxes.
+    pub shared: bool,
     /// What threads note of their parts; empty but for its memory.
     #[cfg(feature = "rayon")]
     pub parts: Vec<Notes>,

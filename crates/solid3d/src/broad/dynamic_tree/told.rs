@@ -12,7 +12,7 @@ use super::slots::Slots;
 use crate::bounds::Aabb;
 use crate::broad::boxes::row;
 use crate::broad::room::room;
-use crate::broad::{BoundsOf, Proxy};
+use crate::broad::{ASKED_MANY, BoundsOf, Proxy};
 #[cfg(feature = "rayon")]
 use crate::threads::{first_part_where, share};
 
@@ -33,6 +33,22 @@ impl Told<'_> {
             Told::New(boxes) | Told::Moved(boxes) => boxes.len(),
             Told::MovedTo(proxies, _) => proxies.len(),
         }
+    }
+
+    /// How many boxes are worth another thread. One that is known and moves takes some 3 ns, and what a thread wrote of it the pass over pairs
+    /// then reads on another: 16,000 to 30,000 that all move took 1.1 to 1.2 times as long on two threads, 60,000 take 0.8. To be asked where
+    /// it is takes some 20 ns: frames of worlds of 1,400 to 2,800 objects took up to 1.08 times as long on two.
+    fn many(self) -> usize {
+        match self {
+            Told::New(_) => 1 << 12,
+            Told::Moved(_) => 1 << 15,
+            Told::MovedTo(..) => ASKED_MANY,
+        }
+    }
+
+    /// Whether they are worth entering the pool of threads.
+    pub fn is_worth_entering(self) -> bool {
+        self.len() >= 2 * self.many()
     }
 }
 
@@ -108,17 +124,6 @@ impl Slots<'_> {
 
 #[cfg(feature = "rayon")]
 impl Told<'_> {
-    /// How many boxes are worth another thread. One that is known and moves takes some 3 ns, and what a thread wrote of it the pass over pairs
-    /// then reads on another: 16,000 to 30,000 that all move took 1.1 to 1.2 times as long on two threads, 60,000 take 0.8. To be asked where
-    /// it is takes some 20 ns: frames of worlds of 1,400 to 2,800 objects took up to 1.08 times as long on two.
-    fn many(self) -> usize {
-        match self {
-            Told::New(_) => 1 << 12,
-            Told::Moved(_) => 1 << 15,
-            Told::MovedTo(..) => 1 << 12,
-        }
-    }
-
     /// Boxes in one part.
     fn part(self) -> usize {
         match self {
@@ -185,6 +190,7 @@ impl<'a> Slots<'a> {
 
     /// See [`many`](Self::many); the proxies ascend.
     fn on_threads(self, told: Told, notes: &mut Notes, moved_max: usize) -> (usize, Option<usize>) {
+        notes.shared = true;
         let mut parts = std::mem::take(&mut notes.parts);
         parts.resize_with(told.len().div_ceil(told.part()), Notes::default);
         parts.iter_mut().for_each(|part| part.all_moved = notes.all_moved);
