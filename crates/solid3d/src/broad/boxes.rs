@@ -2,6 +2,7 @@
 
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::DVec3;
+use solid_convex::simd::prefetch;
 
 use super::Proxy;
 use super::room::resize_on_threads;
@@ -56,6 +57,12 @@ impl Boxes {
 
     pub fn get(&self, proxy: Proxy) -> Aabb {
         of_row(self.0[proxy as usize])
+    }
+
+    /// Asks for the memory of a box.
+    #[inline(always)]
+    pub fn prefetch(&self, proxy: Proxy) {
+        prefetch(&self.0[proxy as usize]);
     }
 
     /// The numbers of the boxes, by proxy.

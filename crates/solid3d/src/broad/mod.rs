@@ -29,6 +29,7 @@ pub use dynamic_tree::DynamicTree;
 pub use sweep_and_prune::SweepAndPrune;
 
 use crate::bounds::Aabb;
+use crate::tree::{TreeRay, entry};
 
 /// Names a box in a broad phase: dense small integers chosen by the caller (slots, reused after removal).
 ///
@@ -233,6 +234,56 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
     /// ```
     fn for_each_nearest(&self, bound: &dyn Fn(&Aabb) -> f64, until: f64, visit: &mut dyn FnMut(Proxy) -> f64);
 
+    /// Visits the proxies whose box a ray, or a box that moves along one, meets up to `until`, about in the order in which it does, and perhaps
+    /// some that it passes by less than rounding errors; each visit gives the new `until`. Otherwise as [`for_each_nearest`](Self::for_each_nearest).
+    ///
+    /// ```
+    /// use solid3d::broad::{BroadPhase, BroadPhaseKind};
+    /// use solid3d::{Aabb, glam::DVec3, tree::TreeRay};
+    /// for kind in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+    ///     let mut broad = kind.build();
+    ///     for i in 0..10 {
+    ///         let corner = DVec3::X * f64::from(i);
+    ///         broad.insert(i, Aabb::new(corner, corner + 0.5));
+    ///     }
+    ///     broad.flush();
+    ///     let ray = TreeRay { origin: DVec3::new(2.2, 3.0, 0.2), direction: DVec3::NEG_Y, half_extents: DVec3::ZERO };
+    ///     let mut found = Vec::new();
+    ///     broad.for_each_along(&ray, f64::INFINITY, &mut |proxy| {
+    ///         found.push(proxy);
+    ///         f64::INFINITY
+    ///     });
+    ///     assert_eq!(found, [2]);
+    /// }
+    /// ```
+    fn for_each_along(&self, ray: &TreeRay, until: f64, visit: &mut dyn FnMut(Proxy) -> f64) {
+        self.for_each_nearest(&bound_along(ray), until, visit);
+    }
+
+    /// Visits the proxies whose box shares a point with a region, in any order. Otherwise as [`for_each_nearest`](Self::for_each_nearest).
+    ///
+    /// ```
+    /// use solid3d::broad::{BroadPhase, BroadPhaseKind};
+    /// use solid3d::{Aabb, glam::DVec3};
+    /// let mut broad = BroadPhaseKind::default().build();
+    /// for i in 0..10 {
+    ///     let corner = DVec3::splat(f64::from(i));
+    ///     broad.insert(i, Aabb::new(corner, corner + 0.5));
+    /// }
+    /// broad.flush();
+    /// let mut found = Vec::new();
+    /// broad.for_each_in(&Aabb::new(DVec3::splat(2.1), DVec3::splat(3.1)), &mut |proxy| found.push(proxy));
+    /// found.sort_unstable();
+    /// assert_eq!(found, [2, 3]);
+    /// ```
+    fn for_each_in(&self, region: &Aabb, visit: &mut dyn FnMut(Proxy)) {
+        let bound = |bounds: &Aabb| if bounds.overlaps(region) { 0.0 } else { f64::INFINITY };
+        self.for_each_nearest(&bound, 0.0, &mut |proxy| {
+            visit(proxy);
+            0.0
+        });
+    }
+
     /// The work done since the engine was made.
     fn counters(&self) -> Counters;
 
@@ -299,6 +350,20 @@ impl BroadPhaseKind {
             BroadPhaseKind::DynamicTree => Box::new(DynamicTree::default()),
             BroadPhaseKind::SweepAndPrune => Box::new(SweepAndPrune::default()),
         }
+    }
+}
+
+/// Beyond the rounding of when a ray comes into a box, relative to the coordinates of either.
+const ROUNDING_ALONG: f64 = 1e-14;
+
+/// When a ray, or a box that moves along one, comes into a box, or before; infinity where it does not.
+pub(crate) fn bound_along(ray: &TreeRay) -> impl Fn(&Aabb) -> f64 {
+    let far = ray.origin.abs().max_element();
+    move |bounds| {
+        let margin = ROUNDING_ALONG * (far + bounds.min.abs().max(bounds.max.abs()).max_element());
+        let half = bounds.half_extents() + ray.half_extents + margin;
+        entry(ray.origin - bounds.center(), ray.direction, half)
+            .map_or(f64::INFINITY, |t| t * (1.0 - ROUNDING_ALONG))
     }
 }
 

@@ -1,7 +1,8 @@
 //! The laws of the broad phase, held by both engines against brute force.
 
-use super::{BroadPhase, BroadPhaseKind, DynamicTree, Proxy};
+use super::{BroadPhase, BroadPhaseKind, DynamicTree, Proxy, bound_along, matters};
 use crate::bounds::Aabb;
+use crate::tree::TreeRay;
 use glam::DVec3;
 use proptest::prelude::*;
 use rand::Rng;
@@ -16,11 +17,18 @@ struct Trial {
     boxes: BTreeMap<Proxy, Aabb>,
     engines: Vec<Box<dyn BroadPhase>>,
     pairs_seen: usize,
+    /// By rays.
+    boxes_met: usize,
 }
 
 impl Trial {
     fn new() -> Self {
-        Trial { boxes: BTreeMap::new(), engines: KINDS.iter().map(|k| k.build()).collect(), pairs_seen: 0 }
+        Trial {
+            boxes: BTreeMap::new(),
+            engines: KINDS.iter().map(|k| k.build()).collect(),
+            pairs_seen: 0,
+            boxes_met: 0,
+        }
     }
 
     fn insert(&mut self, proxy: Proxy, b: Aabb) {
@@ -58,9 +66,41 @@ impl Trial {
                     found.sort_unstable();
                     assert_eq!(found, there, "{kind:?}, {what}, in {region:?}, until {until}");
                 }
+                let mut found = Vec::new();
+                engine.for_each_in(&region, &mut |proxy| found.push(proxy));
+                found.sort_unstable();
+                assert_eq!(found, there, "{kind:?}, {what}, in {region:?}");
+            }
+            let centers: Vec<_> = all.iter().map(|(_, bounds)| bounds.center()).collect();
+            for (ray, until) in rays_among(&centers) {
+                let bound = bound_along(&ray);
+                let there: Vec<_> =
+                    all.iter().filter(|(_, b)| matters(bound(b), until)).map(|(a, _)| **a).collect();
+                let mut found = Vec::new();
+                engine.for_each_along(&ray, until, &mut |proxy| {
+                    found.push(proxy);
+                    until
+                });
+                found.sort_unstable();
+                self.boxes_met += there.len();
+                assert_eq!(found, there, "{kind:?}, {what}, along {ray:?} until {until}");
             }
         }
     }
+}
+
+/// Rays, and boxes that move, from some points to others, and until when: from afar, along an axis, and short ones among them.
+fn rays_among(points: &[DVec3]) -> Vec<(TreeRay, f64)> {
+    let ends = points.iter().zip(points.iter().skip(1)).step_by(1 + points.len() / 8).enumerate();
+    let ray = |(i, (from, to)): (usize, (&DVec3, &DVec3))| {
+        let way = *to - *from;
+        let direction = if i % 4 == 3 { DVec3::AXES[i % 3] * way.dot(DVec3::AXES[i % 3]) } else { way };
+        let origin = if i % 3 == 2 { *from - 1e5 * direction } else { *from };
+        let half_extents = if i % 5 == 4 { 0.1 * direction.abs() } else { DVec3::ZERO };
+        let until = [f64::INFINITY, 1.0, 1e5 + 0.5][i % 3];
+        (direction != DVec3::ZERO).then_some((TreeRay { origin, direction, half_extents }, until))
+    };
+    ends.filter_map(ray).collect()
 }
 
 /// The boxes that overlap a region, as they are visited by a bound.
@@ -166,7 +206,7 @@ fn moved(scene: Scene, b: &Aabb, rng: &mut StdRng) -> Aabb {
 #[test]
 fn both_engines_agree_with_brute_force_in_long_animations() {
     for (seed, scene) in (100..).zip(SCENES) {
-        let mut pairs_seen = 0;
+        let (mut pairs_seen, mut boxes_met) = (0, 0);
         for (share_moving, boxes) in [(0.02, 150), (0.3, 60), (1.0, 40), (1.0, 9), (0.5, 2)] {
             let mut rng = seeded(seed);
             let mut trial = Trial::new();
@@ -203,8 +243,10 @@ fn both_engines_agree_with_brute_force_in_long_animations() {
                 }
             }
             pairs_seen += trial.pairs_seen;
+            boxes_met += trial.boxes_met;
         }
         assert!(pairs_seen > 5_000, "seed {seed}, {scene:?}: only {pairs_seen} pairs");
+        assert!(boxes_met > 5_000, "seed {seed}, {scene:?}: rays met only {boxes_met} boxes");
     }
 }
 

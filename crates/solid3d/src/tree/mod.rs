@@ -26,6 +26,7 @@
 //! | `beam`, `order` | pairs of leaves that are likely near to each other, for a first distance |
 //! | `eights` | the eight boxes of a node against the eight of another, across such a map |
 //! | `overlap`, `pairs` | queries for overlap: box, placed box, tree against tree |
+//! | `ray_probe` | a ray, or a box that moves along one, against eight boxes |
 //! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for two trees that move; nearest first |
 //! | `furthest` | what is furthest along a direction |
 //! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
@@ -68,6 +69,7 @@ mod pairs;
 mod parting;
 mod patch;
 mod ray;
+mod ray_probe;
 mod refit;
 mod relative;
 mod siblings;
@@ -84,6 +86,7 @@ pub use cast_pairs::cast_pairs;
 pub(crate) use cast_pairs::first_pairs;
 pub use cost::DEGRADED_RATIO;
 pub(crate) use facing::Facing;
+pub(crate) use insertion::push_unless_far;
 pub(crate) use lanes::bits;
 pub(crate) use leaf_images::{HALF_STEP, Image, Leaf, LeafImages, STEPS};
 pub(crate) use leaf_points::LeafPoints;
@@ -97,6 +100,7 @@ pub use pairs::pairs;
 pub(crate) use pairs::{LeafPairs, pairs_on};
 pub(crate) use ray::RayLeaves;
 pub use ray::TreeRay;
+pub(crate) use ray_probe::{RayProbe, Space, entry};
 pub use relative::{PlacedBox, Relative};
 pub(crate) use slabs::Slabs;
 pub use traversal::{Counters, Traversal};

@@ -1,27 +1,13 @@
 //! The leaves along a ray, nearest first.
-//!
-//! A ray is tested against the eight boxes of a node at once, by slabs, in `f32`. In tree coordinates the boxes lie in
-//! `[-1, 1]^3`; a ray from afar is first moved to where it comes near, in `f64`.
-//!
-//! # Why nothing is lost
-//!
-//! The origin is not a point here but a box around it, so that what is computed in `f64`, and how the boxes of a moving box
-//! grow, is all in one place: the sides of it are rounded outward to `f32`. Then a side of a slab is left to
-//! `(side - origin) * inverse`: a difference whose sign is exact, and three roundings, of the difference, of the inverse and of the
-//! product. [`ROUNDING`] is more than those of both ends of an interval, which is stretched by it (Ize, *Robust BVH Ray
-//! Traversal*, 2013). A direction nearly along a plane has its least coordinate raised to [`DIRECTION_MIN`]; over the few
-//! units of path that are left, the origin's box pays for that.
 
-use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8};
+use fearless_simd::Simd;
 use glam::DVec3;
 use solid_convex::simd::{self, Level, dispatch};
-use solid_convex::unit_scale;
 
 use super::insertion::push_unless_far;
 use super::lanes::bits;
-use super::node::{Kind, Node, WIDTH};
-use super::normal::round_down;
+use super::node::Kind;
+use super::ray_probe::{ROUNDING_F64, RayProbe, Space, entry};
 use super::{Leaf, Place, Traversal, Tree};
 use crate::Aabb;
 
@@ -84,97 +70,8 @@ impl TreeRay {
     }
 }
 
-/// Rounding of the two ends of an interval, relative: six times 2^-24, and some.
-const ROUNDING: f32 = 4.0 * f32::EPSILON;
-
-/// Relative rounding of what is computed in `f64`: some dozen operations.
-const ROUNDING_F64: f64 = 16.0 * f64::EPSILON;
-
-/// The least coordinate of a direction whose greatest is from 1 to 2.
-const DIRECTION_MIN: f64 = 1e-12;
-
-/// More than what raising a direction's coordinate to [`DIRECTION_MIN`] moves over the path that is left.
-const RAISED: f64 = 1e-10;
-
-/// A ray from further away than this, beyond the moving box, is moved up. The tree lies within 1.
-const FAR_AWAY: f64 = 4.0;
-
-/// What is beyond is as good as endless, and its products do not overflow in `f32`.
-const ENDLESS: f64 = 1e20;
-
 /// Room for the entries of most rays, so that memory is asked for once.
 const STACK: usize = 64;
-
-/// A ray in tree coordinates, ready for lanes.
-struct Probe {
-    /// The sides of the origin's box that count for where a slab is entered, and where it is left.
-    enter_from: [f32; 3],
-    leave_from: [f32; 3],
-    inverse: [f32; 3],
-    /// Parameters times this are those of the lanes, from `start` on.
-    speed: f64,
-    start: f64,
-}
-
-impl Probe {
-    /// `None` for a ray that clearly passes the tree.
-    fn new(tree: &Tree, ray: &TreeRay) -> Option<Probe> {
-        let normal = &tree.normal;
-        let to_tree = |v: DVec3| v * normal.inverse;
-        let largest = ray.direction.abs().max_element();
-        // Rounded up, as the rounding of the origin is. Not cut off before it is added to that, which may be as far.
-        let mut half = to_tree(ray.half_extents);
-        let mut origin = to_tree(ray.origin - normal.origin);
-        let unit = unit_scale(largest);
-        let direction = ray.direction * unit;
-        let terms = to_tree(ray.origin.abs() + normal.origin.abs());
-        half += ROUNDING_F64 * (terms + half) + RAISED;
-        let mut start = 0.0;
-        if (origin.abs() - half).max_element() > FAR_AWAY {
-            start = entry(origin, direction, half + FAR_AWAY)?;
-            origin += direction * start;
-            half += ROUNDING_F64 * (terms + DVec3::splat(start));
-        }
-        let low = (origin - half).to_array().map(|x| round_down(x.max(-ENDLESS)));
-        let high = (origin + half).to_array().map(|x| -round_down(-x.min(ENDLESS)));
-        let direction = direction.to_array().map(|d| d.abs().max(DIRECTION_MIN).copysign(d));
-        let from =
-            |ahead: bool| [0, 1, 2].map(|i| if (direction[i] > 0.0) == ahead { high[i] } else { low[i] });
-        Some(Probe {
-            enter_from: from(true),
-            leave_from: from(false),
-            inverse: direction.map(|d| (1.0 / d) as f32),
-            // One unit of the lanes' parameter is a way of `direction` in tree coordinates.
-            speed: normal.inverse / unit,
-            start,
-        })
-    }
-
-    /// A bound on the lanes' parameters, rounded up; negative when nothing is left.
-    fn until(&self, until: f64) -> f32 {
-        let left = until * self.speed - self.start;
-        let slack = ROUNDING_F64 * self.start + f64::from(f32::MIN_POSITIVE);
-        -round_down(-(left + slack).min(ENDLESS))
-    }
-}
-
-/// When a point comes into a box around the origin: `None` when it does not.
-fn entry(origin: DVec3, direction: DVec3, half: DVec3) -> Option<f64> {
-    let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
-    for axis in 0..3 {
-        let (p, d, h) = (origin[axis], direction[axis], half[axis]);
-        if d == 0.0 {
-            if p.abs() > h {
-                return None;
-            }
-            continue;
-        }
-        let side = h.copysign(d);
-        enter = enter.max((-side - p) / d);
-        leave = leave.min((side - p) / d);
-    }
-    (enter <= leave).then_some(enter)
-}
 
 impl Tree {
     /// Visits the leaves that a ray, or a moving box, may meet at a parameter from 0 to `until`, nearest first: all
@@ -201,7 +98,8 @@ impl Tree {
         traversal: &mut Traversal,
         visitor: &mut impl RayLeaves,
     ) {
-        if let Some(probe) = Probe::new(self, ray) {
+        let space = Space { origin: self.normal.origin, inverse: self.normal.inverse, scale: 1.0 };
+        if let Some(probe) = RayProbe::new(&space, ray) {
             dispatch!(level, simd => self.walk_along(simd, &probe, until, traversal, visitor));
         }
     }
@@ -210,7 +108,7 @@ impl Tree {
     fn walk_along<S: Simd>(
         &self,
         simd: S,
-        probe: &Probe,
+        probe: &RayProbe,
         until: &mut f64,
         traversal: &mut Traversal,
         visitor: &mut impl RayLeaves,
@@ -235,7 +133,7 @@ impl Tree {
                 Kind::Inner(index) => {
                     counters.box_tests += 1;
                     let node = &self.nodes[index];
-                    let (hits, enters) = entries(simd, node, probe, left);
+                    let (hits, enters) = probe.entries(simd, [&node.min, &node.max], left);
                     let entry = |lane: usize| (enters[lane], (node.child[lane], Place::lane(index, lane)));
                     if hits.is_power_of_two() {
                         only = Some(entry(hits.trailing_zeros() as usize));
@@ -255,28 +153,6 @@ impl Tree {
             }
         }
     }
-}
-
-/// The lanes that a ray meets at a parameter up to `left`, as bits, and when it enters each.
-#[inline(always)]
-fn entries<S: Simd>(simd: S, node: &Node, probe: &Probe, left: f32) -> (u32, [f32; WIDTH]) {
-    let splat = |x: f32| f32x8::splat(simd, x);
-    let mut enter = splat(0.0);
-    let mut leave = splat(left);
-    for axis in 0..3 {
-        let (min, max) = (&node.min[axis], &node.max[axis]);
-        let (near, far) = if probe.inverse[axis] > 0.0 { (min, max) } else { (max, min) };
-        let inverse = splat(probe.inverse[axis]);
-        let near = (f32x8::from_slice(simd, near) - splat(probe.enter_from[axis])) * inverse;
-        let far = (f32x8::from_slice(simd, far) - splat(probe.leave_from[axis])) * inverse;
-        enter = near.max(enter);
-        leave = (far * splat(1.0 + ROUNDING)).min(leave);
-    }
-    let enter = enter * splat(1.0 - ROUNDING);
-    let hits = enter.simd_le(leave).to_bitmask() as u32;
-    let mut enters = [0.0; WIDTH];
-    enter.store_slice(&mut enters);
-    (hits, enters)
 }
 
 #[cfg(test)]
@@ -327,13 +203,9 @@ mod tests {
             let until = if case % 5 == 0 { 0.9 * size * far / ray.direction.length() } else { f64::INFINITY };
             let mut answers = Vec::new();
             for level in simd::levels() {
-                let probe = Probe::new(&tree, &ray);
                 let (mut traversal, mut found) = (Traversal::default(), Vec::new());
-                if let Some(probe) = &probe {
-                    let visit = &mut Plain(|leaf: &[u32], _: &mut f64| found.extend_from_slice(leaf));
-                    let until = &mut until.clone();
-                    dispatch!(level, simd => tree.walk_along(simd, probe, until, &mut traversal, visit));
-                }
+                let visit = &mut Plain(|leaf: &[u32], _: &mut f64| found.extend_from_slice(leaf));
+                tree.along_on(level, &ray, &mut until.clone(), &mut traversal, visit);
                 answers.push((found, traversal.counters));
             }
             assert!(answers.iter().all(|answer| *answer == answers[0]));

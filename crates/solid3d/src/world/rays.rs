@@ -1,10 +1,13 @@
 //! Rays against all objects of a world.
 
+use glam::DVec3;
+
 use super::{ObjectId, World};
 use crate::bounds::Aabb;
-use crate::broad::matters;
+use crate::broad::{Proxy, bound_along, matters};
 use crate::error::Result;
-use crate::pair::{Hits, Ray, RayHit, RayOptions, Scratch, Wanted, entry, ray_hits, world_bounds};
+use crate::pair::{Hits, Ray, RayHit, RayOptions, Scratch, Wanted, ray_hits, world_bounds};
+use crate::tree::TreeRay;
 
 /// Where a ray meets an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,9 +17,6 @@ pub struct ObjectHit {
     /// Where, and which surface.
     pub hit: RayHit,
 }
-
-/// Beyond the rounding of when a ray comes into a box, relative to the coordinates of either.
-const ROUNDING: f64 = 1e-14;
 
 impl World {
     /// What a ray or segment meets first, among the objects that `counts` lets through; `None` when it meets nothing.
@@ -110,36 +110,34 @@ impl World {
 
     /// Visits the objects whose boxes a ray meets, about from the nearest on, each with the greatest `t` that is of interest; each
     /// visit gives the new one.
-    fn along(&self, ray: &Ray, visit: impl FnMut(ObjectId, f64) -> f64) {
-        let far = ray.origin.abs().max_element();
-        let bound = |bounds: &Aabb| {
-            let margin = ROUNDING * (far + bounds.min.abs().max(bounds.max.abs()).max_element());
-            entry(&bounds.inflated(margin), ray.origin, ray.direction)
-                .map_or(f64::INFINITY, |t| t * (1.0 - ROUNDING))
-        };
-        self.nearest(&bound, ray.max, visit);
-    }
-
-    /// Visits the objects whose boxes have a bound up to `until`, and those whose boxes in the broad phase are out of date; each visit
-    /// takes the current `until`, and gives the new one.
-    pub(super) fn nearest(
-        &self,
-        bound: &dyn Fn(&Aabb) -> f64,
-        until: f64,
-        mut visit: impl FnMut(ObjectId, f64) -> f64,
-    ) {
-        let mut until = until;
-        for slot in self.stirred.elsewhere() {
-            let object = self.objects.at(slot).expect("what is elsewhere is in the world");
-            if matters(bound(&world_bounds(object.placed())), until) {
-                until = visit(self.objects.id_of(slot), until);
+    fn along(&self, ray: &Ray, mut visit: impl FnMut(ObjectId, f64) -> f64) {
+        let mut until = ray.max;
+        let ray = TreeRay { origin: ray.origin, direction: ray.direction, half_extents: DVec3::ZERO };
+        let bound = bound_along(&ray);
+        for (id, bounds) in self.elsewhere() {
+            if matters(bound(&bounds), until) {
+                until = visit(id, until);
             }
         }
-        self.broad.for_each_nearest(bound, until, &mut |proxy| {
-            if self.objects.at(proxy).is_some() && !self.stirred.is_elsewhere(proxy) {
-                until = visit(self.objects.id_of(proxy), until);
+        self.broad.for_each_along(&ray, until, &mut |proxy| {
+            if let Some(id) = self.in_place(proxy) {
+                until = visit(id, until);
             }
             until
         });
+    }
+
+    /// The objects whose boxes in the broad phase are out of date, and where their boxes are.
+    pub(super) fn elsewhere(&self) -> impl Iterator<Item = (ObjectId, Aabb)> {
+        self.stirred.elsewhere().map(|slot| {
+            let object = self.objects.at(slot).expect("what is elsewhere is in the world");
+            (self.objects.id_of(slot), world_bounds(object.placed()))
+        })
+    }
+
+    /// The object whose box in the broad phase is up to date.
+    pub(super) fn in_place(&self, proxy: Proxy) -> Option<ObjectId> {
+        let is_there = self.objects.at(proxy).is_some() && !self.stirred.is_elsewhere(proxy);
+        is_there.then(|| self.objects.id_of(proxy))
     }
 }

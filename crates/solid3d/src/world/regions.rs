@@ -3,7 +3,6 @@
 use glam::DAffine3;
 
 use super::{ObjectId, World};
-use crate::bounds::Aabb;
 use crate::error::Result;
 use crate::pair::{self, Placed, Relation, Scratch, world_bounds};
 use crate::placement;
@@ -32,15 +31,16 @@ impl World {
     pub fn objects_in(&self, region: &Shape, at: &DAffine3) -> Result<Vec<ObjectId>> {
         let region = Placed { shape: region, placement: placement::checked(at)? };
         let bounds = world_bounds(region);
-        let bound = |b: &Aabb| if b.overlaps(&bounds) { 0.0 } else { f64::INFINITY };
         let (mut found, mut scratch) = (Vec::new(), Scratch::default());
-        self.nearest(&bound, 0.0, |id, until| {
+        let mut look_at = |id| {
             let relation = pair::intersection(self.objects[id].placed(), region, &mut scratch);
             if let Relation::Common(_) = relation {
                 found.push(id);
             }
-            until
-        });
+        };
+        let elsewhere = self.elsewhere().filter(|(_, other)| other.overlaps(&bounds));
+        elsewhere.for_each(|(id, _)| look_at(id));
+        self.broad.for_each_in(&bounds, &mut |proxy| self.in_place(proxy).into_iter().for_each(&mut look_at));
         found.sort_unstable_by_key(|&id| self.objects[id].order);
         Ok(found)
     }

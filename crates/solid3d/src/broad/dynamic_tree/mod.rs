@@ -20,6 +20,7 @@
 //! What is done for everything that moves is free of branches and reads memory in order, or many places at a time: while all move
 //! and stay inside, a frame of 10,000 boxes takes 71 us, where the same work with branches took 240 us.
 
+mod along;
 mod build;
 mod codes;
 mod fat_box;
@@ -42,6 +43,7 @@ use super::{
 };
 use crate::bounds::Aabb;
 use crate::threads::{between, both, in_pool};
+use crate::tree::TreeRay;
 use build::Builder;
 use fat_box::FatBox;
 use notes::Notes;
@@ -452,6 +454,14 @@ impl BroadPhase for DynamicTree {
         visit: &mut dyn FnMut(Proxy) -> f64,
     ) {
         self.visit_nearest(bound, until, visit);
+    }
+
+    fn for_each_along(&self, ray: &TreeRay, until: f64, visit: &mut dyn FnMut(Proxy) -> f64) {
+        self.visit_along(ray, until, visit);
+    }
+
+    fn for_each_in(&self, region: &Aabb, visit: &mut dyn FnMut(Proxy)) {
+        self.visit_in(region, visit);
     }
 
     fn counters(&self) -> Counters {

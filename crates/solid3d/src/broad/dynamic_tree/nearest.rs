@@ -17,24 +17,14 @@ impl DynamicTree {
         mut until: f64,
         visit: &mut dyn FnMut(Proxy) -> f64,
     ) {
-        // What waits for the next flush is not in the tree, or not where it is.
-        for &proxy in &self.notes.queue {
-            if self.is_alive(proxy) && matters(bound(&self.tight.get(proxy)), until) {
-                until = visit(proxy);
-            }
-        }
+        self.visit_queued(bound, &mut until, visit);
         let mut stack = vec![(f64::NEG_INFINITY, Kind::Node(ROOT))];
         while let Some((least, kind)) = stack.pop() {
             if least > until {
                 continue;
             }
             match kind {
-                Kind::Leaf(proxy) => {
-                    let here = self.is_alive(proxy) && !self.status[proxy as usize].is(Status::QUEUED);
-                    if here && matters(bound(&self.tight.get(proxy)), until) {
-                        until = visit(proxy);
-                    }
-                }
+                Kind::Leaf(proxy) => self.visit_leaf(proxy, bound, &mut until, visit),
                 Kind::Node(index) => {
                     let node = &self.tree.nodes[index as usize];
                     let from = stack.len();
@@ -45,6 +35,35 @@ impl DynamicTree {
                     stack[from..].sort_by(|(x, _), (y, _)| y.total_cmp(x));
                 }
             }
+        }
+    }
+
+    /// Visits what waits for the next flush: it is not in the tree, or not where it is.
+    pub(super) fn visit_queued(
+        &self,
+        bound: &dyn Fn(&Aabb) -> f64,
+        until: &mut f64,
+        visit: &mut dyn FnMut(Proxy) -> f64,
+    ) {
+        for &proxy in &self.notes.queue {
+            if self.is_alive(proxy) && matters(bound(&self.tight.get(proxy)), *until) {
+                *until = visit(proxy);
+            }
+        }
+    }
+
+    /// Visits what is in the tree, where it is.
+    #[inline(always)]
+    pub(super) fn visit_leaf(
+        &self,
+        proxy: Proxy,
+        bound: impl Fn(&Aabb) -> f64,
+        until: &mut f64,
+        visit: &mut dyn FnMut(Proxy) -> f64,
+    ) {
+        let here = self.is_alive(proxy) && !self.status[proxy as usize].is(Status::QUEUED);
+        if here && matters(bound(&self.tight.get(proxy)), *until) {
+            *until = visit(proxy);
         }
     }
 }

@@ -102,6 +102,11 @@ impl Node {
         }
     }
 
+    /// The lesser and the greater sides of the boxes.
+    pub fn sides(&self) -> [&[[f32; WIDTH]; 3]; 2] {
+        [&self.min, &self.max]
+    }
+
     pub fn count(&self) -> usize {
         self.count as usize
     }

@@ -29,6 +29,11 @@ impl Origin {
         Aabb::new(from(bounds.min), from(bounds.max))
     }
 
+    /// Where it is.
+    pub fn point(self) -> DVec3 {
+        self.0.unwrap_or_default()
+    }
+
     /// Whether it is that of the world: then boxes from it are the boxes.
     #[inline(always)]
     pub fn is_of_world(self) -> bool {

@@ -190,7 +190,7 @@ fn roomy(bounds: &Aabb, origin: DVec3) -> Aabb {
 
 /// When a ray comes into a box, 0 when it starts there; `None` when it passes it.
 #[inline]
-pub(crate) fn entry(bounds: &Aabb, origin: DVec3, direction: DVec3) -> Option<f64> {
+fn entry(bounds: &Aabb, origin: DVec3, direction: DVec3) -> Option<f64> {
     let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {
         let (p, d, min, max) = (origin[axis], direction[axis], bounds.min[axis], bounds.max[axis]);

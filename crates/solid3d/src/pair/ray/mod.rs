@@ -7,7 +7,6 @@ mod convex;
 mod glance;
 mod triangle;
 
-pub(crate) use complex::entry;
 use glam::{DMat3, DVec3};
 
 use super::{Placed, Scratch};
