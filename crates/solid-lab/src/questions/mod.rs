@@ -7,10 +7,12 @@
 //! | `poses` | where they are |
 //! | `asked` | the questions |
 //! | `crowd` | worlds of a kind |
+//! | `field` | worlds at rest |
 //! | `table` | what comes out |
 
 mod asked;
 mod crowd;
+mod field;
 mod kinds;
 mod poses;
 mod table;
@@ -20,9 +22,10 @@ use std::time::{Duration, Instant};
 use cpu_time::ThreadTime;
 
 use crate::inputs::seeded;
-use crate::peers::{Effort, Spread, date, machine};
+use crate::peers::{Effort, Spread, date, machine, with_commas};
 use asked::{ALONE, Asker, OF_PAIRS};
 use crowd::{Crowd, OF_CROWDS};
+use field::{Field, OF_FIELDS};
 use kinds::Kind;
 pub use table::table;
 
@@ -65,11 +68,13 @@ pub struct Report {
     pub alone: Asked,
     /// Of a frame of many.
     pub crowds: Asked,
+    /// Of many at rest.
+    pub fields: Asked,
 }
 
 impl Report {
-    fn asked(&self) -> [&Asked; 3] {
-        [&self.pairs, &self.alone, &self.crowds]
+    fn asked(&self) -> [&Asked; 4] {
+        [&self.pairs, &self.alone, &self.crowds, &self.fields]
     }
 }
 
@@ -100,7 +105,15 @@ pub fn run(effort: Effort, seed: u64, mut progress: impl FnMut(&str)) -> Report 
         let cells = OF_CROWDS.iter().map(|(_, ask)| race(effort, crowd.len(), ask(&crowd)));
         crowds.rows.push((name.to_string(), cells.collect()));
     }
-    Report { seed, machine: machine(), date: date(), pairs, alone, crowds }
+    let mut fields = Asked { questions: OF_FIELDS.map(|(name, _)| name).to_vec(), rows: Vec::new() };
+    for objects in field::OBJECTS {
+        let name = with_commas(objects);
+        progress(&format!("a world of {name} at rest"));
+        let field = Field::new(effort, &mut rng, convex.clone(), objects);
+        let cells = OF_FIELDS.iter().map(|(_, ask)| race(effort, field.len(), ask(&field)));
+        fields.rows.push((name, cells.collect()));
+    }
+    Report { seed, machine: machine(), date: date(), pairs, alone, crowds, fields }
 }
 
 /// Lets both take turns at a question.
@@ -147,7 +160,7 @@ mod tests {
     fn every_question_is_asked_of_every_kind() {
         let report = run(Effort::Smoke, 1999, |_| {});
         let rows = report.asked().map(|asked| asked.rows.len());
-        assert_eq!(rows, [28, 7, 7]);
+        assert_eq!(rows, [28, 7, 7, 3]);
         let cells = report.asked().into_iter().flat_map(|asked| &asked.rows).flat_map(|(_, cells)| cells);
         assert!(cells.clone().all(|cell| cell.micros > 0.0));
         // Of two meshes parry has no depth, no contacts and no time of impact.

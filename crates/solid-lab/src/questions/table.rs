@@ -9,6 +9,8 @@ pub fn table(report: &Report) -> String {
     text.push_str(&of_asked("one shape", &report.alone));
     text.push('\n');
     text.push_str(&of_asked("a frame of 1,000", &report.crowds));
+    text.push('\n');
+    text.push_str(&of_asked("objects at rest", &report.fields));
     let rows = || report.asked().into_iter().flat_map(|asked| &asked.rows);
     let ratios = || rows().flat_map(|(_, cells)| cells).filter_map(|cell| cell.ratio);
     let faster = ratios().filter(|&ratio| ratio >= 1.0).count();

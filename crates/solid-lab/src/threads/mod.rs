@@ -75,7 +75,7 @@ pub struct Report {
 /// # Errors
 /// When it cannot be had.
 pub fn on_one<R: Send>(work: impl FnOnce() -> R + Send) -> Result<R, ThreadPoolBuildError> {
-    Ok(pool_of(1).build()?.install(work))
+    Ok(ThreadPoolBuilder::new().num_threads(1).build()?.install(work))
 }
 
 /// Has two threads in the pool that works are shared on by default.

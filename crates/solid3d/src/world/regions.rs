@@ -4,7 +4,7 @@ use glam::DAffine3;
 
 use super::{ObjectId, World};
 use crate::error::Result;
-use crate::pair::{self, Placed, Relation, Scratch, world_bounds};
+use crate::pair::{self, Placed, Scratch, world_bounds};
 use crate::placement;
 use crate::shape::Shape;
 
@@ -33,8 +33,7 @@ impl World {
         let bounds = world_bounds(region);
         let (mut found, mut scratch) = (Vec::new(), Scratch::default());
         let mut look_at = |id| {
-            let relation = pair::intersection(self.objects[id].placed(), region, &mut scratch);
-            if let Relation::Common(_) = relation {
+            if pair::intersects(self.objects[id].placed(), region, &mut scratch) {
                 found.push(id);
             }
         };
