@@ -45,12 +45,11 @@ impl World {
         mut counts: impl FnMut(ObjectId) -> bool,
     ) -> Result<Option<ObjectHit>> {
         let (ray, mut best) = (ray.checked()?, None::<ObjectHit>);
-        let mut scratch = Scratch::default();
-        self.along(ray, |object, until| {
+        self.along(ray, |object, until, scratch| {
             if counts(object) {
                 let mut hits = Hits::new(ray, options, Wanted::First);
                 hits.until = until;
-                ray_hits(self.objects[object].placed(), &mut hits, &mut scratch);
+                ray_hits(self.objects[object].placed(), &mut hits, scratch);
                 let order = |id: ObjectId| self.objects[id].order;
                 let better = |hit: &RayHit| {
                     best.is_none_or(|best| (hit.t, order(object)) < (best.hit.t, order(best.object)))
@@ -73,11 +72,11 @@ impl World {
         options: &RayOptions,
         mut counts: impl FnMut(ObjectId) -> bool,
     ) -> Result<Vec<ObjectHit>> {
-        let (ray, mut all, mut scratch) = (ray.checked()?, Vec::new(), Scratch::default());
-        self.along(ray, |object, until| {
+        let (ray, mut all) = (ray.checked()?, Vec::new());
+        self.along(ray, |object, until, scratch| {
             if counts(object) {
                 let mut hits = Hits::new(ray, options, Wanted::All);
-                ray_hits(self.objects[object].placed(), &mut hits, &mut scratch);
+                ray_hits(self.objects[object].placed(), &mut hits, scratch);
                 all.extend(hits.sorted().into_iter().map(|hit| ObjectHit { object, hit }));
             }
             until
@@ -96,11 +95,11 @@ impl World {
         options: &RayOptions,
         mut counts: impl FnMut(ObjectId) -> bool,
     ) -> Result<bool> {
-        let (ray, mut met, mut scratch) = (ray.checked()?, false, Scratch::default());
-        self.along(ray, |object, until| {
+        let (ray, mut met) = (ray.checked()?, false);
+        self.along(ray, |object, until, scratch| {
             if !met && counts(object) {
                 let mut hits = Hits::new(ray, options, Wanted::Any);
-                ray_hits(self.objects[object].placed(), &mut hits, &mut scratch);
+                ray_hits(self.objects[object].placed(), &mut hits, scratch);
                 met = hits.found.is_some();
             }
             if met { f64::NEG_INFINITY } else { until }
@@ -110,20 +109,22 @@ impl World {
 
     /// Visits the objects whose boxes a ray meets, about from the nearest on, each with the greatest `t` that is of interest; each
     /// visit gives the new one.
-    fn along(&self, ray: &Ray, mut visit: impl FnMut(ObjectId, f64) -> f64) {
+    fn along(&self, ray: &Ray, mut visit: impl FnMut(ObjectId, f64, &mut Scratch) -> f64) {
         let mut until = ray.max;
         let ray = TreeRay { origin: ray.origin, direction: ray.direction, half_extents: DVec3::ZERO };
         let bound = bound_along(&ray);
-        for (id, bounds) in self.elsewhere() {
-            if matters(bound(&bounds), until) {
-                until = visit(id, until);
+        Scratch::with(|scratch| {
+            for (id, bounds) in self.elsewhere() {
+                if matters(bound(&bounds), until) {
+                    until = visit(id, until, scratch);
+                }
             }
-        }
-        self.broad.for_each_along(&ray, until, &mut |proxy| {
-            if let Some(id) = self.in_place(proxy) {
-                until = visit(id, until);
-            }
-            until
+            self.broad.for_each_along(&ray, until, &mut |proxy| {
+                if let Some(id) = self.in_place(proxy) {
+                    until = visit(id, until, scratch);
+                }
+                until
+            });
         });
     }
 

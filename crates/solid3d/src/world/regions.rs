@@ -31,15 +31,18 @@ impl World {
     pub fn objects_in(&self, region: &Shape, at: &DAffine3) -> Result<Vec<ObjectId>> {
         let region = Placed { shape: region, placement: placement::checked(at)? };
         let bounds = world_bounds(region);
-        let (mut found, mut scratch) = (Vec::new(), Scratch::default());
-        let mut look_at = |id| {
-            if pair::intersects(self.objects[id].placed(), region, &mut scratch) {
-                found.push(id);
-            }
-        };
-        let elsewhere = self.elsewhere().filter(|(_, other)| other.overlaps(&bounds));
-        elsewhere.for_each(|(id, _)| look_at(id));
-        self.broad.for_each_in(&bounds, &mut |proxy| self.in_place(proxy).into_iter().for_each(&mut look_at));
+        let mut found = Vec::new();
+        Scratch::with(|scratch| {
+            let mut look_at = |id| {
+                if pair::intersects(self.objects[id].placed(), region, scratch) {
+                    found.push(id);
+                }
+            };
+            let elsewhere = self.elsewhere().filter(|(_, other)| other.overlaps(&bounds));
+            elsewhere.for_each(|(id, _)| look_at(id));
+            self.broad
+                .for_each_in(&bounds, &mut |proxy| self.in_place(proxy).into_iter().for_each(&mut look_at));
+        });
         found.sort_unstable_by_key(|&id| self.objects[id].order);
         Ok(found)
     }
