@@ -73,7 +73,7 @@ impl<'k> Field<'k> {
         for (pose, kind) in simulation.poses().iter().zip(kinds.iter().cycle()) {
             world.add(&kind.ours, pose.affine()).expect(VALID);
         }
-        // What was asked is where the objects are: in the tree.
+        // Else each question would look at all objects: none would be in the tree.
         world.refresh();
         let poses: Vec<ParryPose> = simulation.poses().iter().map(double::Parry::pose).collect();
         let boxes: Vec<_> = poses

@@ -277,8 +277,7 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
     /// assert_eq!(found, [2, 3]);
     /// ```
     fn for_each_in(&self, region: &Aabb, visit: &mut dyn FnMut(Proxy)) {
-        let bound = |bounds: &Aabb| if bounds.overlaps(region) { 0.0 } else { f64::INFINITY };
-        self.for_each_nearest(&bound, 0.0, &mut |proxy| {
+        self.for_each_nearest(&bound_in(region), 0.0, &mut |proxy| {
             visit(proxy);
             0.0
         });
@@ -365,6 +364,11 @@ pub(crate) fn bound_along(ray: &TreeRay) -> impl Fn(&Aabb) -> f64 {
         entry(ray.origin - bounds.center(), ray.direction, half)
             .map_or(f64::INFINITY, |t| t * (1.0 - ROUNDING_ALONG))
     }
+}
+
+/// Zero for a box that shares a point with a region, else infinity.
+fn bound_in(region: &Aabb) -> impl Fn(&Aabb) -> f64 {
+    |bounds| if bounds.overlaps(region) { 0.0 } else { f64::INFINITY }
 }
 
 /// Whether a box of some bound is visited by [`BroadPhase::for_each_nearest`]; that of infinity never is, not even without end.

@@ -1,6 +1,6 @@
 //! The laws of the broad phase, held by both engines against brute force.
 
-use super::{BroadPhase, BroadPhaseKind, DynamicTree, Proxy, bound_along, matters};
+use super::{BroadPhase, BroadPhaseKind, DynamicTree, Proxy, bound_along, bound_in, matters};
 use crate::bounds::Aabb;
 use crate::tree::TreeRay;
 use glam::DVec3;
@@ -105,9 +105,8 @@ fn rays_among(points: &[DVec3]) -> Vec<(TreeRay, f64)> {
 
 /// The boxes that overlap a region, as they are visited by a bound.
 fn visited(engine: &dyn BroadPhase, region: &Aabb, until: f64) -> Vec<Proxy> {
-    let bound = |b: &Aabb| if b.overlaps(region) { 0.0 } else { f64::INFINITY };
     let mut found = Vec::new();
-    engine.for_each_nearest(&bound, until, &mut |proxy| {
+    engine.for_each_nearest(&bound_in(region), until, &mut |proxy| {
         found.push(proxy);
         until
     });

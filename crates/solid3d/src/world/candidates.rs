@@ -266,11 +266,11 @@ impl World {
     /// What a test will cost, as far as is known before the boxes are: in units of [`Statistics::units_for`](super::Statistics::units_for).
     pub(super) fn work_ahead(&self) -> u64 {
         const UNITS_PER_BOX: u64 = 2;
-        let (all, stirred) = (self.objects.len(), self.stirred.len());
+        let (all, stirred) = (self.objects.len() as u64, self.stirred.len() as u64);
         // Of the pairs of an object those with others that changed are counted twice.
         let changed = if self.caching && !self.default_changed { all.min(2 * stirred) } else { all };
-        let candidates = self.candidates.count as usize * changed / all.max(1);
-        UNITS_PER_BOX * stirred as u64 + self.statistics.units_for(candidates)
+        let candidates = self.candidates.count * changed / all.max(1);
+        UNITS_PER_BOX * stirred + self.statistics.units_for(candidates as usize)
     }
 
     /// Begins and ends candidates as pairs of boxes came and went.

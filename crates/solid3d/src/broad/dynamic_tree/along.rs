@@ -9,7 +9,7 @@ use super::fat_box::FatBox;
 use super::node::{Kind, lanes};
 use super::tree::ROOT;
 use crate::bounds::Aabb;
-use crate::broad::{Proxy, ROUNDING_ALONG, bound_along};
+use crate::broad::{Proxy, ROUNDING_ALONG, bound_along, bound_in};
 use crate::tree::{RayProbe, Space, TreeRay, push_unless_far};
 
 /// Coordinates whose greatest is from this on, up to its inverse, are told by a [`RayProbe`].
@@ -83,7 +83,7 @@ impl DynamicTree {
 
     /// See [`BroadPhase::for_each_in`](crate::broad::BroadPhase::for_each_in).
     pub(super) fn visit_in(&self, region: &Aabb, visit: &mut dyn FnMut(Proxy)) {
-        let overlaps = |bounds: &Aabb| if bounds.overlaps(region) { 0.0 } else { f64::INFINITY };
+        let overlaps = bound_in(region);
         let visit = &mut |proxy| {
             visit(proxy);
             0.0

@@ -136,6 +136,25 @@ impl DynamicTree {
         }
     }
 
+    /// Adds many boxes.
+    fn add_many(&mut self, boxes: &[(Proxy, Aabb)]) {
+        // Of proxies that ascend this is the greatest; for others room is made as they come.
+        let last = boxes.iter().map(|(proxy, _)| *proxy).rfind(|&proxy| proxy <= PROXY_MAX);
+        self.grow(last.map_or(0, |last| last as usize + 1));
+        let queued = self.notes.queue.len() + boxes.len();
+        room(&mut self.notes.queue, queued);
+        let mut rest = boxes;
+        // Ends, because there are fewer boxes each time.
+        while !rest.is_empty() {
+            let (taken, refused) = self.tell_many(Told::New(rest));
+            self.alive += taken;
+            let Some(refused) = refused else { return };
+            let (proxy, bounds) = rest[refused];
+            self.insert(proxy, bounds);
+            rest = &rest[refused + 1..];
+        }
+    }
+
     /// Adds or moves many boxes; how many were, and which one is refused, if one is.
     fn tell_many(&mut self, told: Told) -> (usize, Option<usize>) {
         let moved_max = self.moved_max();
@@ -366,21 +385,8 @@ impl BroadPhase for DynamicTree {
     }
 
     fn insert_many(&mut self, boxes: &[(Proxy, Aabb)]) {
-        // Of proxies that ascend this is the greatest; for others room is made as they come.
-        let last = boxes.iter().map(|(proxy, _)| *proxy).rfind(|&proxy| proxy <= PROXY_MAX);
-        self.grow(last.map_or(0, |last| last as usize + 1));
-        let queued = self.notes.queue.len() + boxes.len();
-        room(&mut self.notes.queue, queued);
-        let mut rest = boxes;
-        // Ends, because there are fewer boxes each time.
-        while !rest.is_empty() {
-            let (taken, refused) = self.tell_many(Told::New(rest));
-            self.alive += taken;
-            let Some(refused) = refused else { return };
-            let (proxy, bounds) = rest[refused];
-            self.insert(proxy, bounds);
-            rest = &rest[refused + 1..];
-        }
+        // Making room is shared too.
+        in_pool(Told::New(boxes).is_worth_entering(), || self.add_many(boxes));
     }
 
     fn update_many(&mut self, boxes: &[(Proxy, Aabb)]) {
