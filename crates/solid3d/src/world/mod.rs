@@ -288,7 +288,11 @@ impl World {
         let Some(object) = self.objects.get_mut(id) else { return };
         let had_way = object.has_way();
         object.proceed();
-        self.stir(id, if had_way { Staleness::Bounds } else { Staleness::Previous });
+        if had_way {
+            self.stir(id, Staleness::Bounds);
+        } else if self.responses.looks_back() {
+            self.stir(id, Staleness::Previous);
+        }
     }
 
     /// Lets tests use what earlier tests found out about a pair: its separating axis, the vertices by which two hulls had a common point, and

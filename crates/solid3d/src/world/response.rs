@@ -43,11 +43,29 @@ pub(super) struct ResponseTable {
     pairs: HashMap<(ObjectId, ObjectId), Response>,
     /// No fewer than the pairs of objects that are gone, and at most twice as many.
     forgotten: usize,
+    /// Whether any response that was ever set depends on the previous frame.
+    looks_back: bool,
 }
 
 impl ResponseTable {
     pub fn new(default: Response) -> Self {
-        ResponseTable { default, objects: SecondaryMap::new(), pairs: HashMap::new(), forgotten: 0 }
+        ResponseTable {
+            default,
+            objects: SecondaryMap::new(),
+            pairs: HashMap::new(),
+            forgotten: 0,
+            looks_back: default == Response::Smart,
+        }
+    }
+
+    /// Whether a response may depend on the previous frame.
+    pub fn looks_back(&self) -> bool {
+        self.looks_back
+    }
+
+    /// Notes that a response is set.
+    fn note(&mut self, response: Response) {
+        self.looks_back |= response == Response::Smart;
     }
 
     /// The response for a pair, of which `first` comes first.
@@ -116,6 +134,7 @@ fn ordered(a: ObjectId, b: ObjectId) -> (ObjectId, ObjectId) {
 impl World {
     /// Sets the response for pairs that have none of their own.
     pub fn set_default_response(&mut self, response: Response) {
+        self.responses.note(response);
         if std::mem::replace(&mut self.responses.default, response) != response {
             (self.stale, self.default_changed) = (true, true);
         }
@@ -129,6 +148,7 @@ impl World {
     /// Sets the response for all pairs with an object, except those with a response of their own.
     pub fn set_object_response(&mut self, id: ObjectId, response: Response) -> Result<()> {
         self.object(id)?;
+        self.responses.note(response);
         self.responses.objects.insert(id, response);
         self.stir(id, Staleness::Pairs);
         Ok(())
@@ -150,6 +170,7 @@ impl World {
     /// Sets the response for a pair, in whichever order.
     pub fn set_pair_response(&mut self, a: ObjectId, b: ObjectId, response: Response) -> Result<()> {
         self.check_pair(a, b)?;
+        self.responses.note(response);
         if self.responses.pairs.insert(ordered(a, b), response).is_none() {
             self.objects[a].pair_responses += 1;
             self.objects[b].pair_responses += 1;
