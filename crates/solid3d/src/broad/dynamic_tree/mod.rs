@@ -260,12 +260,11 @@ impl DynamicTree {
 
     /// Finds the pairs of the queued boxes that are not there yet, box by box.
     fn pair_queued(&mut self) {
-        let Self { tight, fat, tree, pairs, notes, search, .. } = self;
-        let is_new = |a, b| pairs.may_be_new(a, b);
-        self.counters.node_visits += search.seek_of(tree, tight, fat, &notes.queue, is_new);
+        let Self { tight, fat, status, tree, pairs, notes, search, .. } = self;
+        let is_queued = |proxy| status[proxy as usize].is(Status::QUEUED);
+        self.counters.node_visits += search.seek_of(tree, tight, fat, &notes.queue, is_queued, pairs);
         for &Found { proxies: [a, b], overlaps } in search.found() {
-            // Of two queued boxes the one that comes first finds the pair.
-            pairs.insert_new(a, b, overlaps);
+            pairs.insert(a, b, overlaps);
         }
         pairs.settle(|_| true);
     }

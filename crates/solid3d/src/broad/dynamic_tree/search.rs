@@ -4,7 +4,9 @@ use super::Proxy;
 use super::fat_box::FatBox;
 use super::self_pairs::Lanes;
 use super::tree::Tree;
+use crate::broad::bits::Bits;
 use crate::broad::boxes::Boxes;
+use crate::broad::pair_lists::PairLists;
 use crate::threads::{both, for_each};
 
 /// Nodes that are searched in one piece, at least and at most: with some thousand pairs, whose boxes a core's own cache holds.
@@ -35,6 +37,8 @@ struct Piece {
     found: Vec<Found>,
     stack: Vec<Lanes>,
     nodes: Vec<u32>,
+    /// Partners of one leaf, while it is searched for.
+    known: Bits,
     visits: u64,
 }
 
@@ -74,15 +78,16 @@ impl Search {
         visits
     }
 
-    /// Finds every pair of one of some leaves and another whose box overlaps its own, if `is_new` holds of it: twice, if both are
-    /// among these. Gives the number of nodes visited; see [`found`](Self::found).
+    /// Finds every pair, which is not in `pairs`, of one of some leaves and another whose box overlaps its own: once, where `is_sought` tells
+    /// of each leaf whether it is among these. Gives the number of nodes visited; see [`found`](Self::found).
     pub fn seek_of(
         &mut self,
         tree: &Tree,
         tight: &Boxes,
         fat: &[FatBox],
         leaves: &[Proxy],
-        is_new: impl Fn(Proxy, Proxy) -> bool + Sync + Send,
+        is_sought: impl Fn(Proxy) -> bool + Sync + Send,
+        pairs: &PairLists,
     ) -> u64 {
         let worth = leaves.len() >= LEAVES_MANY;
         let of_piece = leaves.len().div_ceil(if worth { PIECES } else { 1 }).max(1);
@@ -90,13 +95,13 @@ impl Search {
         if self.next.len() < pieces {
             self.next.resize_with(pieces, Piece::default);
         }
-        let (pieces, others) = self.next.split_at_mut(pieces);
+        let (next, others) = self.next.split_at_mut(pieces);
         others.iter_mut().for_each(|piece| piece.found.clear());
-        for_each(pieces, worth, |i, piece| {
+        for_each(next, worth, |i, piece| {
             let leaves = &leaves[i * of_piece..];
-            piece.search_of(tree, tight, fat, &leaves[..of_piece.min(leaves.len())], &is_new);
+            piece.search_of(tree, tight, fat, &leaves[..of_piece.min(leaves.len())], &is_sought, pairs);
         });
-        pieces.iter().map(|piece| piece.visits).sum()
+        next.iter().map(|piece| piece.visits).sum()
     }
 
     /// What was found of some leaves, in an order that depends on them and the tree alone.
@@ -124,17 +129,21 @@ impl Piece {
         tight: &Boxes,
         fat: &[FatBox],
         leaves: &[Proxy],
-        is_new: impl Fn(Proxy, Proxy) -> bool,
+        is_sought: impl Fn(Proxy) -> bool,
+        pairs: &PairLists,
     ) {
-        let Self { found, nodes, visits, .. } = self;
+        let Self { found, nodes, known, visits, .. } = self;
         found.clear();
+        known.grow(fat.len());
         *visits = 0;
         for &leaf in leaves {
+            pairs.for_each_partner(leaf, |partner| known.set(partner, true));
             *visits += tree.query(&fat[leaf as usize], nodes, |other| {
-                if other != leaf && is_new(leaf, other) {
+                if !known.is(other) && (leaf < other || leaf > other && !is_sought(other)) {
                     found.push(Found { proxies: [leaf, other], overlaps: false });
                 }
             });
+            pairs.for_each_partner(leaf, |partner| known.set(partner, false));
         }
         self.compare(tight);
     }
