@@ -155,8 +155,8 @@ impl Node {
     /// The box around all children.
     pub fn bounds(&self) -> FatBox {
         FatBox {
-            min: std::array::from_fn(|k| self.min[k].iter().copied().fold(f32::INFINITY, f32::min)),
-            max: std::array::from_fn(|k| self.max[k].iter().copied().fold(f32::NEG_INFINITY, f32::max)),
+            min: self.min.each_ref().map(|lanes| best(lanes, |a, b| a < b)),
+            max: self.max.each_ref().map(|lanes| best(lanes, |a, b| a > b)),
         }
     }
 
@@ -184,6 +184,14 @@ impl Node {
         }
         best.0
     }
+}
+
+/// The best of eight numbers: in halves, which the compiler makes vectors of.
+fn best(lanes: &[f32; WIDTH], is_better: impl Fn(f32, f32) -> bool) -> f32 {
+    let better = |a, b| if is_better(a, b) { a } else { b };
+    let four: [f32; 4] = std::array::from_fn(|i| better(lanes[i], lanes[i + 4]));
+    let [a, b] = std::array::from_fn(|i| better(four[i], four[i + 2]));
+    better(a, b)
 }
 
 /// Visits the set bits of a mask of lanes, lowest first.
