@@ -34,6 +34,17 @@ pub type Wide = fearless_simd::WasmSimd128;
 )))]
 pub type Wide = Fallback;
 
+/// What `f` makes of each of an array, as `array.map(f)`, but always in place: that is a call now and then, and then not compiled for the wide
+/// instructions around it, with all that it is given and gives written to memory and read again.
+#[inline(always)]
+#[doc(hidden)]
+pub fn each<T: Copy, U, const N: usize>(array: [T; N], f: impl Fn(T) -> U) -> [U; N] {
+    std::array::from_fn(
+        #[inline(always)]
+        |i| f(array[i]),
+    )
+}
+
 /// What kernels run on.
 #[derive(Clone, Copy, Debug)]
 pub enum Level {

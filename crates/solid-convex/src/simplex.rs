@@ -5,6 +5,7 @@
 //! no right digit: of 2,000 pairs of boxes a billionth apart they separate 32 where this separates all, and they take
 //! tetrahedra for containing the origin that do not. Whether a tetrahedron contains the origin is decided exactly.
 
+use crate::simd::each;
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
@@ -196,7 +197,7 @@ impl Simplex {
 
     /// Which of three points is nearest to the origin: 0, 1 or 2; the first of equals.
     fn nearest_of(&self, indices: [usize; 3]) -> usize {
-        let [p, q, r] = indices.map(|i| self.w(i).length_squared());
+        let [p, q, r] = each(indices, |i| self.w(i).length_squared());
         let (first, least) = if q < p { (1, q) } else { (0, p) };
         if r < least { 2 } else { first }
     }
@@ -218,7 +219,7 @@ impl Simplex {
         // From the vertex nearest to the origin, whose rounding error is the smallest: next to it a weight may be 10^-17 of
         // those of the others, and still its sign decides.
         let around = [[i, j, k], [j, k, i], [k, i, j]][self.nearest_of([i, j, k])];
-        let [p, q, r] = around.map(|i| self.w(i));
+        let [p, q, r] = each(around, |i| self.w(i));
         match within_face([p, q, r], SLIVER_SINE_SQUARED) {
             Within::Face(v, weights) => return Feature { v, indices: around, weights, len: 3 },
             Within::Beyond(_) => {}
@@ -238,7 +239,7 @@ impl Simplex {
     /// On which side of each of the [`FACES`] the origin is, six times the volume it makes with the face: positive inside,
     /// with exact signs. `None` for a flat tetrahedron.
     fn sides_of_origin(&self) -> Option<[f64; 4]> {
-        let (sides, least) = sides_of_origin([0, 1, 2, 3].map(|i| self.w(i)));
+        let (sides, least) = sides_of_origin(each([0, 1, 2, 3], |i| self.w(i)));
         if least > VOLUME_ERROR { Some(sides) } else { self.exact_sides_of_origin() }
     }
 

@@ -6,6 +6,7 @@
 //! in the plane.
 
 use glam::{DVec2, DVec3};
+use solid_convex::simd::each;
 
 use crate::exact::{flatten, orient2d, orient3d, segments_meet, segments_meet_in_space};
 
@@ -15,11 +16,11 @@ pub(crate) type Triangle = [DVec3; 3];
 /// Whether two triangles share a point. Worth asking when their boxes do.
 pub(crate) fn intersect(x: &Triangle, y: &Triangle) -> bool {
     let (x_flat, y_flat) = (collinear(x), collinear(y));
-    let y_sides = x.map(|p| orient3d(y[0], y[1], y[2], p));
+    let y_sides = each(*x, |p| orient3d(y[0], y[1], y[2], p));
     if !y_flat && same_strict_side(y_sides) {
         return false;
     }
-    let x_sides = y.map(|p| orient3d(x[0], x[1], x[2], p));
+    let x_sides = each(*y, |p| orient3d(x[0], x[1], x[2], p));
     if !x_flat && same_strict_side(x_sides) {
         return false;
     }
@@ -53,7 +54,7 @@ fn segment_meets_triangle(p: &DVec3, q: &DVec3, p_side: f64, q_side: f64, triang
     if same_strict_side([p_side, q_side, p_side]) {
         return false;
     }
-    let turns = EDGES.map(|[i, j]| orient3d(*p, *q, triangle[i], triangle[j]));
+    let turns = each(EDGES, |[i, j]| orient3d(*p, *q, triangle[i], triangle[j]));
     turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0)
 }
 
@@ -63,7 +64,7 @@ fn segment_meets_triangle_2d(p: DVec2, q: DVec2, triangle: [DVec2; 3]) -> bool {
 
 /// Whether a point lies in a triangle's interior; `false` for a degenerate triangle, whose edges are all there is.
 fn contains_2d(triangle: [DVec2; 3], p: DVec2) -> bool {
-    let turns = EDGES.map(|[i, j]| orient2d(triangle[i], triangle[j], p));
+    let turns = each(EDGES, |[i, j]| orient2d(triangle[i], triangle[j], p));
     same_strict_side(turns)
 }
 

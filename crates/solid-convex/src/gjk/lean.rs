@@ -5,6 +5,7 @@
 //! it says nothing, and the robust descent begins anew. So it may leave out whatever makes that one robust: no sliver is measured
 //! twice, nothing is recomputed or taken back, and closest points are kept as quotients whose division is not needed to go on.
 
+use crate::simd::each;
 use glam::DVec3;
 
 use super::descent::Goal;
@@ -137,7 +138,7 @@ impl Lean {
 
     /// The first three as pairs of points to begin with, and how many they are.
     fn pairs(&self) -> ([Pair; 3], usize) {
-        ([0, 1, 2].map(|i| Pair::from(&self.points[i])), self.points().len().min(3))
+        (each([0, 1, 2], |i| Pair::from(&self.points[i])), self.points().len().min(3))
     }
 
     /// The same as a simplex that is not reduced.

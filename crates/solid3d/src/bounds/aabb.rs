@@ -93,6 +93,7 @@ impl Aabb {
     }
 
     /// The smallest box around the image of this box under an affine map, up to rounding.
+    #[inline]
     pub fn transformed(&self, map: &DAffine3) -> Aabb {
         let center = map.transform_point3(self.center());
         let half = abs(&map.matrix3) * self.half_extents();

@@ -1,5 +1,6 @@
 //! A complex shape against another: two trees are walked together (thesis, sections 5.2.3 and 5.2.4).
 
+use solid_convex::simd::each;
 use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
@@ -278,8 +279,8 @@ fn common_point(a: PlacedComplex, i: u32, b: PlacedComplex, j: u32, common: &[DA
         return closest_of(a, i, b, j).points;
     };
     let [from_a, from_b] = common;
-    let placed_x = x.map(|corner| from_a.transform_point3(corner));
-    let placed_y = y.map(|corner| from_b.transform_point3(corner));
+    let placed_x = each(x, |corner| from_a.transform_point3(corner));
+    let placed_y = each(y, |corner| from_b.transform_point3(corner));
     match crossing_point(&placed_x, &placed_y) {
         Some([of_x, of_y]) => Witness { on_a: weighted(&x, &of_x), on_b: weighted(&y, &of_y) },
         None => closest_of(a, i, b, j).points,

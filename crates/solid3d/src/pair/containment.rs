@@ -4,6 +4,7 @@
 //! A soup may consist of several parts, so one point of each is tested. All points are those of the common frame of the
 //! pair, in which the surfaces were tested, and every decision there is exact.
 
+use solid_convex::simd::each;
 use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
@@ -64,7 +65,7 @@ impl<'a> PlacedSolid<'a> {
 
     fn triangle(&self, primitive: u32) -> [DVec3; 3] {
         let indices = self.mesh.primitive(primitive);
-        [0, 1, 2].map(|i| self.to_common.transform_point3(self.mesh.vertices()[indices[i] as usize]))
+        each([0, 1, 2], |i| self.to_common.transform_point3(self.mesh.vertices()[indices[i] as usize]))
     }
 }
 

@@ -6,6 +6,7 @@
 //! counts to be right. The thesis (section 3.1.2) tries other rays until one hits no edge; this is never in doubt.
 
 use glam::{DVec3, Vec3Swizzles};
+use solid_convex::simd::each;
 
 use crate::exact::{orient2d, orient3d};
 
@@ -20,7 +21,7 @@ pub(super) fn crossing(triangle: &Triangle, p: DVec3) -> Option<i64> {
         return Some(0);
     }
     let edges = [[a, b], [b, c], [c, a]];
-    let turns = edges.map(|[u, v]| turn(u, v, p));
+    let turns = each(edges, |[u, v]| turn(u, v, p));
     if turns.contains(&1) && turns.contains(&-1) {
         return Some(0);
     }

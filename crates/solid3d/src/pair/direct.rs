@@ -4,6 +4,7 @@
 use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::Support;
+use solid_convex::simd::each;
 
 use super::closed_form::Similarity;
 use super::frame::Frame;
@@ -51,7 +52,7 @@ impl Round {
         let (local_ends, radius) = core(shape).or_else(|| Some((point(shape)?, 0.0)))?;
         let map = &frame.common[1];
         let at = Similarity::new(&map.matrix3)?;
-        let ends = local_ends.map(|end| map.transform_point3(end));
+        let ends = each(local_ends, |end| map.transform_point3(end));
         Some(Round { radius: radius * at.stretch, local_ends, at, ends })
     }
 

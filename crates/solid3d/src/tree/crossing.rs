@@ -23,7 +23,7 @@ use super::relative::Relative;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, f64x4};
 use glam::{DAffine3, DMat3, DVec3};
-use solid_convex::simd::part;
+use solid_convex::simd::{each, part};
 
 /// 8u for `f32`: see the module.
 pub(super) const MARGIN: f64 = 4.0 * f32::EPSILON as f64;
@@ -74,6 +74,12 @@ fn frobenius(m: &DMat3) -> f64 {
 #[inline(always)]
 pub(super) fn row_sums(m: &DMat3) -> DVec3 {
     m.x_axis + m.y_axis + m.z_axis
+}
+
+/// The rows of a matrix, rounded.
+#[inline(always)]
+pub(super) fn rows(m: &DMat3) -> [[f32; 3]; 3] {
+    each(m.transpose().to_cols_array_2d(), |row| each(row, |x| x as f32))
 }
 
 /// A vector, and a fourth lane that means nothing.
@@ -141,8 +147,7 @@ impl Crossing {
 
     /// The same from the way of boxes to the lanes, and that back.
     pub fn of(into: &Folded, back: &Folded) -> Self {
-        let rows = back.map.matrix3.transpose().to_cols_array_2d();
-        let half_rows = rows.map(|row| row.map(|x| (0.5 * x) as f32));
+        let half_rows = rows(&(0.5 * back.map.matrix3));
         Crossing {
             into: columns(&into.map.matrix3),
             into_abs: columns(&into.abs),
@@ -152,7 +157,7 @@ impl Crossing {
             slack: quad(back.slack),
             sums: quad(2.0 * row_sums(&back.abs)),
             half_rows,
-            half_rows_abs: half_rows.map(|row| row.map(f32::abs)),
+            half_rows_abs: each(half_rows, |row| each(row, f32::abs)),
         }
     }
 

@@ -15,9 +15,9 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, mask32x8};
 use glam::DVec3;
-use solid_convex::simd::part;
+use solid_convex::simd::{each, part};
 
-use super::crossing::{Folded, MARGIN, UNDERFLOW, row_sums};
+use super::crossing::{Folded, MARGIN, UNDERFLOW, row_sums, rows};
 use super::lanes::{LANES, bits, lanes, splat};
 use super::node::{Node, WIDTH};
 use super::normal::round_down;
@@ -56,14 +56,13 @@ impl Image {
         if !(sums.max_element() <= MAP_MAX && sums.is_finite()) {
             return None;
         }
-        let rows = folded.map.matrix3.transpose().to_cols_array_2d();
-        let half_rows = rows.map(|row| row.map(|x| (0.5 * x) as f32));
+        let half_rows = rows(&(0.5 * folded.map.matrix3));
         let reach = folded.slack + MARGIN * sums + UNDERFLOW;
         Some(Image {
             half_rows,
-            half_rows_abs: half_rows.map(|row| row.map(f32::abs)),
-            offset: [x, y, z].map(|x| x as f32),
-            reach: reach.to_array().map(|reach| -round_down(-reach)),
+            half_rows_abs: each(half_rows, |row| each(row, f32::abs)),
+            offset: each([x, y, z], |x| x as f32),
+            reach: each(reach.to_array(), |reach| -round_down(-reach)),
         })
     }
 

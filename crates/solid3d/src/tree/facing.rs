@@ -8,6 +8,7 @@ use fearless_simd::{Simd, f32x8};
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::simd::part;
 
+use super::crossing::rows;
 use super::lanes::splat;
 use super::node::WIDTH;
 use super::patch::{Patch, Vector, dot, transposed_product};
@@ -67,18 +68,11 @@ impl<'t> Faces<'t> {
         }
         let side = |tree: &'t Tree, linear: DMat3, slabs: &'t Slabs| {
             let exact = linear * unit.recip();
-            let rows = exact.transpose().to_cols_array_2d();
             let DMat3 { x_axis: x, y_axis: y, z_axis: z } = exact;
             let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
             let largest = cofactors.to_cols_array().iter().fold(0.0, |most: f64, c| most.max(c.abs()));
             let cofactors = if largest.is_normal() { cofactors * largest.recip() } else { DMat3::ZERO };
-            Side {
-                tree,
-                slabs: &slabs.eights,
-                linear: rows.map(|row| row.map(|x| x as f32)),
-                exact,
-                cofactors: cofactors.transpose().to_cols_array_2d().map(|row| row.map(|x| x as f32)),
-            }
+            Side { tree, slabs: &slabs.eights, linear: rows(&exact), exact, cofactors: rows(&cofactors) }
         };
         let [slabs_a, slabs_b] = facing.slabs;
         Some(Faces {

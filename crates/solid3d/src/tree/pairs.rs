@@ -2,6 +2,7 @@
 
 use fearless_simd::Simd;
 use glam::DVec3;
+use solid_convex::simd::each;
 use solid_convex::simd::{Level, dispatch, level};
 
 use super::crossing::{Crossing, Folded, Probe};
@@ -343,7 +344,7 @@ impl<'t> Duel<'t> {
 }
 
 fn center(bounds: &PackedBox) -> DVec3 {
-    let doubled = [0, 1, 2].map(|axis| f64::from(bounds.center_doubled(axis)));
+    let doubled = each([0, 1, 2], |axis| f64::from(bounds.center_doubled(axis)));
     0.5 * DVec3::from_array(doubled)
 }
 

@@ -13,9 +13,9 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, mask32x8};
-use solid_convex::simd::part;
+use solid_convex::simd::{each, part};
 
-use super::crossing::{Folded, UNDERFLOW, row_sums};
+use super::crossing::{Folded, UNDERFLOW, row_sums, rows};
 use super::eights::Overlaps;
 use super::lanes::{LANES, splat};
 use super::node::WIDTH;
@@ -106,8 +106,8 @@ impl<'t> Side<'t> {
         Side {
             tree,
             slabs: &slabs.eights,
-            rows: from.map.matrix3.transpose().to_cols_array_2d().map(|row| row.map(|x| x as f32)),
-            offset: offset.to_array().map(|x| x as f32),
+            rows: rows(&from.map.matrix3),
+            offset: each(offset.to_array(), |x| x as f32),
             margin: -round_down(-margin),
         }
     }

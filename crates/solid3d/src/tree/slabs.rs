@@ -8,6 +8,7 @@
 //! Swept spheres serve the same end (Larsen, Gottschalk, Lin and Manocha, *Fast proximity queries with swept
 //! sphere volumes*, 1999); they are tight all around, but take three times the memory beside the boxes that are here anyway.
 
+use solid_convex::simd::each;
 use std::ops::Range;
 
 use fearless_simd::prelude::*;
@@ -161,8 +162,8 @@ impl Eight {
     /// Takes in the slab across a direction around the points from one on.
     fn set(&mut self, lane: usize, across: DVec3, node: &Node, points: &Points, from: usize) {
         let Some(normal) = across.try_normalize() else { return };
-        let normal = normal.to_array().map(|x| x as f32);
-        let exact = DVec3::from_array(normal.map(f64::from));
+        let normal = each(normal.to_array(), |x| x as f32);
+        let exact = DVec3::from_array(each(normal, f64::from));
         let center = DVec3::from_array(
             [0, 1, 2].map(|axis| f64::from(center(node.min[axis][lane], node.max[axis][lane]))),
         );

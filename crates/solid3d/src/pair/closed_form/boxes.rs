@@ -1,6 +1,7 @@
 //! Two boxes, by the fifteen axes of the separating-axis theorem (Gottschalk, Lin and Manocha, *OBBTree*, 1996, section 5).
 
 use glam::DVec3;
+use solid_convex::simd::each;
 
 use super::GAP_MIN;
 use super::similarity::Similarity;
@@ -46,9 +47,9 @@ pub(super) fn separation(a: &PlacedBox, b: &PlacedBox) -> Separation {
     let (u, w) = (a.at.units(), b.at.units());
     let (half_a, half_b) = ((a.half * a.at.stretch).to_array(), (b.half * b.at.stretch).to_array());
     let from_b = a.center - b.center;
-    let cosines = u.map(|u| w.map(|w| u.dot(w)));
-    let magnitudes = cosines.map(|row| row.map(f64::abs));
-    let (along_u, along_w) = (u.map(|u| u.dot(from_b)), w.map(|w| w.dot(from_b)));
+    let cosines = each(u, |u| each(w, |w| u.dot(w)));
+    let magnitudes = each(cosines, |row| each(row, f64::abs));
+    let (along_u, along_w) = (each(u, |u| u.dot(from_b)), each(w, |w| w.dot(from_b)));
     let mut least = f64::INFINITY;
     for i in 0..3 {
         let reach = half_a[i] + dot(magnitudes[i], half_b);
@@ -59,7 +60,7 @@ pub(super) fn separation(a: &PlacedBox, b: &PlacedBox) -> Separation {
         least = least.min(overlap);
     }
     for j in 0..3 {
-        let reach = half_b[j] + dot(magnitudes.map(|row| row[j]), half_a);
+        let reach = half_b[j] + dot(each(magnitudes, |row| row[j]), half_a);
         let overlap = reach - along_w[j].abs();
         if overlap < -GAP_MIN {
             return Separation::Along(w[j] * along_w[j].signum());

@@ -2,6 +2,7 @@
 
 use fearless_simd::Simd;
 use glam::DVec3;
+use solid_convex::simd::each;
 use solid_convex::simd::level;
 use solid_convex::{Closest, Witness, gjk};
 
@@ -162,7 +163,7 @@ impl Approach<'_> {
     fn in_closed_form(&self, primitive: u32) -> Option<Closest> {
         let Direct::Round(round) = self.direct else { return None };
         let &[p, q, r] = self.complex.0.primitive(primitive) else { return None };
-        let triangle = [p, q, r].map(|vertex| self.complex.0.vertices()[vertex as usize]);
+        let triangle = each([p, q, r], |vertex| self.complex.0.vertices()[vertex as usize]);
         ball::closest_points(&triangle, round, self.frame)
     }
 
@@ -173,7 +174,7 @@ impl Approach<'_> {
             return;
         }
         let from_convex = &self.frame.common[1];
-        let [center, nearest] = self.from.map(|point| from_convex.transform_point3(point));
+        let [center, nearest] = each(self.from, |point| from_convex.transform_point3(point));
         let of_center = distances_of_core(simd, &[center], self.row, near);
         let mut of_nearest = None;
         while let Some(lane) = of_center.nearest(near) {

@@ -1,6 +1,7 @@
 //! The closest points of a ball and a triangle, in closed form.
 
 use glam::DVec3;
+use solid_convex::simd::each;
 use solid_convex::{Closest, Witness};
 
 use super::super::direct::Round;
@@ -13,7 +14,7 @@ use super::CLEARLY_APART;
 /// `None` of what is no ball, where GJK has to say whether they touch, and where rounding hides which point of a sliver is the closest.
 pub(super) fn closest_points(triangle: &Triangle, round: &Round, frame: &Frame) -> Option<Closest> {
     let center = round.center()?;
-    let placed = triangle.map(|corner| frame.common[0].transform_point3(corner));
+    let placed = each(*triangle, |corner| frame.common[0].transform_point3(corner));
     let at = nearest_to(center, &placed);
     let way = center - point_at(&placed, at);
     let length = way.length();
@@ -33,7 +34,7 @@ pub(super) fn closest_points(triangle: &Triangle, round: &Round, frame: &Frame) 
 
 /// Whether the way from a triangle to a point is the shortest, or no longer by what rounding hides: the plane across it bounds the distance from below.
 pub(in super::super) fn is_confirmed(triangle: &Triangle, point: DVec3, way: DVec3, length: f64) -> bool {
-    let heights = triangle.map(|corner| way.dot(point - corner));
+    let heights = each(*triangle, |corner| way.dot(point - corner));
     let least = heights[0].min(heights[1]).min(heights[2]) / length;
     length - least <= CONFIRMED
 }
@@ -42,7 +43,7 @@ pub(in super::super) fn is_confirmed(triangle: &Triangle, point: DVec3, way: DVe
 /// (Ericson, *Real-Time Collision Detection*, 2005, section 5.1.5).
 pub(in super::super) fn nearest_to(point: DVec3, [p, q, r]: &Triangle) -> [f64; 2] {
     let (pq, pr) = (*q - *p, *r - *p);
-    let [(p1, p2), (q1, q2), (r1, r2)] = [p, q, r].map(|corner| {
+    let [(p1, p2), (q1, q2), (r1, r2)] = each([p, q, r], |corner| {
         let way = point - *corner;
         (pq.dot(way), pr.dot(way))
     });

@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
+use solid_convex::simd::each;
 
 use super::super::row::{CONFIRMED, CROSS_ERROR, PARALLEL_SINE, SQUARED_MIN};
 use super::super::triangle_triangle::Triangle;
@@ -73,11 +74,11 @@ impl Polytope {
     fn heights(&self, along: DVec3) -> [f64; 2] {
         match self.form {
             Form::Triangle(corners) => {
-                let [p, q, r] = corners.map(|corner| along.dot(corner));
+                let [p, q, r] = each(corners, |corner| along.dot(corner));
                 [p.min(q).min(r), p.max(q).max(r)]
             }
             Form::Box(center) => {
-                let [x, y, z] = self.edges.map(|edge| along.dot(edge).abs());
+                let [x, y, z] = each(self.edges, |edge| along.dot(edge).abs());
                 let (middle, half) = (along.dot(center), 0.5 * (x + y + z));
                 [middle - half, middle + half]
             }
@@ -187,7 +188,7 @@ impl Nearest<'_> {
 fn crossing([p, q]: [DVec3; 2], [r, s]: [DVec3; 2], along: DVec3) -> Option<DVec3> {
     let (first, second, between) = (q - p, s - r, r - p);
     let across = along.dot(first.cross(second));
-    let [t, u] = [second, first].map(|edge| along.dot(between.cross(edge)) / across);
+    let [t, u] = each([second, first], |edge| along.dot(between.cross(edge)) / across);
     let is_on = |part: f64| (-BEYOND_EDGE..=1.0 + BEYOND_EDGE).contains(&part);
     (is_on(t) && is_on(u)).then(|| p + first * t)
 }

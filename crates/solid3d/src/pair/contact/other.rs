@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use solid_convex::Support;
+use solid_convex::simd::each;
 
 use super::map::Map;
 
@@ -43,7 +44,7 @@ impl Other<'_> {
             let [low, high] = extremes(self.corners, direction);
             return [low - self.radius, high + self.radius];
         }
-        [-direction, direction].map(|way| direction.dot(self.furthest(way)))
+        each([-direction, direction], |way| direction.dot(self.furthest(way)))
     }
 }
 

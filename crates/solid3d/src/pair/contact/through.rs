@@ -6,6 +6,7 @@
 //! `d (|cos t| + sin t)` or more.
 
 use glam::DVec3;
+use solid_convex::simd::each;
 
 use super::super::triangle_triangle::Triangle;
 use super::ball::Way;
@@ -15,7 +16,7 @@ use super::other::Other;
 /// The shortest way out of a triangle with a unit normal, along that or its opposite. `None` where it may be another.
 pub(super) fn way(triangle: &Triangle, normal: DVec3, other: &Other) -> Option<Way> {
     let [p, q, r] = *triangle;
-    let [back, front] = [-normal, normal].map(|direction| other.furthest(direction));
+    let [back, front] = each([-normal, normal], |direction| other.furthest(direction));
     let (behind, beyond) = (normal.dot(p - back), normal.dot(front - p));
     let (depth, out, deepest) =
         if behind <= beyond { (behind, normal, back) } else { (beyond, -normal, front) };

@@ -29,6 +29,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, f64x8, mask32x8};
 use glam::{DMat3, DVec3};
 use solid_convex::Support;
+use solid_convex::simd::each;
 
 use self::axes::Axes;
 use self::body::{Body, POINTS_MAX, ROUNDS, rounded, splat};
@@ -184,7 +185,8 @@ impl Gaps {
         let error = self.slack + ROUNDING * (furthest + self.size);
         let (low, high) = simd.widen_f32x8(gap);
         let gap = simd.combine_f64x4(low, high);
-        let [unit, error, radius] = [self.unit, error, self.radius].map(
+        let [unit, error, radius] = each(
+            [self.unit, error, self.radius],
             #[inline(always)]
             |x| f64x8::splat(simd, x),
         );
@@ -286,7 +288,8 @@ struct Placed<S: Simd> {
 /// How high eight boxes begin along a direction.
 #[inline(always)]
 fn lowest_of_boxes<S: Simd>(least: &Points<S>, greatest: &Points<S>, way: &Points<S>) -> f32x8<S> {
-    let [x, y, z] = [0, 1, 2].map(
+    let [x, y, z] = each(
+        [0, 1, 2],
         #[inline(always)]
         |axis| (way[axis] * least[axis]).min(way[axis] * greatest[axis]),
     );

@@ -8,6 +8,7 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8};
 use glam::{DVec2, DVec3};
 use solid_convex::simd::dispatch;
+use solid_convex::simd::each;
 
 use crate::exact::difference_of_products;
 use crate::triangle_triangle::Triangle;
@@ -113,12 +114,12 @@ impl Shear {
     /// Where the ray, from its origin on, meets a triangle.
     #[inline]
     pub fn hit(&self, triangle: &Triangle) -> Option<TriangleHit> {
-        let [a, b, c] = triangle.map(|p| self.point(p));
+        let [a, b, c] = each(*triangle, |p| self.point(p));
         // Of each corner twice the area that the origin makes with the edge opposite to it.
         let edges = [[b, c], [c, a], [a, b]];
-        let products = edges.map(|[p, q]| (p.x * q.y, p.y * q.x));
-        let mut areas = products.map(|(x, y)| x - y);
-        let doubts = products.map(|(x, y)| DETERMINANT_ERROR * (x.abs() + y.abs()));
+        let products = each(edges, |[p, q]| (p.x * q.y, p.y * q.x));
+        let mut areas = each(products, |(x, y)| x - y);
+        let doubts = each(products, |(x, y)| DETERMINANT_ERROR * (x.abs() + y.abs()));
         let sure = |sign: f64| (0..3).any(|i| sign * areas[i] > doubts[i]);
         if sure(1.0) && sure(-1.0) {
             return None;
@@ -143,7 +144,7 @@ impl Shear {
             areas = edges.map(exactly);
             sum = areas[0] + areas[1] + areas[2];
         }
-        let barycentric = areas.map(|area| area / sum);
+        let barycentric = each(areas, |area| area / sum);
         // Divided last: from a triangle on a lattice a ray that starts on it has no way to go, exactly.
         let depth = (areas[0] * a.z + areas[1] * b.z + areas[2] * c.z) / sum;
         let t = depth * self.depth_to_t;

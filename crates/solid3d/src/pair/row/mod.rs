@@ -19,6 +19,7 @@ mod verdict;
 use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::{DAffine3, DVec3};
+use solid_convex::simd::each;
 
 pub(super) use depth::{CROSS_ERROR, PARALLEL_SINE, SQUARED_MIN, depths};
 pub(super) use distance::{CONFIRMED, Near, distances, distances_of_core};
@@ -171,7 +172,7 @@ impl Row {
 
     /// Primitives of any number of vertices.
     fn place_mixed<S: Simd>(&mut self, simd: S, complex: &Complex, map: &DAffine3) {
-        let corners = self.primitives.map(|primitive| match *complex.primitive(primitive) {
+        let corners = each(self.primitives, |primitive| match *complex.primitive(primitive) {
             [i, j, k] => [i, j, k],
             [i, j] => [i, j, j],
             ref indices => [indices[0]; 3],
