@@ -444,22 +444,18 @@ mod tests {
     /// A response that comes to depend on the previous frame sees that frames end, whichever way it was set.
     #[test]
     fn responses_that_come_to_look_back_see_frames_end() -> Result<()> {
-        let set: [fn(&mut World, [ObjectId; 2]) -> Result<()>; 3] = [
-            |world, [a, b]| world.set_pair_response(a, b, Response::Smart),
-            |world, [a, _]| world.set_object_response(a, Response::Smart),
-            |world, _| {
-                world.set_default_response(Response::Smart);
-                Ok(())
-            },
-        ];
-        for set in set {
+        for way in 0..3 {
             let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
             let at = |y: f64| DAffine3::from_translation(DVec3::Y * y);
             let ids = [world.add(&ball, at(0.0))?, world.add(&ball, at(3.0))?];
             world.proceed();
             world.set_placement(ids[1], at(1.5))?;
             assert_eq!(world.test().len(), 1);
-            set(&mut world, ids)?;
+            match way {
+                0 => world.set_default_response(Response::Smart),
+                1 => world.set_object_response(ids[0], Response::Smart)?,
+                _ => world.set_pair_response(ids[0], ids[1], Response::Smart)?,
+            }
             // The balls were 1 apart, and are 0.5 in each other.
             for expected in [1.0, -0.5] {
                 let Contact::Smart { distance, .. } = world.test()[0].contact else {
