@@ -5,7 +5,6 @@
 //! no right digit: of 2,000 pairs of boxes a billionth apart they separate 32 where this separates all, and they take
 //! tetrahedra for containing the origin that do not. Whether a tetrahedron contains the origin is decided exactly.
 
-use crate::simd::each;
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
@@ -14,6 +13,7 @@ use crate::feature::{
     FACES, SLIVER_SINE_SQUARED, VOLUME_ERROR, Within, normal, perpendicular, sides_of_origin, within_edge,
     within_face,
 };
+use crate::simd::each;
 
 /// Up to four support points. Invariant: after [`reduce`](Simplex::reduce), the smallest set whose hull contains the
 /// closest point, with positive barycentric coordinates that sum to 1.

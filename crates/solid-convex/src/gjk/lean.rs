@@ -5,7 +5,6 @@
 //! it says nothing, and the robust descent begins anew. So it may leave out whatever makes that one robust: no sliver is measured
 //! twice, nothing is recomputed or taken back, and closest points are kept as quotients whose division is not needed to go on.
 
-use crate::simd::each;
 use glam::DVec3;
 
 use super::descent::Goal;
@@ -17,6 +16,7 @@ use crate::difference::{MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::feature::{
     SLIVER_SINE_SQUARED, Within, sides_of_origin, weights_of_origin, within_edge, within_face,
 };
+use crate::simd::each;
 use crate::simplex::Simplex;
 
 /// Support points after which it gives up. A random pair of polytopes takes 3 of each object, in the mean, to tell whether it

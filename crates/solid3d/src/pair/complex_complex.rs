@@ -1,11 +1,10 @@
 //! A complex shape against another: two trees are walked together (thesis, sections 5.2.3 and 5.2.4).
 
-use solid_convex::simd::each;
 use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::{dispatch, each, level};
 use solid_convex::{Closest, Witness, gjk};
 
 use super::containment::{PlacedSolid, part_inside};

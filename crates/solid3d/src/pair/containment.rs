@@ -4,10 +4,10 @@
 //! A soup may consist of several parts, so one point of each is tested. All points are those of the common frame of the
 //! pair, in which the surfaces were tested, and every decision there is exact.
 
-use solid_convex::simd::each;
 use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
+use solid_convex::simd::each;
 
 use super::Scratch;
 use super::crossing::crossing;

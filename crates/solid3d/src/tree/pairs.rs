@@ -2,8 +2,7 @@
 
 use fearless_simd::Simd;
 use glam::DVec3;
-use solid_convex::simd::each;
-use solid_convex::simd::{Level, dispatch, level};
+use solid_convex::simd::{Level, dispatch, each, level};
 
 use super::crossing::{Crossing, Folded, Probe};
 use super::eights::{Image, overlaps};

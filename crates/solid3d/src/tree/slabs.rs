@@ -8,13 +8,12 @@
 //! Swept spheres serve the same end (Larsen, Gottschalk, Lin and Manocha, *Fast proximity queries with swept
 //! sphere volumes*, 1999); they are tight all around, but take three times the memory beside the boxes that are here anyway.
 
-use solid_convex::simd::each;
 use std::ops::Range;
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x4};
 use glam::DVec3;
-use solid_convex::simd::dispatch;
+use solid_convex::simd::{dispatch, each};
 
 use super::Tree;
 use super::node::{Kind, Node, WIDTH};

@@ -2,8 +2,7 @@
 
 use fearless_simd::Simd;
 use glam::DVec3;
-use solid_convex::simd::each;
-use solid_convex::simd::level;
+use solid_convex::simd::{each, level};
 use solid_convex::{Closest, Witness, gjk};
 
 use super::super::Scratch;

@@ -7,8 +7,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8};
 use glam::{DVec2, DVec3};
-use solid_convex::simd::dispatch;
-use solid_convex::simd::each;
+use solid_convex::simd::{dispatch, each};
 
 use crate::exact::difference_of_products;
 use crate::triangle_triangle::Triangle;
