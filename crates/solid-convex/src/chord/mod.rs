@@ -29,31 +29,32 @@ use crate::{Cuboid, unit_scale};
 pub struct Line {
     /// The point of the line closest to the local origin: what is computed from it loses nothing to a far origin.
     foot: DVec3,
-    /// The direction, a unit vector.
+    /// The direction times `scale`: the unit of what is along the line.
     along: DVec3,
-    /// The length of the direction.
-    speed: f64,
-    /// The path length from the line's origin to the foot.
+    /// The power of two by which the longest coordinate of `along` is from 1 to 2, so that squares neither overflow nor vanish.
+    scale: f64,
+    /// What `along` times itself is, inverted.
+    inverse_square: f64,
+    /// From the line's origin to the foot.
     to_foot: f64,
 }
 
 impl Line {
     /// `None` when the direction is zero or something is not finite. Coordinates may be up to 1e200.
+    #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Option<Line> {
         let largest = direction.abs().max_element();
         if !(largest > 0.0 && largest.is_finite() && origin.is_finite()) {
             return None;
         }
-        // By a power of two first: squares then neither overflow nor vanish, and an axis stays an axis.
         let scale = unit_scale(largest);
-        let scaled = direction * scale;
-        let length = scaled.length();
-        let along = scaled / length;
-        let behind = origin.dot(along);
+        let along = direction * scale;
+        let inverse_square = 1.0 / along.length_squared();
+        let behind = origin.dot(along) * inverse_square;
         let near = origin - along * behind;
         // Twice, because the first time leaves a part along the line that is small to the origin only.
-        let rest = near.dot(along);
-        Some(Line { foot: near - along * rest, along, speed: length / scale, to_foot: -behind - rest })
+        let rest = near.dot(along) * inverse_square;
+        Some(Line { foot: near - along * rest, along, scale, inverse_square, to_foot: -behind - rest })
     }
 
     /// The foot in a unit near `size`, and the factor to that unit; `None` when the line clearly passes a shape that
@@ -65,9 +66,11 @@ impl Line {
         (self.foot.abs().max_element() <= BEYOND * size).then(|| (self.foot * scale, scale))
     }
 
-    /// A chord whose ends are path lengths from the foot, in a unit of the given scale.
+    /// A chord whose ends are measured along the line from its foot, in a unit of the given scale.
+    #[inline]
     fn chord(&self, span: Option<Chord>, scale: f64) -> Option<Chord> {
-        let end = |end: End| End { t: (self.to_foot + end.t / scale) / self.speed, ..end };
+        let unit = 1.0 / scale;
+        let end = |end: End| End { t: (self.to_foot + end.t * unit) * self.scale, ..end };
         span.map(|chord| Chord { enter: end(chord.enter), leave: end(chord.leave) })
     }
 }

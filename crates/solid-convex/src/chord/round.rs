@@ -5,16 +5,21 @@ use glam::DVec3;
 use super::{Chord, End, Line, slab};
 use crate::{Capsule, Cylinder, Sphere};
 
-/// The chord of a ball.
-fn ball(foot: DVec3, along: DVec3, center: DVec3, radius: f64) -> Option<Chord> {
-    let offset = foot - center;
-    let middle = -offset.dot(along);
+/// The chord of a ball whose centre is on the axis y, at `center`.
+#[inline]
+fn ball(line: &Line, foot: DVec3, center: f64, radius: f64) -> Option<Chord> {
+    let along = line.along;
     // From the point closest to the centre: the square of the distance loses nothing to that along the line.
-    let nearest = offset + along * middle;
-    let squared = radius * radius - nearest.length_squared();
-    let half = (squared >= 0.0).then(|| squared.sqrt())?;
-    let end = |t: f64| End { t, normal: (offset + along * t) / radius };
-    Some(Chord { enter: end(middle - half), leave: end(middle + half) })
+    let middle = center * along.y * line.inverse_square;
+    let offset = foot + along * middle - DVec3::Y * center;
+    let inside = radius * radius - offset.length_squared();
+    let half = (inside >= 0.0).then(|| (inside * line.inverse_square).sqrt())?;
+    let shorten = 1.0 / radius;
+    let end = |from_middle: f64| End {
+        t: middle + from_middle,
+        normal: (offset + along * from_middle) * shorten,
+    };
+    Some(Chord { enter: end(-half), leave: end(half) })
 }
 
 /// The chord of the endless cylinder around the axis y.
@@ -44,7 +49,7 @@ impl Sphere {
     /// The part of a line that is in the ball.
     pub fn chord(&self, line: &Line) -> Option<Chord> {
         let (foot, scale) = line.near(self.radius())?;
-        line.chord(ball(foot, line.along, DVec3::ZERO, self.radius() * scale), scale)
+        line.chord(ball(line, foot, 0.0, self.radius() * scale), scale)
     }
 }
 
@@ -63,7 +68,7 @@ impl Capsule {
         let (radius, half) = (self.radius(), 0.5 * self.height());
         let (foot, scale) = line.near(radius + half)?;
         let (radius, half) = (radius * scale, half * scale);
-        let end = |y: f64| ball(foot, line.along, DVec3::Y * y, radius);
+        let end = |center: f64| ball(line, foot, center, radius);
         let parts = [capped_cylinder(foot, line.along, radius, half), end(half), end(-half)];
         line.chord(parts.into_iter().flatten().reduce(Chord::hull), scale)
     }
