@@ -85,6 +85,7 @@ pub fn ray_meets(shape: &Shape, placement: &DAffine3, ray: &Ray, options: &RayOp
     Ok(cast(shape, placement, ray, options, Wanted::Any)?.found.is_some())
 }
 
+#[inline(always)]
 fn cast<'r>(
     shape: &Shape,
     placement: &DAffine3,

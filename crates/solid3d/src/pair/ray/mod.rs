@@ -180,6 +180,7 @@ impl<'r> Hits<'r> {
     }
 
     /// Whether a hit on the surface is of interest.
+    #[inline]
     fn wants(&self, t: f64, primitive: u32) -> bool {
         let first = match (self.wanted, &self.found) {
             (Wanted::First, Some(best)) => {
@@ -190,6 +191,7 @@ impl<'r> Hits<'r> {
         (0.0..=self.until).contains(&t) && first
     }
 
+    #[inline]
     fn add(&mut self, t: f64, surface: Option<SurfaceHit>) {
         let hit = RayHit { t, point: self.ray.at(t), surface };
         match self.wanted {
