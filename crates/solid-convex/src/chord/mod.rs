@@ -5,6 +5,7 @@
 //! sets has the intersection of their chords; a capsule, a union that is convex, has the hull of them.
 
 mod cone;
+mod polytope;
 mod round;
 #[cfg(test)]
 mod tests;

@@ -15,10 +15,8 @@ fn ball(line: &Line, foot: DVec3, center: f64, radius: f64) -> Option<Chord> {
     let inside = radius * radius - offset.length_squared();
     let half = (inside >= 0.0).then(|| (inside * line.inverse_square).sqrt())?;
     let shorten = 1.0 / radius;
-    let end = |from_middle: f64| End {
-        t: middle + from_middle,
-        normal: (offset + along * from_middle) * shorten,
-    };
+    let end =
+        |from_middle: f64| End { t: middle + from_middle, normal: (offset + along * from_middle) * shorten };
     Some(Chord { enter: end(-half), leave: end(half) })
 }
 

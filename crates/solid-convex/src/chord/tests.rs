@@ -1,17 +1,34 @@
 //! Chords against their slow twin: the GJK cast of a point, from either end.
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::{Chord, Line};
-use crate::{Capsule, Cone, Cuboid, Cylinder, Points, Sphere, Support, gjk};
+use crate::{Capsule, Cone, Cuboid, Cylinder, Points, Polytope, Sphere, Support, gjk};
 
-type Shape = (Box<dyn Support>, Box<dyn Fn(&Line) -> Option<Chord>>);
+/// A chord is none where it is not told.
+type Shape = (Box<dyn Support>, Box<dyn Fn(&Line) -> Option<Option<Chord>>>);
 
 macro_rules! shape {
     ($shape:expr) => {{
         let shape = $shape.unwrap();
-        (Box::new(shape) as Box<dyn Support>, Box::new(move |line: &Line| shape.chord(line)) as Box<_>)
+        (Box::new(shape) as Box<dyn Support>, Box::new(move |line: &Line| Some(shape.chord(line))) as Box<_>)
     }};
+}
+
+/// A pyramid over a polygon of an even number of sides, and one below it; every other side is as short as `short`.
+fn double_pyramid(sides: u32, short: f64, map: DMat3) -> Polytope {
+    let rim = (0..sides).map(|i| {
+        let turn = std::f64::consts::TAU / f64::from(sides) * f64::from(i / 2 * 2) + f64::from(i % 2) * short;
+        DVec3::new(turn.cos(), 0.0, turn.sin())
+    });
+    let corners = rim.chain([DVec3::Y, DVec3::NEG_Y]).map(|corner| map * corner);
+    let of_side = |i| [[(i + 1) % sides, i, sides], [i, (i + 1) % sides, sides + 1]];
+    let faces: Vec<[u32; 3]> = (0..sides).flat_map(of_side).collect();
+    Polytope::new(corners.collect()).unwrap().with_faces(&faces)
+}
+
+fn hull(hull: Polytope) -> Shape {
+    (Box::new(hull.clone()), Box::new(move |line| hull.chord(line)))
 }
 
 fn shapes(size: f64) -> Vec<Shape> {
@@ -23,6 +40,13 @@ fn shapes(size: f64) -> Vec<Shape> {
         shape!(Cylinder::new(0.9 * size, 1.7 * size)),
         shape!(Cylinder::new(0.02 * size, 2.5 * size)),
         shape!(Capsule::new(0.5 * size, 1.6 * size)),
+        hull(double_pyramid(4, 1.5, DMat3::from_diagonal(DVec3::new(1.2, 0.9, 1.5) * size))),
+        hull(double_pyramid(
+            32,
+            0.1,
+            DMat3::from_cols(DVec3::ONE, DVec3::Y - DVec3::Z, DVec3::Z * 1.5) * size,
+        )),
+        hull(double_pyramid(12, 1e-6, DMat3::from_diagonal(DVec3::splat(1.2 * size)))),
     ]
 }
 
@@ -48,10 +72,13 @@ fn chords_end_where_casts_do() {
     let point = Points::new(&[DVec3::ZERO]).unwrap();
     for size in [1.0, 1e-40, 1e40] {
         for (which, (support, chord)) in shapes(size).iter().enumerate() {
-            let (mut hits, mut worst) = (0, 0.0);
+            let (mut hits, mut untold, mut worst) = (0, 0, 0.0);
             for i in 0..1000 {
                 let (origin, direction) = line(i, size);
-                let found = chord(&Line::new(origin, direction).unwrap());
+                let Some(found) = chord(&Line::new(origin, direction).unwrap()) else {
+                    untold += 1;
+                    continue;
+                };
                 let length = direction.length() / size;
                 let far = origin + direction * (16.0 / length);
                 let from = |origin: DVec3, direction: DVec3| {
@@ -86,7 +113,9 @@ fn chords_end_where_casts_do() {
                     assert!(beyond.abs() < 1e-11, "{which} {i}: the normal {} supports {beyond}", end.normal);
                 }
             }
-            println!("shape {which}: {hits} of 1000, worst error {worst:e}");
+            println!("shape {which}: {hits} of 1000, {untold} untold, worst error {worst:e}");
+            // Only slivers are left open.
+            assert!(untold <= if which == 9 { 100 } else { 0 }, "{which}: {untold}");
             assert!(worst < gjk::CAST_ERROR, "{which}: {worst:e}");
             let thin = which == 5;
             assert!((if thin { 20 } else { 300 }..=720).contains(&hits), "{which}: {hits} of 1000");

@@ -5,7 +5,7 @@ use solid_convex::{Chord, Line};
 use super::{Geometry, Shape};
 
 impl Shape {
-    /// The part of a line, in local space, that is in the shape; `None` for a kind without a closed form.
+    /// The part of a line, in local space, that is in the shape; `None` for a kind without a closed form, or where that does not tell.
     pub(crate) fn chord(&self, line: &Line) -> Option<Option<Chord>> {
         match &self.geometry {
             Geometry::Sphere(shape) => Some(shape.chord(line)),
@@ -13,7 +13,8 @@ impl Shape {
             Geometry::Cone(shape) => Some(shape.chord(line)),
             Geometry::Cylinder(shape) => Some(shape.chord(line)),
             Geometry::Capsule(shape) => Some(shape.chord(line)),
-            Geometry::Polytope(_) | Geometry::Complex(_) => None,
+            Geometry::Polytope(shape) => shape.polytope().chord(line),
+            Geometry::Complex(_) => None,
         }
     }
 }

@@ -3,6 +3,7 @@
 mod balls;
 mod direction_map;
 mod plane;
+mod planes;
 mod rows;
 
 use fearless_simd::Simd;
@@ -16,6 +17,7 @@ use crate::simd::{self, dispatch};
 use crate::support::bounds_by_supports;
 use direction_map::DirectionMap;
 use plane::Plane;
+pub(crate) use planes::{Passage, Planes};
 use rows::Rows;
 
 /// Points beyond which support points are looked up by direction first. Below, comparing all of them is as fast.
@@ -31,7 +33,7 @@ const PLANES_MAX: usize = 64;
 /// comparing all of them with vector instructions; more by comparing those few that can be the furthest in directions near the
 /// one asked for.
 ///
-/// Memory: 48 bytes a point; of more than 192 points some 50 more, and at most 200; 56 for each of up to 64 faces that are known. Cost of a support point: some 25 ns, however many
+/// Memory: 48 bytes a point; of more than 192 points some 50 more, and at most 200; 40 for each of up to 64 faces that are known. Cost of a support point: some 25 ns, however many
 /// points there are, where the hull is round; where many points are about as far as each other, as the rim of a
 /// drum is along its axis, as long as it takes to compare these.
 ///
@@ -55,8 +57,8 @@ pub struct Polytope {
     balls: Balls,
     /// Those of the balls.
     sure_radii: [f64; 2],
-    /// Of all faces; none where these are unknown, or many.
-    planes: Box<[Plane]>,
+    /// Of all faces, where these are known, and few.
+    planes: Option<Planes>,
 }
 
 impl Polytope {
@@ -68,17 +70,7 @@ impl Polytope {
         let map = (points.len() > SCAN_MAX).then(|| DirectionMap::new(&points, reach)).flatten();
         let balls = Balls { inner: Ball { center, radius: 0.0 }, outer: balls::around(&points, center) };
         let sure_radii = balls.sure_radii();
-        Some(Polytope {
-            points,
-            rows,
-            map,
-            reach,
-            center,
-            farthest,
-            balls,
-            sure_radii,
-            planes: Box::default(),
-        })
+        Some(Polytope { points, rows, map, reach, center, farthest, balls, sure_radii, planes: None })
     }
 
     /// The memory that it owns, in bytes.
@@ -91,7 +83,10 @@ impl Polytope {
     /// ```
     pub fn bytes(&self) -> usize {
         let map = self.map.as_ref().map_or(0, DirectionMap::bytes);
-        self.points.capacity() * size_of::<DVec3>() + self.rows.bytes() + map + size_of_val(&*self.planes)
+        self.points.capacity() * size_of::<DVec3>()
+            + self.rows.bytes()
+            + map
+            + self.planes.as_ref().map_or(0, Planes::bytes)
     }
 
     /// The same, where the faces of the hull are known: the triangles `faces` of its points, which close it, counter-clockwise seen from outside. Many
@@ -112,8 +107,14 @@ impl Polytope {
         let planes = Plane::all(&self.points, faces);
         self.balls.inner = balls::inside(&self.points, self.center, &planes);
         self.sure_radii = self.balls.sure_radii();
-        self.planes = if planes.len() <= PLANES_MAX { planes.into() } else { Box::default() };
+        let are_few = planes.len() <= PLANES_MAX;
+        self.planes = are_few.then(|| Planes::new(&planes, &self.points, self.center)).flatten();
         self
+    }
+
+    /// The planes of its faces, where these are known, and few.
+    pub(crate) fn planes(&self) -> Option<&Planes> {
+        self.planes.as_ref()
     }
 
     /// The balls around and in it.
@@ -277,8 +278,7 @@ impl Support for Polytope {
 
     fn contains_ball(&self, ball: Ball) -> bool {
         self.balls.inner.contains(ball)
-            || (!self.planes.is_empty()
-                && self.planes.iter().all(|plane| plane.height(ball.center) >= ball.radius))
+            || self.planes.as_ref().is_some_and(|planes| dispatch!(simd => planes.contain(simd, ball)))
     }
 
     fn is_polytope(&self) -> bool {

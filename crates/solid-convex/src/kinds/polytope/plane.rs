@@ -7,11 +7,11 @@ use crate::unit_scale;
 /// The plane of a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
-    corner: DVec3,
+    pub corner: DVec3,
     /// Its unit normal.
     pub inward: DVec3,
     /// By how much the normal may be off.
-    error: f64,
+    pub error: f64,
 }
 
 impl Plane {

@@ -19,9 +19,6 @@ static POINT: LazyLock<Polytope> =
 
 pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
     let DAffine3 { matrix3, translation } = placed.placement;
-    if placed.shape.polytope().is_some() {
-        return hull_hits(shape, placed.placement, 0, hits);
-    }
     let to_local_linear = inverse_linear(matrix3);
     let origin = to_local_linear * (hits.ray.origin - *translation);
     let direction = to_local_linear * hits.ray.direction;

@@ -1,0 +1,253 @@
+//! The planes of all faces of a polytope, four side by side: how deep a point is below them, and where a line crosses them.
+
+use fearless_simd::{Simd, f64x4, i64x4, mask64x4, prelude::*};
+use glam::DVec3;
+
+use super::plane::Plane;
+use crate::gjk::{Ball, CAST_ERROR};
+
+/// Planes that are looked at at once.
+const LANES: usize = 4;
+
+/// Four planes: inside is what is at least `offset` along the unit normal `inward`, seen from the centre; the normal may be off by `error`.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+struct Row {
+    inward: [[f64; LANES]; 3],
+    offset: [f64; LANES],
+    error: [f64; LANES],
+}
+
+/// The planes of all faces of a polytope, with the centre they are seen from. Invariant: there are some, and their numbers are finite.
+#[derive(Clone, Debug)]
+pub(crate) struct Planes {
+    /// Filled up with the last plane.
+    rows: Box<[Row]>,
+    center: DVec3,
+    /// How far the polytope reaches from the centre: the greatest sum of the coordinates' magnitudes.
+    reach: f64,
+}
+
+/// Where a line crosses a plane, and the inward normal of that.
+pub(crate) type Crossing = (f64, DVec3);
+
+/// What planes tell of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Passage {
+    /// It surely has no point in common with the polytope.
+    Beside,
+    /// It surely has some: from the one place to the other, which is no less.
+    Through([Crossing; 2]),
+    /// It is next to an edge, or a plane there is that of a sliver.
+    Unsure,
+}
+
+impl Planes {
+    /// `None` where there are none, or not all have a normal. The polytope is the hull of `points`.
+    pub(super) fn new(planes: &[Plane], points: &[DVec3], center: DVec3) -> Option<Planes> {
+        let last = planes.last()?;
+        let row = |four: &[Plane]| {
+            let lane = |i: usize| four.get(i).unwrap_or(last);
+            Row {
+                inward: [0, 1, 2].map(|axis| std::array::from_fn(|i| lane(i).inward[axis])),
+                offset: std::array::from_fn(|i| lane(i).inward.dot(lane(i).corner - center)),
+                error: std::array::from_fn(|i| lane(i).error),
+            }
+        };
+        let reach = points.iter().map(|&point| (point - center).abs().element_sum()).fold(0.0, f64::max);
+        let are_known = planes.iter().all(|plane| plane.inward.is_finite() && plane.error.is_finite());
+        are_known.then(|| Planes { rows: planes.chunks(LANES).map(row).collect(), center, reach })
+    }
+
+    /// The memory that they own, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.rows)
+    }
+
+    /// The point they are seen from.
+    pub fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// Whether a ball is surely inside of all.
+    #[inline(always)]
+    pub fn contain<S: Simd>(&self, simd: S, Ball { center, radius }: Ball) -> bool {
+        /// The error of a normal, times the way from the corner, and what is rounded in a height, beside the way from the centre and the reach.
+        const SLACK: f64 = 2.0;
+        let splat = |x: f64| f64x4::splat(simd, x);
+        let way = center - self.center;
+        let slack = SLACK * (way.abs().element_sum() + self.reach);
+        self.rows.iter().all(|Row { inward, offset, error }| {
+            let height = rates(simd, inward, way) - lanes(simd, offset);
+            (height - lanes(simd, error) * splat(slack)).simd_ge(splat(radius)).all_true()
+        })
+    }
+
+    /// Where a line runs through the polytope: the points `center + foot + t * along`. The foot is the point of the line closest to the centre, the
+    /// longest coordinate of `along` from 1 to 2.
+    ///
+    /// Each plane may be off by no more than a slack, in the box around the polytope that is twice as wide. It is crossed then in an interval of `t`, and the
+    /// polytope is entered in no later than at the last end of those of planes that are entered.
+    #[inline(always)]
+    pub fn passage<S: Simd>(&self, simd: S, foot: DVec3, along: DVec3) -> Passage {
+        /// The error of a normal, times the way from the corner, and what is rounded in heights and rates, beside the reach.
+        const SLACK: f64 = 6.0;
+        let size = self.reach;
+        if foot.abs().max_element() > 2.0 * size {
+            return Passage::Beside;
+        }
+        let splat = |x: f64| f64x4::splat(simd, x);
+        let mut index = i64x4::simd_from(simd, [0, 1, 2, 3]);
+        let mut ends = [Ends::new(simd); 2];
+        for Row { inward, offset, error } in &self.rows {
+            let rate = rates(simd, inward, along);
+            let outside = lanes(simd, offset) - rates(simd, inward, foot);
+            let slack = lanes(simd, error) * splat(SLACK * size);
+            // Of a plane that the line is parallel to, an end is endless on the side that it is on; or no number, which is passed over.
+            let unit = splat(1.0) / rate.abs();
+            let (from, until) = ((outside - slack) * unit, (outside + slack) * unit);
+            let enters = rate.simd_ge(splat(0.0));
+            ends[0].take(enters, from, until, index);
+            ends[1].take(!enters, from, until, index);
+            index += i64x4::splat(simd, LANES as i64);
+        }
+        // Where it is left, all is seen backwards: from the last.
+        let [enter, leave] = ends.map(Ends::last);
+        if enter.from + leave.from > 0.0 {
+            return Passage::Beside;
+        }
+        let crossings = [enter, leave].map(|end| self.crossing(end.index, foot, along));
+        let is_near = |&(t, _): &Crossing| (foot + along * t).abs().element_sum() <= 2.0 * size;
+        let is_sharp = |end: &End| end.until - end.from <= 0.1 * CAST_ERROR * size;
+        if enter.until + leave.until <= 0.0
+            && [enter, leave].iter().all(is_sharp)
+            && crossings.iter().all(is_near)
+        {
+            return Passage::Through(crossings);
+        }
+        Passage::Unsure
+    }
+
+    /// Where a line crosses a plane.
+    fn crossing(&self, index: usize, foot: DVec3, along: DVec3) -> Crossing {
+        let Row { inward, offset, .. } = &self.rows[index / LANES];
+        let lane = index % LANES;
+        let inward = DVec3::from_array(inward.map(|row| row[lane]));
+        ((offset[lane] - inward.dot(foot)) / inward.dot(along), inward)
+    }
+}
+
+#[inline(always)]
+fn lanes<S: Simd>(simd: S, row: &[f64; LANES]) -> f64x4<S> {
+    f64x4::simd_from(simd, *row)
+}
+
+/// How far a way goes along each of four normals.
+#[inline(always)]
+fn rates<S: Simd>(simd: S, [x, y, z]: &[[f64; LANES]; 3], way: DVec3) -> f64x4<S> {
+    let splat = |x: f64| f64x4::splat(simd, x);
+    lanes(simd, x) * splat(way.x) + lanes(simd, y) * splat(way.y) + lanes(simd, z) * splat(way.z)
+}
+
+/// The last of the intervals in which planes are crossed, in each lane.
+#[derive(Clone, Copy)]
+struct Ends<S: Simd> {
+    from: f64x4<S>,
+    until: f64x4<S>,
+    /// The plane with that `from`.
+    index: i64x4<S>,
+}
+
+/// The last of the intervals of all planes: the last beginning, with its plane, and the last end.
+#[derive(Clone, Copy)]
+struct End {
+    from: f64,
+    until: f64,
+    index: usize,
+}
+
+impl<S: Simd> Ends<S> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        let none = f64x4::splat(simd, f64::NEG_INFINITY);
+        Ends { from: none, until: none, index: i64x4::splat(simd, 0) }
+    }
+
+    #[inline(always)]
+    fn take(&mut self, are: mask64x4<S>, from: f64x4<S>, until: f64x4<S>, index: i64x4<S>) {
+        let later = are & from.simd_gt(self.from);
+        self.from = later.select(from, self.from);
+        self.index = later.select(index, self.index);
+        self.until = (are & until.simd_gt(self.until)).select(until, self.until);
+    }
+
+    /// Of equal beginnings, that of the first plane.
+    #[inline(always)]
+    fn last(self) -> End {
+        let (from, until, index) = (self.from.as_slice(), self.until.as_slice(), self.index.as_slice());
+        let end = |lane: usize| End { from: from[lane], until: until[lane], index: index[lane] as usize };
+        (1..LANES).map(end).fold(end(0), |last, end| {
+            let is_later = end.from > last.from || end.from == last.from && end.index < last.index;
+            End { until: last.until.max(end.until), ..if is_later { end } else { last } }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use solid_oracle::generate::{in_cube, seeded};
+
+    use super::*;
+    use crate::simd::{dispatch, levels};
+    use crate::testing::octahedron_faces;
+
+    fn octahedron() -> Planes {
+        let corners = DVec3::AXES.iter().flat_map(|&axis| [axis, -axis]).collect::<Vec<_>>();
+        Planes::new(&Plane::all(&corners, &octahedron_faces()), &corners, DVec3::ZERO).unwrap()
+    }
+
+    /// Law: every level tells the same of a line.
+    #[test]
+    fn every_level_sees_the_same_passage() {
+        let mut rng = seeded(47);
+        let planes = octahedron();
+        let mut told = [0; 2];
+        for _ in 0..2000 {
+            let (point, along) = (in_cube(&mut rng), in_cube(&mut rng));
+            let along = along / along.abs().max_element();
+            let foot = point - along * (point.dot(along) / along.length_squared());
+            let [scalar, wide] =
+                levels().map(|level| dispatch!(level, simd => planes.passage(simd, foot, along)));
+            assert_eq!(scalar, wide, "{foot} {along}");
+            told[0] += usize::from(scalar == Passage::Beside);
+            told[1] += usize::from(matches!(scalar, Passage::Through(_)));
+        }
+        assert!(told.iter().all(|&told| told > 400), "{told:?}");
+    }
+
+    /// Law: what is told of lines next to an edge is right; and of all but those that rounding might turn, something is told.
+    #[test]
+    fn what_is_told_next_to_an_edge_is_right() {
+        let mut rng = seeded(48);
+        let planes = octahedron();
+        let mut open = 0;
+        for case in 0..2000 {
+            // So few digits that the edge above `x` is exact; on which side of it `y` is, is the sign of a difference.
+            let x = (in_cube(&mut rng).x.abs() * 1024.0).floor() / 1024.0;
+            let y = (1.0 - x) + in_cube(&mut rng).y * 10f64.powi(-(case % 18));
+            let above = y.abs() - (1.0 - x);
+            match dispatch!(simd => planes.passage(simd, DVec3::new(x, y, 0.0), DVec3::Z)) {
+                Passage::Beside => assert!(above > 0.0, "{x} {above:e}"),
+                Passage::Through([enter, leave]) => {
+                    assert!(above <= 0.0, "{x} {above:e}");
+                    assert!((leave.0 + above).abs() < 1e-15 && enter.0 == -leave.0, "{x} {above:e}");
+                }
+                Passage::Unsure => {
+                    open += 1;
+                    assert!(above.abs() < 1e-12, "{x} {above:e}");
+                }
+            }
+        }
+        assert!((100..1000).contains(&open), "{open}");
+    }
+}
