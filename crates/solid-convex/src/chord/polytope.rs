@@ -6,7 +6,7 @@ use crate::kinds::Passage;
 use crate::simd::dispatch;
 
 impl Polytope {
-    /// The part of a line that is in the hull. `None` where its faces do not tell: they are unknown, or more than 64, or the line passes so near to
+    /// The part of a line that is in the hull. `None` where its faces do not tell: they are unknown, or more than 384, or the line passes so near to
     /// an edge, or through slivers, that rounding might decide. Cost: O(faces), some 30 ns where there are 36.
     ///
     /// ```

@@ -26,14 +26,14 @@ const SCAN_MAX: usize = 192;
 /// Points beyond which the bounds of an image are found by support points. Below, mapping all of them takes fewer instructions.
 const IMAGE_MAX: usize = 400;
 
-/// Planes of so many faces are kept: among more, a search takes no longer than to look at all of them.
-const PLANES_MAX: usize = 64;
+/// Planes of so many faces are kept, of 192 points: among more, a search takes hardly longer than to look at all of them.
+const PLANES_MAX: usize = 384;
 
 /// The convex hull of points, as [`Points`](super::Points), with the same answers to the bit, found faster: up to 192 points by
 /// comparing all of them with vector instructions; more by comparing those few that can be the furthest in directions near the
 /// one asked for.
 ///
-/// Memory: 48 bytes a point; of more than 192 points some 50 more, and at most 200; 40 for each of up to 64 faces that are known. Cost of a support point: some 25 ns, however many
+/// Memory: 48 bytes a point; of more than 192 points some 50 more, and at most 200; 40 for each of up to 384 faces that are known. Cost of a support point: some 25 ns, however many
 /// points there are, where the hull is round; where many points are about as far as each other, as the rim of a
 /// drum is along its axis, as long as it takes to compare these.
 ///
