@@ -40,7 +40,7 @@ mod testing;
 pub use chord::{Chord, End, Line};
 pub use epa::Penetration;
 pub use gjk::{Closest, Impact, Outcome, Witness};
-pub use kinds::{Capsule, Cone, Cuboid, Cylinder, IndexedPoints, Points, Polytope, Sphere};
+pub use kinds::{Capsule, Cone, Cuboid, Cylinder, FaceTowards, IndexedPoints, Points, Polytope, Sphere};
 pub use size::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError, unit_scale};
 pub use support::{Locus, Support};
 

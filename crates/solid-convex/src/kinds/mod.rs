@@ -15,6 +15,6 @@ pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use points::{IndexedPoints, Points};
 pub(crate) use polytope::Passage;
-pub use polytope::Polytope;
+pub use polytope::{FaceTowards, Polytope};
 pub use sphere::Sphere;
 pub(crate) use sphere::ball_support;

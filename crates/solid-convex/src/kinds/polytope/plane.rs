@@ -22,9 +22,13 @@ impl Plane {
 
     /// That of a triangle, counter-clockwise seen from outside. Which side is the inner one is not told by a point of the hull: the mean of
     /// corners, as it is rounded, may be off what is flat.
-    fn of([p, q, r]: [DVec3; 3]) -> Plane {
+    fn of(corners: [DVec3; 3]) -> Plane {
         /// The error of a normal is this much, relative to the lengths of the two edges: it turns the plane about the corner.
         const NORMAL_ERROR: f64 = 16.0 * f64::EPSILON;
+        // From the corner that is opposite to the longest edge, at which the error is least.
+        let opposite = |k: usize| corners[(k + 1) % 3].distance_squared(corners[(k + 2) % 3]);
+        let widest = (1..3).fold(0, |widest, k| if opposite(k) > opposite(widest) { k } else { widest });
+        let [p, q, r] = [0, 1, 2].map(|k| corners[(widest + k) % 3]);
         let edges = [q - p, r - p];
         let scale = unit_scale(edges[0].abs().max_element().max(edges[1].abs().max_element()));
         let [q, r] = edges.map(|edge| edge * scale);

@@ -9,6 +9,9 @@ use crate::gjk::{Ball, CAST_ERROR};
 /// Planes that are looked at at once.
 const LANES: usize = 4;
 
+/// The error of a height in that of a normal, which turns the plane about a corner, and what is rounded: beside the way from the centre and the reach.
+const HEIGHT_SLACK: f64 = 2.0;
+
 /// Four planes: inside is what is at least `offset` along the unit normal `inward`, seen from the centre; the normal may be off by `error`.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
@@ -26,6 +29,18 @@ pub(crate) struct Planes {
     center: DVec3,
     /// How far the polytope reaches from the centre: the greatest sum of the coordinates' magnitudes.
     reach: f64,
+}
+
+/// The face of a polytope that is towards a point: of those that the point is above, the one that it is furthest above; else the one that it is least below.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceTowards {
+    /// How far the point is above the plane of the face; negative inside of the polytope. The distance from the polytope is no less, up to 1e-13 of its size
+    /// and the way there.
+    pub distance: f64,
+    /// The outward normal of the face, a unit vector.
+    pub normal: DVec3,
+    /// Whether the face is what is nearest to the point, of the surface: the distance is that from it then. Always inside.
+    pub is_nearest: bool,
 }
 
 /// Where a line crosses a plane, and the inward normal of that.
@@ -72,15 +87,59 @@ impl Planes {
     /// Whether a ball is surely inside of all.
     #[inline(always)]
     pub fn contain<S: Simd>(&self, simd: S, Ball { center, radius }: Ball) -> bool {
-        /// The error of a normal, times the way from the corner, and what is rounded in a height, beside the way from the centre and the reach.
-        const SLACK: f64 = 2.0;
         let splat = |x: f64| f64x4::splat(simd, x);
         let way = center - self.center;
-        let slack = SLACK * (way.abs().element_sum() + self.reach);
+        let slack = HEIGHT_SLACK * (way.abs().element_sum() + self.reach);
         self.rows.iter().all(|Row { inward, offset, error }| {
             let height = rates(simd, inward, way) - lanes(simd, offset);
             (height - lanes(simd, error) * splat(slack)).simd_ge(splat(radius)).all_true()
         })
+    }
+
+    /// The face that a point is least below, or most above; `None` where rounding leaves that open, among slivers.
+    #[inline(always)]
+    pub fn towards<S: Simd>(&self, simd: S, point: DVec3) -> Option<FaceTowards> {
+        /// How much a distance may be left open, beside the way from the centre and the reach.
+        const OPEN_MAX: f64 = 5e-14;
+        let way = point - self.center;
+        let size = way.abs().element_sum() + self.reach;
+        let slack = f64x4::splat(simd, HEIGHT_SLACK * size);
+        let all = mask64x4::from_bitmask(simd, 0b1111);
+        let mut index = i64x4::simd_from(simd, [0, 1, 2, 3]);
+        let mut ends = Ends::new(simd);
+        for Row { inward, offset, error } in &self.rows {
+            let above = lanes(simd, offset) - rates(simd, inward, way);
+            ends.take(all, above, above + lanes(simd, error) * slack, index);
+            index += i64x4::splat(simd, LANES as i64);
+        }
+        let End { from: distance, until, index } = ends.last();
+        if !(until - distance <= OPEN_MAX * size) {
+            return None; // nor of what is no number
+        }
+        let inward = self.inward(index);
+        let is_nearest = distance <= 0.0 || self.has_on_face(simd, way + inward * distance, inward, slack);
+        Some(FaceTowards { distance, normal: -inward, is_nearest })
+    }
+
+    /// Whether a point of the plane of a face, seen from the centre, surely is on that face: inside of all others, but those in the same plane.
+    #[inline(always)]
+    fn has_on_face<S: Simd>(&self, simd: S, point: DVec3, inward: DVec3, slack: f64x4<S>) -> bool {
+        /// Normals that are no further apart are those of one plane: no point is further outside of one of them than that, beside the size.
+        const SAME: f64 = 1e-14;
+        let splat = |x: f64| f64x4::splat(simd, x);
+        self.rows.iter().all(|Row { inward: [x, y, z], offset, error }| {
+            let height = rates(simd, &[*x, *y, *z], point) - lanes(simd, offset);
+            let apart = (lanes(simd, x) - splat(inward.x)).abs()
+                + (lanes(simd, y) - splat(inward.y)).abs()
+                + (lanes(simd, z) - splat(inward.z)).abs();
+            let is_below = height.simd_ge(lanes(simd, error) * slack * splat(2.0));
+            (is_below | apart.simd_le(splat(SAME))).all_true()
+        })
+    }
+
+    /// The normal of a plane.
+    fn inward(&self, index: usize) -> DVec3 {
+        DVec3::from_array(self.rows[index / LANES].inward.map(|row| row[index % LANES]))
     }
 
     /// Where a line runs through the polytope: the points `center + foot + t * along`. The foot is the point of the line closest to the centre, the
@@ -130,10 +189,8 @@ impl Planes {
 
     /// Where a line crosses a plane.
     fn crossing(&self, index: usize, foot: DVec3, along: DVec3) -> Crossing {
-        let Row { inward, offset, .. } = &self.rows[index / LANES];
-        let lane = index % LANES;
-        let inward = DVec3::from_array(inward.map(|row| row[lane]));
-        ((offset[lane] - inward.dot(foot)) / inward.dot(along), inward)
+        let (inward, offset) = (self.inward(index), self.rows[index / LANES].offset[index % LANES]);
+        ((offset - inward.dot(foot)) / inward.dot(along), inward)
     }
 }
 
@@ -149,7 +206,7 @@ fn rates<S: Simd>(simd: S, [x, y, z]: &[[f64; LANES]; 3], way: DVec3) -> f64x4<S
     lanes(simd, x) * splat(way.x) + lanes(simd, y) * splat(way.y) + lanes(simd, z) * splat(way.z)
 }
 
-/// The last of the intervals in which planes are crossed, in each lane.
+/// The last of intervals, one for each plane, in each lane.
 #[derive(Clone, Copy)]
 struct Ends<S: Simd> {
     from: f64x4<S>,
