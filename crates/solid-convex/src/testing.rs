@@ -26,6 +26,19 @@ pub fn octahedron_faces() -> Vec<[u32; 3]> {
     (0..8).map(face).collect()
 }
 
+/// The corners of a box from 0 to some sizes, and its faces.
+pub fn block(size: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let corners = (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * size);
+    let faces = [0, 1, 2].into_iter().flat_map(|axis| {
+        let [u, v] = [1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3)];
+        // The lower face is seen from below.
+        [(0, v, u), (1 << axis, u, v)]
+            .into_iter()
+            .flat_map(|(o, u, v)| [[o, o + u, o + v], [o + u, o + u + v, o + v]])
+    });
+    (corners.collect(), faces.collect())
+}
+
 /// Placements spread over orientations and distances by a low-discrepancy sequence.
 pub fn placement(i: u32) -> DAffine3 {
     let part = |step: f64| (f64::from(i) * step).fract();

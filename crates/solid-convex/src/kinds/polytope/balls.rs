@@ -83,6 +83,7 @@ mod tests {
 
     use super::super::super::points::mean;
     use super::*;
+    use crate::testing::block;
 
     fn around(points: &[DVec3]) -> Ball {
         super::around(points, mean(points.iter().copied()))
@@ -90,19 +91,6 @@ mod tests {
 
     fn inside(points: &[DVec3], faces: &[[u32; 3]]) -> Ball {
         super::inside(points, mean(points.iter().copied()), &Plane::all(points, faces))
-    }
-
-    /// The corners of a box from 0 to some sizes, and its faces.
-    fn block(size: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-        let corners = (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * size);
-        let faces = [0, 1, 2].into_iter().flat_map(|axis| {
-            let [u, v] = [1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3)];
-            // The lower face is seen from below.
-            [(0, v, u), (1 << axis, u, v)]
-                .into_iter()
-                .flat_map(|(o, u, v)| [[o, o + u, o + v], [o + u, o + u + v, o + v]])
-        });
-        (corners.collect(), faces.collect())
     }
 
     /// Law: the balls of a box, whatever points are added that are not corners, are nearly the best there are, of any size and anywhere.

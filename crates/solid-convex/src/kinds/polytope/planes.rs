@@ -39,7 +39,7 @@ pub struct FaceTowards {
     pub distance: f64,
     /// The outward normal of the face, a unit vector.
     pub normal: DVec3,
-    /// Whether the face is what is nearest to the point, of the surface: the distance is that from it then. Always inside.
+    /// Whether the face is what is nearest to the point, of the surface, and the distance that from it: wherever that is sure, so nearly everywhere inside.
     pub is_nearest: bool,
 }
 
@@ -113,11 +113,14 @@ impl Planes {
             index += i64x4::splat(simd, LANES as i64);
         }
         let End { from: distance, until, index } = ends.last();
-        if !(until - distance <= OPEN_MAX * size) {
-            return None; // nor of what is no number
+        // Nor of what is no number.
+        let is_told = until - distance <= OPEN_MAX * size;
+        if !is_told {
+            return None;
         }
         let inward = self.inward(index);
-        let is_nearest = distance <= 0.0 || self.has_on_face(simd, way + inward * distance, inward, slack);
+        // Surely inside of all, which nothing is of what is flat, or on the face.
+        let is_nearest = until < 0.0 || self.has_on_face(simd, way + inward * distance, inward, slack);
         Some(FaceTowards { distance, normal: -inward, is_nearest })
     }
 
@@ -252,15 +255,52 @@ impl<S: Simd> Ends<S> {
 
 #[cfg(test)]
 mod tests {
+    use glam::DAffine3;
     use solid_oracle::generate::{in_cube, seeded};
 
     use super::*;
     use crate::simd::{dispatch, levels};
-    use crate::testing::octahedron_faces;
+    use crate::testing::{block, octahedron_faces};
+    use crate::{Polytope, Support, gjk};
 
     fn octahedron() -> Planes {
         let corners = DVec3::AXES.iter().flat_map(|&axis| [axis, -axis]).collect::<Vec<_>>();
         Planes::new(&Plane::all(&corners, &octahedron_faces()), &corners, DVec3::ZERO).unwrap()
+    }
+
+    /// Law: no point is nearer than its face tells, and as far where that is nearest; on every level. Faces that lie in one plane are one.
+    #[test]
+    fn a_face_is_as_far_as_gjk_tells() {
+        let mut rng = seeded(49);
+        let here = DAffine3::IDENTITY;
+        let corners: Vec<DVec3> = DVec3::AXES.iter().flat_map(|&axis| [axis * 1.5, -axis]).collect();
+        for (corners, faces) in [(corners, octahedron_faces()), block(DVec3::new(1.0, 0.5, 2.0))] {
+            let hull = Polytope::new(corners).unwrap().with_faces(&faces);
+            let (mut nearest, mut inside) = (0, 0);
+            for _ in 0..2000 {
+                let point = hull.center() + in_cube(&mut rng) * 1.5;
+                let levels = levels()
+                    .map(|level| dispatch!(level, simd => hull.planes().unwrap().towards(simd, point)));
+                assert_eq!(levels[0], levels[1], "{point}");
+                let face = levels[0].unwrap();
+                let dot = Polytope::new(vec![point]).unwrap();
+                let slow = gjk::closest_points(&dot, &here, &hull, &here).distance;
+                assert!(face.distance <= slow + 1e-14, "{point}: {face:?}, {slow}");
+                if face.is_nearest {
+                    nearest += 1;
+                    assert!((face.distance.max(0.0) - slow).abs() < 1e-14, "{point}: {face:?}, {slow}");
+                }
+                if face.distance < 0.0 {
+                    inside += 1;
+                    let out = Polytope::new(vec![point - face.normal * (face.distance - 1e-9)]).unwrap();
+                    assert!(
+                        gjk::closest_points(&out, &here, &hull, &here).distance > 0.9e-9,
+                        "{point}: {face:?}"
+                    );
+                }
+            }
+            assert!(nearest > 200 && inside > 50, "{nearest} are nearest, {inside} inside");
+        }
     }
 
     /// Law: every level tells the same of a line.

@@ -31,36 +31,39 @@ pub(super) fn placed_ball(ball: Placed) -> Option<(Similarity, f64)> {
     Some((at, radius))
 }
 
-/// Whether there is no gap of this size, in the unit of the pair; `None` where it is too small to tell.
-fn intersects(gap: f64) -> Option<bool> {
-    Gap { least: gap, greatest: gap }.intersects()
-}
-
-/// Whether a point is in a body, as [`BallAndBody`] says of a ball without a radius.
-pub(crate) fn contains(body: Placed, point: DVec3) -> Option<bool> {
-    intersects(Seen::new(body, point, 0.0)?.distance())
+/// A ball and a body, in this order, with the least gap or overlap that is decided. `None` for other shapes, for placements that are not a rotation
+/// with a uniform scale, and for sizes that are not plain.
+#[inline(always)]
+pub(super) fn plain_view<'a, S: Simd>(
+    simd: S,
+    ball: Placed<'a>,
+    body: Placed<'a>,
+) -> Option<(View<'a>, f64)> {
+    let (radius, extent) = (ball.shape.ball_radius()?, extent(&body.shape.body()?)?);
+    let view = View::of(simd, [ball.placement, body.placement])?;
+    let margin = view.margin([radius, extent])?;
+    Some((view, margin))
 }
 
 /// How far a point is from a body, and the point of the body that is nearest, in the world: as of a ball without a radius.
 pub(crate) fn closest_to(body: Placed, point: DVec3) -> Option<(f64, DVec3)> {
-    let seen = Seen::new(body, point, 0.0)?;
-    Some(match intersects(seen.distance())? {
+    let seen = Seen::new(body, point)?;
+    let gap = seen.distance();
+    Some(match (Gap { least: gap, greatest: gap }).intersects()? {
         true => (0.0, point),
-        false => (seen.distance() / seen.scale, body.placement.translation + seen.to_surface()),
+        false => (gap / seen.scale, body.placement.translation + seen.to_surface()),
     })
 }
 
 impl<'a> BallAndBody<'a> {
-    /// `None` for other shapes, for placements that are not a rotation with a uniform scale, and for sizes that are not plain.
+    /// `None` for other shapes, for placements that are not a rotation with a uniform scale, for sizes that are not plain, and where the planes of a
+    /// hull do not tell.
     #[inline(always)] // most callers want a part of it
     pub fn new<S: Simd>(simd: S, ball: Placed<'a>, body: Placed<'a>) -> Option<Self> {
-        let (radius, kind) = (ball.shape.ball_radius()?, body.shape.body()?);
-        let extent = extent(&kind)?;
-        let view = View::of(simd, [ball.placement, body.placement])?;
-        let margin = view.margin([radius, extent])?;
+        let (view, margin) = plain_view(simd, ball, body)?;
         let center = view.other_origin(1) / view.scales[1];
-        let foot = of_body(&kind, view.scales[1], center)?;
-        let radius = radius * view.scales[0];
+        let foot = of_body(&body.shape.body()?, view.scales[1], center)?;
+        let radius = ball.shape.ball_radius()? * view.scales[0];
         Some(BallAndBody { view, center, foot, radius, margin })
     }
 

@@ -1,4 +1,5 @@
-//! Pairs that need no search: balls, capsules and boxes that their placements leave what they are; and balls and points beside cones and cylinders.
+//! Pairs that need no search: balls, capsules and boxes that their placements leave what they are; and balls and points beside cones, cylinders and, where
+//! they are nearest to a face, hulls.
 //!
 //! A closed form speaks only where it is sure: the placements must be rotations with a uniform scale, up to
 //! [`SKEW_MAX`](solid_convex::similarity::SKEW_MAX), and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
@@ -23,11 +24,12 @@ use solid_convex::{Closest, Penetration, unit_scale};
 use super::{Mirror, Placed, Relation};
 use crate::shape::{ShapeKind, Simple};
 use ball::BallAndBody;
-pub(crate) use ball::{closest_to, contains};
+pub(crate) use ball::closest_to;
 use boxes::PlacedBox;
 pub(super) use cast::cast;
 pub(super) use point::foot;
-pub(crate) use point::nearest_on_surface;
+use point::is_near;
+pub(crate) use point::{contains, nearest_on_surface};
 use round::{Cores, PlacedRound};
 pub(super) use similarity::Similarity;
 
@@ -87,9 +89,12 @@ pub(super) fn closely_intersects(a: Placed, b: Placed) -> Option<bool> {
 
 /// Something of a ball, or a point, and a body; of a body and a ball mirrored. `None` for other shapes, and where GJK has to say.
 fn of_ball<T: Mirror + Lengths>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) -> Option<T>) -> Option<T> {
-    ball_is_first(a, b)?;
+    let in_order = ball_is_first(a, b)?;
     let find = |a: Placed, b: Placed| quickly_of_ball(a, b, &what);
-    find(a, b).or_else(|| in_unit(a, b, find))
+    let (ball, body) = if in_order { (a, b) } else { (b, a) };
+    // Of plain sizes another unit tells no more.
+    let is_plain = || dispatch!(simd => ball::plain_view(simd, ball, body).is_some());
+    find(a, b).or_else(|| if is_plain() { None } else { in_unit(a, b, find) })
 }
 
 /// The same of plain sizes. Placements need not have been checked: those of an answer are good.
@@ -101,13 +106,15 @@ fn quickly_of_ball<T: Mirror>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) 
     Some(if in_order { found } else { found.mirrored() })
 }
 
-/// Of a ball, or a point, and a body that is no hull, whether it is the first; `None` for other shapes.
+/// Of a ball, or a point, and a body, whether it is the first; `None` for other shapes, and of a hull far from it.
 #[inline]
 fn ball_is_first(a: Placed, b: Placed) -> Option<bool> {
     let is_ball = |of: Placed| of.shape.ball_radius().is_some();
-    let is_body =
-        |of: Placed| !matches!(of.shape.kind(), ShapeKind::ConvexHull | ShapeKind::Mesh | ShapeKind::Complex);
-    if is_body(b) && is_ball(a) { Some(true) } else { (is_body(a) && is_ball(b)).then_some(false) }
+    let is_body = |of: Placed, other: Placed| match of.shape.polytope() {
+        Some(hull) => is_near(hull, of.placement, other.placement.translation),
+        None => !matches!(of.shape.kind(), ShapeKind::Mesh | ShapeKind::Complex),
+    };
+    if is_ball(a) && is_body(b, a) { Some(true) } else { (is_ball(b) && is_body(a, b)).then_some(false) }
 }
 
 /// Whether a ball, or a point, and a body intersect; `None` for other shapes, and where GJK has to say.

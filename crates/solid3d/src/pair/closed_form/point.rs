@@ -4,12 +4,13 @@
 //! so that each is decided by two edges.
 
 use glam::{DAffine3, DVec2, DVec3};
-use solid_convex::unit_scale;
+use solid_convex::{FaceTowards, Polytope, unit_scale};
 
+use super::GAP_MIN;
 use super::similarity::Similarity;
 use crate::pair::{Placed, SurfacePoint};
 use crate::placement::length_and_direction;
-use crate::shape::{Body, ShapeKind};
+use crate::shape::Body;
 
 /// Where a surface is nearest to a point, in the space of the surface.
 pub(super) struct Foot<V> {
@@ -21,33 +22,56 @@ pub(super) struct Foot<V> {
     pub at: V,
 }
 
-/// A point as a body sees it that its placement leaves what it is.
-pub(super) struct Seen {
-    /// Where the surface is nearest, in the body's own directions and the unit of the pair.
-    foot: Foot<DVec3>,
+/// A point beside a body that its placement leaves what it is, in the body's own directions.
+struct Beside<'a> {
+    body: Body<'a>,
     at: Similarity,
-    /// World lengths times this are lengths in the unit of the pair, in which the size of the data is in [1, 2).
-    pub scale: f64,
+    /// World lengths times this are lengths in the unit of the pair, in which the size of the data is in [1, 2): squares neither overflow nor underflow.
+    scale: f64,
+    /// How many times its own size the body is, and the point. In the unit of the pair.
+    stretch: f64,
+    point: DVec3,
 }
 
-impl Seen {
-    /// `None` for other shapes than a ball, box, cone, cylinder or capsule, and for placements that are not a rotation with a uniform scale.
-    /// `radius` is that of a ball around the point, which belongs to the size of the data. World units.
-    #[inline(always)] // most callers want a part of it
-    pub fn new(body: Placed, point: DVec3, radius: f64) -> Option<Seen> {
-        if matches!(body.shape.kind(), ShapeKind::ConvexHull) {
-            return None; // before its facets are made
-        }
+impl<'a> Beside<'a> {
+    /// `None` for a mesh or a complex shape, and for placements that are not a rotation with a uniform scale.
+    #[inline(always)]
+    fn new(body: Placed<'a>, point: DVec3) -> Option<Self> {
         let DAffine3 { matrix3, translation } = body.placement;
         let body = body.shape.body()?;
         let extent = extent(&body)?;
         let at = Similarity::new(matrix3)?;
         let offset = point - *translation;
-        // In a unit of length near the size of the data, so that squares neither overflow nor underflow.
-        let scale = unit_scale(extent * at.stretch + radius + offset.abs().element_sum());
+        let scale = unit_scale(extent * at.stretch + offset.abs().element_sum());
         let point = DVec3::from(at.units().map(|axis| axis.dot(offset * scale)));
-        let foot = of_body(&body, at.stretch * scale, point)?;
-        Some(Seen { foot, at, scale })
+        Some(Beside { body, at, scale, stretch: at.stretch * scale, point })
+    }
+}
+
+/// Whether a point is in a body; `None` where it is too near to the surface to tell.
+pub(crate) fn contains(body: Placed, point: DVec3) -> Option<bool> {
+    let Beside { body, stretch, point, .. } = Beside::new(body, point)?;
+    least_distance(&body, stretch, point)?.is_within(0.0, GAP_MIN)
+}
+
+/// A point as a body sees it that its placement leaves what it is.
+pub(super) struct Seen {
+    /// Where the surface is nearest, in the body's own directions and the unit of the pair.
+    foot: Foot<DVec3>,
+    at: Similarity,
+    /// World lengths times this are lengths in the unit of the pair.
+    pub scale: f64,
+}
+
+impl Seen {
+    /// `None` as [`Beside::new`] says, and where the planes of a hull do not tell, or it is far.
+    #[inline(always)] // most callers want a part of it
+    pub fn new(body: Placed, point: DVec3) -> Option<Seen> {
+        if body.shape.polytope().is_some_and(|hull| !is_near(hull, body.placement, point)) {
+            return None;
+        }
+        let Beside { body, at, scale, stretch, point } = Beside::new(body, point)?;
+        Some(Seen { foot: of_body(&body, stretch, point)?, at, scale })
     }
 
     /// How far the point is from the surface, negative inside. In the unit of the pair.
@@ -72,10 +96,9 @@ impl Seen {
     }
 }
 
-/// The point of the surface of a ball, box, cone, cylinder or capsule nearest to a point of the world; `None` for other shapes,
-/// and for placements that are not a rotation with a uniform scale.
+/// The point of the surface of a body nearest to a point of the world; `None` where [`Seen::new`] says so.
 pub(crate) fn nearest_on_surface(shape: Placed, point: DVec3) -> Option<SurfacePoint> {
-    let seen = Seen::new(shape, point, 0.0)?;
+    let seen = Seen::new(shape, point)?;
     let (distance, normal) = (seen.distance() / seen.scale, seen.normal());
     Some(SurfacePoint { distance, point: point - normal * distance, normal })
 }
@@ -88,7 +111,7 @@ pub(in crate::pair) fn foot(body: &Body, at: &Similarity, offset: DVec3) -> Opti
     Some((foot.distance, x * foot.normal.x + y * foot.normal.y + z * foot.normal.z))
 }
 
-/// A bound on the coordinates of a body; `None` for a hull.
+/// A bound on the coordinates of a body; `None` for a primitive of a complex shape.
 #[inline(always)]
 pub(super) fn extent(body: &Body) -> Option<f64> {
     Some(match body {
@@ -97,7 +120,37 @@ pub(super) fn extent(body: &Body) -> Option<f64> {
         Body::Cone(shape) => shape.radius() + shape.height(),
         Body::Cylinder(shape) => shape.radius() + shape.height(),
         Body::Capsule(shape) => shape.radius() + shape.height(),
-        Body::Hull { .. } | Body::Simplex { .. } => return None,
+        Body::Hull { hull, .. } => hull.polytope().farthest(),
+        Body::Simplex { .. } => return None,
+    })
+}
+
+/// How far a point is from a body.
+pub(super) struct LeastDistance {
+    /// At least so far; negative inside.
+    least: f64,
+    /// Whether no further.
+    is_all: bool,
+}
+
+impl LeastDistance {
+    /// Whether it is within a radius; `None` where it is within a margin of that, or may be beyond it.
+    #[inline(always)]
+    pub fn is_within(&self, radius: f64, margin: f64) -> Option<bool> {
+        let gap = self.least - radius;
+        (gap > margin || (self.is_all && gap < -margin)).then_some(gap < 0.0)
+    }
+}
+
+/// How far a point is from a body that is `stretch` times its own size; inside exactly.
+#[inline(always)]
+pub(super) fn least_distance(body: &Body, stretch: f64, p: DVec3) -> Option<LeastDistance> {
+    Some(match body {
+        Body::Hull { hull, .. } => {
+            let face = hull.polytope().face_towards(p / stretch)?;
+            LeastDistance { least: face.distance * stretch, is_all: face.is_nearest }
+        }
+        _ => LeastDistance { least: of_body(body, stretch, p)?.distance, is_all: true },
     })
 }
 
@@ -113,8 +166,27 @@ pub(super) fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>
             turned(p, |q| of_rectangle(DVec2::new(shape.radius() * stretch, half(shape.height())), q))
         }
         Body::Cone(shape) => turned(p, |q| of_cone(shape.radius() * stretch, half(shape.height()), q)),
-        Body::Hull { .. } | Body::Simplex { .. } => return None,
+        Body::Hull { hull, .. } => of_hull(hull.polytope(), stretch, p)?,
+        Body::Simplex { .. } => return None,
     })
+}
+
+/// Whether a point is so near to a hull that a face may well be what is nearest, and its planes are known. From the origin of what is round, the
+/// share of its faces is less than half in what is beyond that.
+#[inline]
+pub(super) fn is_near(hull: &Polytope, at: &DAffine3, point: DVec3) -> bool {
+    const NEAR: f64 = 1.5;
+    let reach = NEAR * hull.farthest();
+    hull.has_planes()
+        && point.distance_squared(at.translation) < reach * reach * at.matrix3.x_axis.length_squared()
+}
+
+/// `None` where a corner or an edge is nearest, or the planes of the hull do not tell.
+#[inline(always)]
+fn of_hull(hull: &Polytope, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
+    let FaceTowards { distance, normal, is_nearest } = hull.face_towards(p / stretch)?;
+    let distance = distance * stretch;
+    is_nearest.then(|| Foot { distance, normal, at: p - normal * distance })
 }
 
 #[inline(always)]

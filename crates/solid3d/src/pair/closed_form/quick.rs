@@ -9,7 +9,7 @@ use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_squares};
 use solid_convex::{Closest, Penetration, Witness};
 
 use super::GAP_MIN;
-use super::point::{extent, of_body};
+use super::point::{extent, least_distance};
 use super::round::Products;
 use crate::pair::Placed;
 use crate::shape::{Body, Round, Simple};
@@ -49,11 +49,11 @@ pub(super) fn intersects<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
     meet.map_or(Glance::Open, Glance::Sure)
 }
 
-/// Whether a ball and a cylinder or a cone intersect.
+/// Whether a ball and a cylinder, a cone or a hull intersect.
 #[inline(always)]
 pub(super) fn ball_intersects<S: Simd>(simd: S, a: Placed, b: Placed) -> Glance {
     let (ball, body, turned) = if a.shape.is_ball() { (a, b, 1) } else { (b, a, 0) };
-    let (Some(radius), Some(body @ (Body::Cylinder(_) | Body::Cone(_)))) =
+    let (Some(radius), Some(body @ (Body::Cylinder(_) | Body::Cone(_) | Body::Hull { .. }))) =
         (ball.shape.ball_radius(), body.shape.body())
     else {
         return Glance::Unusual;
@@ -156,9 +156,7 @@ impl<'a> View<'a> {
             return None;
         }
         let center = self.other_origin(k);
-        let gap = of_body(body, self.squares[k], center)?.distance - radius * unit;
-        let margin = ROUGH_GAP_MIN * size * unit;
-        (gap.abs() > margin).then_some(gap < 0.0)
+        least_distance(body, self.squares[k], center)?.is_within(radius * unit, ROUGH_GAP_MIN * size * unit)
     }
 
     /// Whether two boxes intersect, by the balls around them and in them.

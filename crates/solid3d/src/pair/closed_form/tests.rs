@@ -5,7 +5,7 @@ use rand::Rng;
 use rand::rngs::StdRng;
 use solid_convex::simd::levels;
 use solid_convex::{Outcome, Support, Witness, epa, gjk};
-use solid_oracle::generate::seeded;
+use solid_oracle::generate::{in_cube, seeded};
 
 use super::*;
 use crate::Shape;
@@ -20,6 +20,18 @@ fn kinds() -> [Shape; 3] {
 /// A cylinder and a cone.
 fn turned() -> [Shape; 2] {
     [Shape::cylinder(0.5, 1.4).unwrap(), Shape::cone(0.6, 1.4).unwrap()]
+}
+
+/// A round hull, and a box.
+fn hulls() -> [Shape; 2] {
+    let mut rng = seeded(SEED);
+    let round = [(); 20].map(|()| in_cube(&mut rng).normalize() * 0.8);
+    let corner =
+        |i: usize| DVec3::from([0, 1, 2].map(|k| [-0.5, 0.5][i >> k & 1])) * DVec3::new(1.0, 0.8, 1.2);
+    [
+        Shape::convex_hull(&round).unwrap(),
+        Shape::convex_hull(&std::array::from_fn::<_, 8, _>(corner)).unwrap(),
+    ]
 }
 
 fn support(shape: &Shape) -> &dyn Support {
@@ -194,26 +206,28 @@ fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
     let balls = [point(), Shape::sphere(0.05).unwrap(), Shape::sphere(0.7).unwrap()];
     let [sphere, capsule, block] = kinds();
     let [cylinder, cone] = turned();
-    let bodies = [sphere, capsule, block, cylinder, cone];
-    let [mut hits, mut decided, mut inside, mut glanced] = [0; 4];
-    for case in 0..15_000 {
+    let [round, cuboid] = hulls();
+    let bodies = [sphere, capsule, block, cylinder, cone, round, cuboid];
+    let [mut hits, mut decided, mut inside, mut glanced, mut of_hulls] = [0; 5];
+    for case in 0..21_000 {
         let [mut at_a, at_b] = placements(&mut rng);
         at_a.translation = at_b.translation + (at_a.translation - at_b.translation) * 0.8;
-        let (ball, body) = (&balls[case % 3], &bodies[case / 3 % 5]);
+        let (ball, body) = (&balls[case % 3], &bodies[case / 3 % 7]);
         let placed = [Placed { shape: ball, placement: &at_a }, Placed { shape: body, placement: &at_b }];
         let [a, b] = if case % 2 == 0 { placed } else { [placed[1], placed[0]] };
         let context = format!("seed {SEED}, case {case}: {at_a}, {at_b}");
         let (of_a, of_b) = ((support(a.shape), a.placement), (support(b.shape), b.placement));
         let outcome = gjk::intersection(of_a.0, of_a.1, of_b.0, of_b.1);
-        let Some(hit) = ball_intersects(a, b) else { continue };
-        (decided, hits) = (decided + 1, hits + usize::from(hit));
-        assert_eq!(hit, outcome.witness().is_some(), "{context}");
         let seen = levels().map(|level| dispatch!(level, simd => glance(simd, a, b)));
         assert_eq!(seen[0], seen[1], "{context}");
         if let Glance::Sure(answer) = seen[0] {
-            assert_eq!(answer, hit, "{context}");
+            assert_eq!(answer, outcome.witness().is_some(), "{context}");
             glanced += 1;
         }
+        let Some(hit) = ball_intersects(a, b) else { continue };
+        (decided, hits) = (decided + 1, hits + usize::from(hit));
+        of_hulls += usize::from(body.polytope().is_some());
+        assert_eq!(hit, outcome.witness().is_some(), "{context}");
         let seen = levels().map(|level| {
             dispatch!(level, simd => {
                 BallAndBody::new(simd, placed[0], placed[1]).map(|pair| (pair.closest(), pair.penetration()))
@@ -222,7 +236,7 @@ fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
         assert_eq!(seen[0], seen[1], "{context}");
         let [closest, depth] = [quickly_closest(a, b).is_some(), quickly_penetration(a, b).is_some()];
         assert!(closest || case % 3 == 0, "{context}");
-        assert!(depth == hit || case % 3 == 0 || case / 3 % 5 < 2, "{context}");
+        assert!(depth == hit || case % 3 == 0 || case / 3 % 7 < 2, "{context}");
         assert_eq!(quickly_closest(a, b), in_unit(a, b, quickly_closest), "{context}");
         assert_eq!(quickly_penetration(a, b), in_unit(a, b, quickly_penetration), "{context}");
         let in_world = |points| in_world(a, b, points, &context);
@@ -256,8 +270,11 @@ fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
             inside += usize::from(found.depth > 0.7);
         }
     }
-    assert!(decided > 14_000 && inside > 500, "{decided} decided, {inside} deep");
-    assert!(glanced > 9_000, "{glanced} at a glance");
+    assert!(
+        decided > 17_000 && of_hulls > 2_500 && inside > 500,
+        "{decided} decided, {of_hulls} of hulls, {inside} deep"
+    );
+    assert!(glanced > 12_000, "{glanced} at a glance");
     assert!((30..=70).contains(&(100 * hits / decided)), "{hits} of {decided} hit");
 }
 
@@ -347,7 +364,7 @@ fn a_quick_look_says_what_a_close_one_says() {
 fn a_rough_look_says_what_gjk_says() {
     let mut rng = seeded(SEED);
     let (mut hits, mut decided) = (0, 0);
-    let shapes: Vec<Shape> = kinds().into_iter().chain(turned()).collect();
+    let shapes: Vec<Shape> = kinds().into_iter().chain(turned()).chain(hulls()).collect();
     for a in &shapes {
         for b in &shapes {
             for _ in 0..1_000 {
@@ -365,8 +382,8 @@ fn a_rough_look_says_what_gjk_says() {
             }
         }
     }
-    // Of cylinders and cones, those beside balls.
-    assert!(decided > 9_500, "{decided} of 13000 decided");
+    // Of cylinders, cones and hulls, those beside balls.
+    assert!(decided > 13_500, "{decided} of 17000 decided");
     assert!((30..=70).contains(&(100 * hits / decided)), "{hits} of {decided} hit");
 }
 

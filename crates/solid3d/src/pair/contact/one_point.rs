@@ -11,7 +11,7 @@ use super::{ContactPoint, Feature, Manifold};
 use crate::placement::direction;
 use crate::shape::ShapeKind;
 
-/// The contact of a ball and a ball, box, cone, cylinder or capsule that are in each other, or of two capsules that are; `None` for other shapes,
+/// The contact of a ball and a convex body that are in each other, or of two capsules that are; `None` for other shapes,
 /// and where the general way has to say. `penetration` is [`closed_form::penetration`](super::super::closed_form), or what that says of plain sizes.
 #[inline]
 pub(super) fn contact(
@@ -55,7 +55,7 @@ pub(super) fn contact(
 mod tests {
     use glam::{DAffine3, DQuat};
     use rand::Rng;
-    use solid_oracle::generate::seeded;
+    use solid_oracle::generate::{in_cube, seeded};
 
     use super::super::super::closed_form;
     use super::super::contacts_at_length;
@@ -71,6 +71,7 @@ mod tests {
         let mut rng = seeded(151);
         let ball = Shape::sphere(0.6).unwrap();
         let capsule = Shape::capsule(0.3, 1.0).unwrap();
+        let corners = [(); 20].map(|()| in_cube(&mut rng).normalize() * 0.6);
         let pairs = [
             (&ball, &ball),
             (&ball, &capsule),
@@ -78,6 +79,7 @@ mod tests {
             (&ball, &Shape::cylinder(0.5, 1.0).unwrap()),
             (&ball, &Shape::cone(0.6, 1.2).unwrap()),
             (&capsule, &capsule),
+            (&ball, &Shape::convex_hull(&corners).unwrap()),
         ];
         for (kind, (first, second)) in pairs.into_iter().enumerate() {
             let (mut found, cases) = (0, 1000);
