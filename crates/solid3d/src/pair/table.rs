@@ -60,8 +60,9 @@ pub(crate) fn intersects_by_class(a: Placed, b: Placed, scratch: &mut Scratch) -
 /// What [`intersects`] says of convex shapes, for which no working memory is needed; `None` for others.
 pub(crate) fn convex_intersects(a: Placed, b: Placed) -> Option<bool> {
     let (on_a, on_b) = convex(a, b)?;
-    let polytopes = a.shape.polytope().is_some() & b.shape.polytope().is_some();
-    let of_ball = if polytopes { None } else { closed_form::ball_intersects(a, b) };
+    // Of a hull, the planes told at a glance what they tell.
+    let of_hull = a.shape.polytope().is_some() | b.shape.polytope().is_some();
+    let of_ball = if of_hull { None } else { closed_form::ball_intersects(a, b) };
     Some(of_ball.unwrap_or_else(|| convex_convex::intersects(on_a, on_b)))
 }
 

@@ -4,7 +4,8 @@
 //! so that each is decided by two edges.
 
 use glam::{DAffine3, DVec2, DVec3};
-use solid_convex::{FaceTowards, Polytope, unit_scale};
+use solid_convex::gjk::Balls;
+use solid_convex::{FaceTowards, Polytope, Support, unit_scale};
 
 use super::GAP_MIN;
 use super::similarity::Similarity;
@@ -51,7 +52,7 @@ impl<'a> Beside<'a> {
 /// Whether a point is in a body; `None` where it is too near to the surface to tell.
 pub(crate) fn contains(body: Placed, point: DVec3) -> Option<bool> {
     let Beside { body, stretch, point, .. } = Beside::new(body, point)?;
-    least_distance(&body, stretch, point)?.is_within(0.0, GAP_MIN)
+    is_within(&body, stretch, point, 0.0, GAP_MIN)
 }
 
 /// A point as a body sees it that its placement leaves what it is.
@@ -125,33 +126,31 @@ pub(super) fn extent(body: &Body) -> Option<f64> {
     })
 }
 
-/// How far a point is from a body.
-pub(super) struct LeastDistance {
-    /// At least so far; negative inside.
-    least: f64,
-    /// Whether no further.
-    is_all: bool,
-}
-
-impl LeastDistance {
-    /// Whether it is within a radius; `None` where it is within a margin of that, or may be beyond it.
-    #[inline(always)]
-    pub fn is_within(&self, radius: f64, margin: f64) -> Option<bool> {
-        let gap = self.least - radius;
-        (gap > margin || (self.is_all && gap < -margin)).then_some(gap < 0.0)
-    }
-}
-
-/// How far a point is from a body that is `stretch` times its own size; inside exactly.
+/// Whether a point is within a radius of a body that is `stretch` times its own size; `None` where it is within a margin of that, or the planes of a
+/// hull do not tell.
 #[inline(always)]
-pub(super) fn least_distance(body: &Body, stretch: f64, p: DVec3) -> Option<LeastDistance> {
-    Some(match body {
-        Body::Hull { hull, .. } => {
-            let face = hull.polytope().face_towards(p / stretch)?;
-            LeastDistance { least: face.distance * stretch, is_all: face.is_nearest }
-        }
-        _ => LeastDistance { least: of_body(body, stretch, p)?.distance, is_all: true },
-    })
+pub(super) fn is_within(body: &Body, stretch: f64, p: DVec3, radius: f64, margin: f64) -> Option<bool> {
+    if let Body::Hull { hull, .. } = body {
+        return is_within_of_hull(hull.polytope(), p / stretch, radius / stretch, margin / stretch);
+    }
+    let gap = of_body(body, stretch, p)?.distance - radius;
+    (gap.abs() > margin).then_some(gap < 0.0)
+}
+
+/// By the balls around it and in it, then by the face that is towards the point. In the hull's own unit.
+#[inline]
+fn is_within_of_hull(hull: &Polytope, point: DVec3, radius: f64, margin: f64) -> Option<bool> {
+    let Balls { inner, outer } = hull.balls()?;
+    let (far, near) = (outer.radius + radius + margin, inner.radius + radius - margin);
+    if point.distance_squared(outer.center) > far * far {
+        return Some(false);
+    }
+    if inner.radius > 0.0 && near > 0.0 && point.distance_squared(inner.center) < near * near {
+        return Some(true);
+    }
+    let face = hull.face_towards(point)?;
+    let gap = face.distance - radius;
+    (gap > margin || (face.is_nearest && gap < -margin)).then_some(gap < 0.0)
 }
 
 /// For a body that is `stretch` times its own size.

@@ -9,7 +9,7 @@ use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_squares};
 use solid_convex::{Closest, Penetration, Witness};
 
 use super::GAP_MIN;
-use super::point::{extent, least_distance};
+use super::point::{extent, is_within};
 use super::round::Products;
 use crate::pair::Placed;
 use crate::shape::{Body, Round, Simple};
@@ -156,7 +156,7 @@ impl<'a> View<'a> {
             return None;
         }
         let center = self.other_origin(k);
-        least_distance(body, self.squares[k], center)?.is_within(radius * unit, ROUGH_GAP_MIN * size * unit)
+        is_within(body, self.squares[k], center, radius * unit, ROUGH_GAP_MIN * size * unit)
     }
 
     /// Whether two boxes intersect, by the balls around them and in them.
