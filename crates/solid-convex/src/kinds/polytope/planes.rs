@@ -12,6 +12,9 @@ const LANES: usize = 4;
 /// The error of a height in that of a normal, which turns the plane about a corner, and what is rounded: beside the way from the centre and the reach.
 const HEIGHT_SLACK: f64 = 2.0;
 
+/// How much of a distance may be left open, and how much normals of one plane may be apart: beside the way from the centre and the reach.
+const OPEN_MAX: f64 = 5e-14;
+
 /// Four planes: inside is what is at least `offset` along the unit normal `inward`, seen from the centre; the normal may be off by `error`.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
@@ -99,8 +102,6 @@ impl Planes {
     /// The face that a point is least below, or most above; `None` where rounding leaves that open, among slivers.
     #[inline(always)]
     pub fn towards<S: Simd>(&self, simd: S, point: DVec3) -> Option<FaceTowards> {
-        /// How much a distance may be left open, beside the way from the centre and the reach.
-        const OPEN_MAX: f64 = 5e-14;
         let way = point - self.center;
         let size = way.abs().element_sum() + self.reach;
         let slack = f64x4::splat(simd, HEIGHT_SLACK * size);
@@ -127,16 +128,16 @@ impl Planes {
     /// Whether a point of the plane of a face, seen from the centre, surely is on that face: inside of all others, but those in the same plane.
     #[inline(always)]
     fn has_on_face<S: Simd>(&self, simd: S, point: DVec3, inward: DVec3, slack: f64x4<S>) -> bool {
-        /// Normals that are no further apart are those of one plane: no point is further outside of one of them than that, beside the size.
-        const SAME: f64 = 1e-14;
-        let splat = |x: f64| f64x4::splat(simd, x);
-        self.rows.iter().all(|Row { inward: [x, y, z], offset, error }| {
-            let height = rates(simd, &[*x, *y, *z], point) - lanes(simd, offset);
-            let apart = (lanes(simd, x) - splat(inward.x)).abs()
-                + (lanes(simd, y) - splat(inward.y)).abs()
-                + (lanes(simd, z) - splat(inward.z)).abs();
-            let is_below = height.simd_ge(lanes(simd, error) * slack * splat(2.0));
-            (is_below | apart.simd_le(splat(SAME))).all_true()
+        let same = f64x4::splat(simd, OPEN_MAX);
+        let apart = |from: &[f64; LANES], to: f64| (lanes(simd, from) - f64x4::splat(simd, to)).abs();
+        self.rows.iter().all(|Row { inward: normals, offset, error }| {
+            let error = lanes(simd, error);
+            let height = rates(simd, normals, point) - lanes(simd, offset);
+            let is_below = height.simd_ge((error + same) * slack);
+            // Planes that are one up to that: the point is no further outside of any.
+            let [x, y, z] = normals;
+            let turn = apart(x, inward.x) + apart(y, inward.y) + apart(z, inward.z);
+            (is_below | (turn + error).simd_le(same)).all_true()
         })
     }
 
