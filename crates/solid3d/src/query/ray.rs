@@ -15,7 +15,8 @@ use crate::shape::Shape;
 /// - Meshes are watertight: no ray slips between triangles that share an edge or a corner. Where several triangles are hit at the
 ///   same `t`, the first in their order is reported. A triangle that is seen exactly edge on is hit at its first point.
 /// - The error of the point is some 1e-14 of the size of the data (the shape's extent and the distance of the ray's
-///   origin); for convex hulls it is up to [`CAST_ERROR`](solid_convex::gjk::CAST_ERROR) of the shape's extent more, never late.
+///   origin); for convex hulls of more than 384 faces, and next to edges of others, it is up to [`CAST_ERROR`](solid_convex::gjk::CAST_ERROR) of the
+///   shape's extent more, never late.
 ///   A ray that ends at a triangle, or passes by its outer edge, closer than by that error may miss it.
 ///
 /// A ray with a coordinate that is not finite or beyond 1e100, without a direction, or with a `max` that is negative or not a number
