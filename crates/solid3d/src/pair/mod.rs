@@ -36,6 +36,7 @@ pub(crate) mod swept;
 mod table;
 
 use std::ops::ControlFlow;
+use std::sync::LazyLock;
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
@@ -56,7 +57,7 @@ pub(crate) use ray::{Hits, Wanted, ray_hits};
 pub(crate) use reach::{world_bounds, world_bounds_into};
 pub(crate) use scratch::Scratch;
 use solid_convex::gjk::Glance;
-use solid_convex::{Closest, Witness, gjk};
+use solid_convex::{Closest, Polytope, Witness, gjk};
 pub(crate) use surface::{SurfacePoint, surface_point};
 pub use swept::Path;
 pub(crate) use table::{
@@ -67,6 +68,10 @@ pub(crate) use table::{
 use crate::placement::inverse_linear;
 use crate::shape::{Class, Shape};
 use crate::triangle_triangle;
+
+/// A point at the origin, as a shape.
+static POINT: LazyLock<Polytope> =
+    LazyLock::new(|| Polytope::new(vec![DVec3::ZERO]).expect("it has a point"));
 
 /// A shape at a place.
 #[derive(Clone, Copy)]

@@ -113,12 +113,6 @@ impl Polytope {
         self
     }
 
-    /// Whether its faces are known, and few.
-    #[doc(hidden)]
-    pub fn has_planes(&self) -> bool {
-        self.planes.is_some()
-    }
-
     /// The planes of its faces, where these are known, and few.
     pub(crate) fn planes(&self) -> Option<&Planes> {
         self.planes.as_ref()

@@ -1,5 +1,5 @@
-//! Pairs that need no search: balls, capsules and boxes that their placements leave what they are; and balls and points beside cones, cylinders and, where
-//! they are nearest to a face, hulls.
+//! Pairs that need no search: balls, capsules and boxes that their placements leave what they are; and balls and points beside cones and cylinders. Beside
+//! hulls, where no face is nearest, one for the centre alone.
 //!
 //! A closed form speaks only where it is sure: the placements must be rotations with a uniform scale, up to
 //! [`SKEW_MAX`](solid_convex::similarity::SKEW_MAX), and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
@@ -28,7 +28,6 @@ pub(crate) use ball::closest_to;
 use boxes::PlacedBox;
 pub(super) use cast::cast;
 pub(super) use point::foot;
-use point::is_near;
 pub(crate) use point::{contains, nearest_on_surface};
 use round::{Cores, PlacedRound};
 pub(super) use similarity::Similarity;
@@ -106,15 +105,12 @@ fn quickly_of_ball<T: Mirror>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) 
     Some(if in_order { found } else { found.mirrored() })
 }
 
-/// Of a ball, or a point, and a body, whether it is the first; `None` for other shapes, and of a hull far from it.
+/// Of a ball, or a point, and a body, whether it is the first; `None` for other shapes.
 #[inline]
 fn ball_is_first(a: Placed, b: Placed) -> Option<bool> {
     let is_ball = |of: Placed| of.shape.ball_radius().is_some();
-    let is_body = |of: Placed, other: Placed| match of.shape.polytope() {
-        Some(hull) => is_near(hull, of.placement, other.placement.translation),
-        None => !matches!(of.shape.kind(), ShapeKind::Mesh | ShapeKind::Complex),
-    };
-    if is_ball(a) && is_body(b, a) { Some(true) } else { (is_ball(b) && is_body(a, b)).then_some(false) }
+    let is_body = |of: Placed| !matches!(of.shape.kind(), ShapeKind::Mesh | ShapeKind::Complex);
+    if is_body(b) && is_ball(a) { Some(true) } else { (is_body(a) && is_ball(b)).then_some(false) }
 }
 
 /// Whether a ball, or a point, and a body intersect; `None` for other shapes, and where GJK has to say.
@@ -126,7 +122,8 @@ pub(super) fn ball_intersects(a: Placed, b: Placed) -> Option<bool> {
 pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
     let of_rounds = || quickly_penetration(a, b).or_else(|| in_unit(a, b, quickly_penetration));
     let found = if are_round(a, b) { of_rounds() } else { None };
-    found.or_else(|| of_ball(a, b, |pair| pair.penetration()))
+    let of_body = || if is_apart_from_hull(a, b) { None } else { of_ball(a, b, |pair| pair.penetration()) };
+    found.or_else(of_body)
 }
 
 /// What [`penetration`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.
@@ -135,8 +132,15 @@ pub(crate) fn quickly_penetration(a: Placed, b: Placed) -> Option<Penetration> {
         (Some(Simple::Round(of_a)), Some(Simple::Round(of_b))) => {
             dispatch!(simd => quick::penetration(simd, [a.placement, b.placement], [of_a, of_b]))
         }
+        _ if is_apart_from_hull(a, b) => None,
         _ => quickly_of_ball(a, b, |pair| pair.penetration()),
     }
+}
+
+/// Whether a ball and a hull clearly are apart: then no search is worth it that would find how far.
+fn is_apart_from_hull(a: Placed, b: Placed) -> bool {
+    let of_hull = a.shape.polytope().is_some() | b.shape.polytope().is_some();
+    of_hull && dispatch!(simd => glance(simd, a, b)) == Glance::Sure(false)
 }
 
 /// Whether both are balls or capsules.

@@ -4,12 +4,12 @@
 //! so that each is decided by two edges.
 
 use glam::{DAffine3, DVec2, DVec3};
-use solid_convex::gjk::Balls;
+use solid_convex::gjk::{self, Balls};
 use solid_convex::{FaceTowards, Polytope, Support, unit_scale};
 
 use super::GAP_MIN;
 use super::similarity::Similarity;
-use crate::pair::{Placed, SurfacePoint};
+use crate::pair::{POINT, Placed, SurfacePoint};
 use crate::placement::length_and_direction;
 use crate::shape::Body;
 
@@ -65,12 +65,9 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// `None` as [`Beside::new`] says, and where the planes of a hull do not tell, or it is far.
+    /// `None` as [`Beside::new`] says, and in a hull, or near to it, where its planes do not tell.
     #[inline(always)] // most callers want a part of it
     pub fn new(body: Placed, point: DVec3) -> Option<Seen> {
-        if body.shape.polytope().is_some_and(|hull| !is_near(hull, body.placement, point)) {
-            return None;
-        }
         let Beside { body, at, scale, stretch, point } = Beside::new(body, point)?;
         Some(Seen { foot: of_body(&body, stretch, point)?, at, scale })
     }
@@ -170,22 +167,37 @@ pub(super) fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>
     })
 }
 
-/// Whether a point is so near to a hull that a face may well be what is nearest, and its planes are known. From the origin of what is round, the
-/// share of its faces is less than half in what is beyond that.
-#[inline]
-pub(super) fn is_near(hull: &Polytope, at: &DAffine3, point: DVec3) -> bool {
-    const NEAR: f64 = 1.5;
-    let reach = NEAR * hull.farthest();
-    hull.has_planes()
-        && point.distance_squared(at.translation) < reach * reach * at.matrix3.x_axis.length_squared()
-}
-
-/// `None` where a corner or an edge is nearest, or the planes of the hull do not tell.
+/// By the face that is towards the point, where that is nearest; else by a search, of what is outside.
 #[inline(always)]
 fn of_hull(hull: &Polytope, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
-    let FaceTowards { distance, normal, is_nearest } = hull.face_towards(p / stretch)?;
-    let distance = distance * stretch;
-    is_nearest.then(|| Foot { distance, normal, at: p - normal * distance })
+    /// From the origin, beside the reach of the hull: of what is round, a face is nearest to less than half of what is beyond that.
+    const NEAR: f64 = 1.5;
+    let point = p / stretch;
+    let is_near = point.length_squared() < (NEAR * hull.farthest()).powi(2);
+    let face = if is_near { hull.face_towards(point) } else { None };
+    match face {
+        Some(FaceTowards { distance, normal, is_nearest: true }) => {
+            let distance = distance * stretch;
+            Some(Foot { distance, normal, at: p - normal * distance })
+        }
+        _ => foot_by_search(hull, stretch, point),
+    }
+}
+
+/// `None` inside, and so near to the surface that the way from there would have half of its digits.
+#[inline(never)]
+fn foot_by_search(hull: &Polytope, stretch: f64, point: DVec3) -> Option<Foot<DVec3>> {
+    /// Beside how far the hull and the point are from the origin.
+    const NEAR: f64 = 1e-6;
+    let at = DAffine3::from_translation(point);
+    let found = gjk::quickly_closest(hull, &DAffine3::IDENTITY, &POINT, &at)?;
+    let size = hull.farthest() + point.abs().max_element();
+    let (length, normal) = length_and_direction(point - found.point_on_a)?;
+    (length > NEAR * size).then(|| Foot {
+        distance: found.distance * stretch,
+        normal,
+        at: found.point_on_a * stretch,
+    })
 }
 
 #[inline(always)]

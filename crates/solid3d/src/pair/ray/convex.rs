@@ -1,21 +1,15 @@
 //! A ray against a convex shape.
 
-use std::sync::LazyLock;
-
 use glam::{DAffine3, DVec3};
-use solid_convex::{Line, Polytope, Support, gjk};
+use solid_convex::{Line, Support, gjk};
 
-use super::super::Placed;
 use super::super::reach::image_reach;
+use super::super::{POINT, Placed};
 use super::{Faces, Hits, SurfaceHit, Wanted, world_normal};
 use crate::placement::inverse_linear;
 
 /// Where a ray meets a surface from outside or inside, and a vector that tells the outward normal there.
 type End = (f64, DVec3);
-
-/// What a ray is as a moving shape.
-static POINT: LazyLock<Polytope> =
-    LazyLock::new(|| Polytope::new(vec![DVec3::ZERO]).expect("it has a point"));
 
 pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
     let DAffine3 { matrix3, translation } = placed.placement;
