@@ -35,24 +35,32 @@ pub const STRETCH_ERROR: f64 = 3e-7;
 pub fn rough_squares<S: Simd>(simd: S, [a, b]: [&DAffine3; 2]) -> Option<[f64; 2]> {
     /// The square of what has coordinates below the greatest allowed.
     const SQUARE_MAX: f64 = MAGNITUDE_MAX * MAGNITUDE_MAX;
-    let splat = |value: f64| f64x2::splat(simd, value);
-    let both = |of_a: f64, of_b: f64| f64x2::simd_from(simd, [of_a, of_b]);
-    let column = |a: DVec3, b: DVec3| [both(a.x, b.x), both(a.y, b.y), both(a.z, b.z)];
     let (linear_a, linear_b) = (&a.matrix3, &b.matrix3);
-    let x = column(linear_a.x_axis, linear_b.x_axis);
-    let y = column(linear_a.y_axis, linear_b.y_axis);
-    let z = column(linear_a.z_axis, linear_b.z_axis);
-    let t = column(a.translation, b.translation);
-    let dot = |u: [f64x2<S>; 3], v: [f64x2<S>; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    let x = of_both(simd, linear_a.x_axis, linear_b.x_axis);
+    let y = of_both(simd, linear_a.y_axis, linear_b.y_axis);
+    let z = of_both(simd, linear_a.z_axis, linear_b.z_axis);
+    let t = of_both(simd, a.translation, b.translation);
     let normal = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
     let volume = dot(normal, z);
     let sums = dot(x, x) + dot(y, y) + dot(z, z);
     // All is false of what is no number.
-    let cube = (sums * sums) * (sums * splat((1.0 - VOLUME_LOSS_MAX) / 27.0));
-    let volume_min = cube + splat(SQUARED_VOLUME_MIN);
-    let good = (volume * volume).simd_gt(volume_min) & dot(t, t).simd_le(splat(SQUARE_MAX));
-    let squares = sums * splat(1.0 / 3.0);
+    let cube = (sums * sums) * (sums * f64x2::splat(simd, (1.0 - VOLUME_LOSS_MAX) / 27.0));
+    let volume_min = cube + f64x2::splat(simd, SQUARED_VOLUME_MIN);
+    let good = (volume * volume).simd_gt(volume_min) & dot(t, t).simd_le(f64x2::splat(simd, SQUARE_MAX));
+    let squares = sums * f64x2::splat(simd, 1.0 / 3.0);
     good.all_true().then(|| [squares.as_slice()[0], squares.as_slice()[1]])
+}
+
+/// The coordinates of two vectors, a lane for each.
+#[inline(always)]
+fn of_both<S: Simd>(simd: S, a: DVec3, b: DVec3) -> [f64x2<S>; 3] {
+    let [x, y, z] = [[a.x, b.x], [a.y, b.y], [a.z, b.z]];
+    [f64x2::simd_from(simd, x), f64x2::simd_from(simd, y), f64x2::simd_from(simd, z)]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(u: [f64x2<S>; 3], v: [f64x2<S>; 3]) -> f64x2<S> {
+    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 }
 
 /// The squares of the scales of two placements that are similarities of plain sizes, and so good placements; `None` unless both are.

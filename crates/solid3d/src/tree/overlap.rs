@@ -58,7 +58,12 @@ impl Tree {
             bits(hits).filter(met).fold(0, |hits, lane| hits | 1 << lane)
         };
         dispatch!(simd => {
-            self.walk(|node| met(overlapping_box(simd, node, &query), node), traversal, visit)
+            self.walk(
+                #[inline(always)]
+                |node| met(overlapping_box(simd, node, &query), node),
+                traversal,
+                visit,
+            )
         })
     }
 

@@ -90,13 +90,16 @@ impl Planes {
     /// Whether a ball is surely inside of all.
     #[inline(always)]
     pub fn contain<S: Simd>(&self, simd: S, Ball { center, radius }: Ball) -> bool {
-        let splat = |x: f64| f64x4::splat(simd, x);
         let way = center - self.center;
-        let slack = HEIGHT_SLACK * (way.abs().element_sum() + self.reach);
-        self.rows.iter().all(|Row { inward, offset, error }| {
+        let slack = f64x4::splat(simd, HEIGHT_SLACK * (way.abs().element_sum() + self.reach));
+        for Row { inward, offset, error } in &self.rows {
             let height = rates(simd, inward, way) - lanes(simd, offset);
-            (height - lanes(simd, error) * splat(slack)).simd_ge(splat(radius)).all_true()
-        })
+            let least = height - lanes(simd, error) * slack;
+            if !least.simd_ge(f64x4::splat(simd, radius)).all_true() {
+                return false;
+            }
+        }
+        true
     }
 
     /// The face that a point is least below, or most above; `None` where rounding leaves that open, among slivers.
@@ -129,16 +132,20 @@ impl Planes {
     #[inline(always)]
     fn has_on_face<S: Simd>(&self, simd: S, point: DVec3, inward: DVec3, slack: f64x4<S>) -> bool {
         let same = f64x4::splat(simd, OPEN_MAX);
-        let apart = |from: &[f64; LANES], to: f64| (lanes(simd, from) - f64x4::splat(simd, to)).abs();
-        self.rows.iter().all(|Row { inward: normals, offset, error }| {
+        for Row { inward: normals, offset, error } in &self.rows {
             let error = lanes(simd, error);
             let height = rates(simd, normals, point) - lanes(simd, offset);
             let is_below = height.simd_ge((error + same) * slack);
             // Planes that are one up to that: the point is no further outside of any.
-            let [x, y, z] = normals;
-            let turn = apart(x, inward.x) + apart(y, inward.y) + apart(z, inward.z);
-            (is_below | (turn + error).simd_le(same)).all_true()
-        })
+            let mut turn = error;
+            for (of_all, of_face) in normals.iter().zip(inward.to_array()) {
+                turn += (lanes(simd, of_all) - f64x4::splat(simd, of_face)).abs();
+            }
+            if !(is_below | turn.simd_le(same)).all_true() {
+                return false;
+            }
+        }
+        true
     }
 
     /// The normal of a plane.
@@ -159,17 +166,18 @@ impl Planes {
         if foot.abs().max_element() > 2.0 * size {
             return Passage::Beside;
         }
-        let splat = |x: f64| f64x4::splat(simd, x);
+        let (zero, one) = (f64x4::splat(simd, 0.0), f64x4::splat(simd, 1.0));
+        let widest = f64x4::splat(simd, SLACK * size);
         let mut index = i64x4::simd_from(simd, [0, 1, 2, 3]);
         let mut ends = [Ends::new(simd); 2];
         for Row { inward, offset, error } in &self.rows {
             let rate = rates(simd, inward, along);
             let outside = lanes(simd, offset) - rates(simd, inward, foot);
-            let slack = lanes(simd, error) * splat(SLACK * size);
+            let slack = lanes(simd, error) * widest;
             // Of a plane that the line is parallel to, an end is endless on the side that it is on; or no number, which is passed over.
-            let unit = splat(1.0) / rate.abs();
+            let unit = one / rate.abs();
             let (from, until) = ((outside - slack) * unit, (outside + slack) * unit);
-            let enters = rate.simd_ge(splat(0.0));
+            let enters = rate.simd_ge(zero);
             ends[0].take(enters, from, until, index);
             ends[1].take(!enters, from, until, index);
             index += i64x4::splat(simd, LANES as i64);
@@ -206,8 +214,9 @@ fn lanes<S: Simd>(simd: S, row: &[f64; LANES]) -> f64x4<S> {
 /// How far a way goes along each of four normals.
 #[inline(always)]
 fn rates<S: Simd>(simd: S, [x, y, z]: &[[f64; LANES]; 3], way: DVec3) -> f64x4<S> {
-    let splat = |x: f64| f64x4::splat(simd, x);
-    lanes(simd, x) * splat(way.x) + lanes(simd, y) * splat(way.y) + lanes(simd, z) * splat(way.z)
+    lanes(simd, x) * f64x4::splat(simd, way.x)
+        + lanes(simd, y) * f64x4::splat(simd, way.y)
+        + lanes(simd, z) * f64x4::splat(simd, way.z)
 }
 
 /// The last of intervals, one for each plane, in each lane.
