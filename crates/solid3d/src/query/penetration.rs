@@ -40,7 +40,7 @@ pub struct Penetration {
 ///   a convex solid that is exact. For others the translation leads out of the hull, which is further than need be; put such
 ///   a body together from convex parts when that matters.
 ///
-/// The bounds are certain for the pair that the answer is of. Between polytopes, spheres and capsules they are 1e-13 of
+/// The bounds are certain for the pair that the answer is of. Between polytopes, spheres and capsules they are 5e-13 of
 /// the size of the data apart, and 1e-12 where one is a sliver or a needle, or flat. What is thinner than 1e-3 of its length and meets a
 /// corner with its end may leave 1e-8 open, and what is thinner than 1e-10 of it, 1e-3. Where cones, cylinders or stretched round shapes
 /// take part, they are within 1e-7 of the depth ([`DEPTH_TOLERANCE`](solid_convex::epa::DEPTH_TOLERANCE)), of which the upper is nearly
