@@ -184,11 +184,11 @@ fn of_hull(hull: &Polytope, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
     }
 }
 
-/// `None` inside, and so near to the surface that the way from there would have half of its digits.
+/// `None` inside, and so near to the surface that what is rounded on the way from there would show at the other end of the hull.
 #[inline(never)]
 fn foot_by_search(hull: &Polytope, stretch: f64, point: DVec3) -> Option<Foot<DVec3>> {
     /// Beside how far the hull and the point are from the origin.
-    const NEAR: f64 = 1e-6;
+    const NEAR: f64 = 0.1;
     let at = DAffine3::from_translation(point);
     let found = gjk::quickly_closest(hull, &DAffine3::IDENTITY, &POINT, &at)?;
     let size = hull.farthest() + point.abs().max_element();
