@@ -21,6 +21,8 @@
 //! This crate knows no tree and no world; `solid3d` builds on it.
 
 mod chord;
+#[doc(hidden)]
+pub mod determinant;
 mod difference;
 pub mod epa;
 mod feature;

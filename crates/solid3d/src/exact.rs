@@ -12,14 +12,6 @@ pub(crate) fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     robust::orient2d(coord(a), coord(b), coord(c))
 }
 
-/// `a * b - c * d`, off by at most 1.5 units in the last place, so that its sign is exact (Kahan's algorithm; Jeannerod, Louvet and
-/// Muller, *Further analysis of Kahan's algorithm for the accurate computation of 2 x 2 determinants*, 2013).
-pub(crate) fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
-    let subtracted = c * d;
-    let rounding = (-c).mul_add(d, subtracted);
-    a.mul_add(b, -subtracted) + rounding
-}
-
 /// Positive where `d` lies below the plane through `a`, `b`, `c`, from above which they appear counter-clockwise.
 #[inline]
 pub(crate) fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {

@@ -1,9 +1,9 @@
 //! The polytope.
 
 use super::{Chord, End, Line};
-use crate::Polytope;
 use crate::kinds::Passage;
 use crate::simd::dispatch;
+use crate::{Polytope, Support};
 
 impl Polytope {
     /// The part of a line that is in the hull. `None` where its faces do not tell: they are unknown, or more than 384, or the line passes so near to
@@ -22,7 +22,7 @@ impl Polytope {
     /// ```
     pub fn chord(&self, line: &Line) -> Option<Option<Chord>> {
         let planes = self.planes()?;
-        let (center, along) = (planes.center(), line.along);
+        let (center, along) = (self.center(), line.along);
         let middle = center.dot(along) * line.inverse_square;
         let foot = line.foot + along * middle - center;
         let [enter, leave] = match dispatch!(simd => planes.passage(simd, foot, along)) {

@@ -135,7 +135,8 @@ impl Polytope {
     /// ```
     pub fn face_towards(&self, point: DVec3) -> Option<FaceTowards> {
         let planes = self.planes.as_ref()?;
-        dispatch!(simd => planes.towards(simd, point))
+        let way = point - self.center;
+        dispatch!(simd => planes.towards(simd, way))
     }
 
     /// The balls around and in it.
@@ -299,7 +300,10 @@ impl Support for Polytope {
 
     fn contains_ball(&self, ball: Ball) -> bool {
         self.balls.inner.contains(ball)
-            || self.planes.as_ref().is_some_and(|planes| dispatch!(simd => planes.contain(simd, ball)))
+            || self.planes.as_ref().is_some_and(|planes| {
+                let way = ball.center - self.center;
+                dispatch!(simd => planes.contain(simd, way, ball.radius))
+            })
     }
 
     fn is_polytope(&self) -> bool {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::determinant::difference_of_products;
 use crate::unit_scale;
 
 /// The plane of a face.
@@ -59,13 +60,13 @@ fn lost(to: DVec3, from: DVec3, difference: DVec3) -> DVec3 {
     (to - of_to) - (from - of_from)
 }
 
-/// A cross product of which each coordinate is right to two roundings, however much of its products cancels (Kahan's algorithm).
+/// A cross product that is exact to two roundings in each coordinate, however much of its products cancels.
 fn cross(u: DVec3, v: DVec3) -> DVec3 {
-    let minor = |a: f64, b: f64, c: f64, d: f64| {
-        let product = c * d;
-        a.mul_add(b, -product) + (-c).mul_add(d, product)
-    };
-    DVec3::new(minor(u.y, v.z, u.z, v.y), minor(u.z, v.x, u.x, v.z), minor(u.x, v.y, u.y, v.x))
+    DVec3::new(
+        difference_of_products(u.y, v.z, u.z, v.y),
+        difference_of_products(u.z, v.x, u.x, v.z),
+        difference_of_products(u.x, v.y, u.y, v.x),
+    )
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use fearless_simd::{Simd, f64x4, i64x4, mask64x4, prelude::*};
 use glam::DVec3;
 
 use super::plane::Plane;
-use crate::gjk::{Ball, CAST_ERROR};
+use crate::gjk::CAST_ERROR;
 
 /// Planes that are looked at at once.
 const LANES: usize = 4;
@@ -24,12 +24,11 @@ struct Row {
     error: [f64; LANES],
 }
 
-/// The planes of all faces of a polytope, with the centre they are seen from. Invariant: there are some, and their numbers are finite.
+/// The planes of all faces of a polytope, seen from its centre. Invariant: there are some, and their numbers are finite.
 #[derive(Clone, Debug)]
 pub(crate) struct Planes {
     /// Filled up with the last plane.
     rows: Box<[Row]>,
-    center: DVec3,
     /// How far the polytope reaches from the centre: the greatest sum of the coordinates' magnitudes.
     reach: f64,
 }
@@ -74,7 +73,7 @@ impl Planes {
         };
         let reach = points.iter().map(|&point| (point - center).abs().element_sum()).fold(0.0, f64::max);
         let are_known = planes.iter().all(|plane| plane.inward.is_finite() && plane.error.is_finite());
-        are_known.then(|| Planes { rows: planes.chunks(LANES).map(row).collect(), center, reach })
+        are_known.then(|| Planes { rows: planes.chunks(LANES).map(row).collect(), reach })
     }
 
     /// The memory that they own, in bytes.
@@ -82,15 +81,9 @@ impl Planes {
         size_of_val(&*self.rows)
     }
 
-    /// The point they are seen from.
-    pub fn center(&self) -> DVec3 {
-        self.center
-    }
-
-    /// Whether a ball is surely inside of all.
+    /// Whether a ball is surely inside of all, of which the centre is so far from theirs.
     #[inline(always)]
-    pub fn contain<S: Simd>(&self, simd: S, Ball { center, radius }: Ball) -> bool {
-        let way = center - self.center;
+    pub fn contain<S: Simd>(&self, simd: S, way: DVec3, radius: f64) -> bool {
         let slack = f64x4::splat(simd, HEIGHT_SLACK * (way.abs().element_sum() + self.reach));
         for Row { inward, offset, error } in &self.rows {
             let height = rates(simd, inward, way) - lanes(simd, offset);
@@ -102,10 +95,9 @@ impl Planes {
         true
     }
 
-    /// The face that a point is least below, or most above; `None` where rounding leaves that open, among slivers.
+    /// The face that a point, so far from the centre, is least below, or most above; `None` where rounding leaves that open, among slivers.
     #[inline(always)]
-    pub fn towards<S: Simd>(&self, simd: S, point: DVec3) -> Option<FaceTowards> {
-        let way = point - self.center;
+    pub fn towards<S: Simd>(&self, simd: S, way: DVec3) -> Option<FaceTowards> {
         let size = way.abs().element_sum() + self.reach;
         let slack = f64x4::splat(simd, HEIGHT_SLACK * size);
         let all = mask64x4::from_bitmask(simd, 0b1111);
@@ -290,7 +282,7 @@ mod tests {
             for _ in 0..2000 {
                 let point = hull.center() + in_cube(&mut rng) * 1.5;
                 let levels = levels()
-                    .map(|level| dispatch!(level, simd => hull.planes().unwrap().towards(simd, point)));
+                    .map(|level| dispatch!(level, simd => hull.planes().unwrap().towards(simd, point - hull.center())));
                 assert_eq!(levels[0], levels[1], "{point}");
                 let face = levels[0].unwrap();
                 let dot = Polytope::new(vec![point]).unwrap();

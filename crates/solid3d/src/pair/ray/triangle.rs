@@ -7,9 +7,9 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8};
 use glam::{DVec2, DVec3};
+use solid_convex::determinant::difference_of_products;
 use solid_convex::simd::{dispatch, each};
 
-use crate::exact::difference_of_products;
 use crate::triangle_triangle::Triangle;
 
 /// Space as a ray sees it.
