@@ -15,8 +15,9 @@ const TURN_MIN: Duration = Duration::from_millis(1);
 /// Who needs longer for a turn has only one: it is long enough to be a mean of its own.
 const TURN_MAX: f64 = 1.0;
 
-/// Up to here the first pass is one that warms up: it also makes what is made when it is first asked for.
-const WARMING_MAX: f64 = 0.1;
+/// Up to here the first pass is one that warms up: it also makes what is made when it is first asked for, as a frame of a million boxes does
+/// that finds most of them outside of where the first tree expected them.
+const WARMING_MAX: f64 = 3.0;
 
 /// No contestant takes more turns than this.
 const ROUNDS_MAX: usize = 101;
