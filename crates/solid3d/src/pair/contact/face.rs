@@ -1,11 +1,12 @@
 //! The supporting face of a body: the flat or straight part of its surface that faces a direction best.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Line, Sphere, Support, unit_scale};
 
+use super::Feature;
 use super::map::{Map, unit};
 use crate::shape::{Body, Hulled};
 
@@ -64,6 +65,15 @@ impl Face {
     /// Whether it is not seen from its edge.
     pub fn is_faced(&self) -> bool {
         self.corners.len() < 3 || self.cosine >= FACING_COSINE
+    }
+
+    /// What a point within it is of.
+    pub fn feature(&self) -> Feature {
+        match self.corners[..] {
+            [corner] => Feature::Vertex(corner.vertex),
+            [from, to] => Feature::edge(from.vertex, to.vertex),
+            _ => Feature::Face(self.number),
+        }
     }
 
     /// Leaves of it what is furthest along a direction: an edge that is aligned, or a corner.
@@ -297,18 +307,15 @@ impl<'a> Placed<'a> {
 
     /// A circle across the axis y: corners at places that stay with the body, and, when it is tilted, the furthest point.
     fn rim(&self, radius: f64, y: f64, first: u32, cosine: f64, local: DVec3) -> Corners {
-        let mut places: Vec<(f64, u32)> =
-            (0..RIM).map(|i| (TAU * f64::from(i) / f64::from(RIM), first + i)).collect();
+        let corner = |(x, z): (f64, f64), vertex| self.corner(DVec3::new(radius * x, y, radius * z), vertex);
+        let mut corners: Corners = (0..RIM).map(|i| corner(on_circle(i), first + i)).collect();
         if !is_aligned(cosine) {
-            places.push((local.z.atan2(local.x).rem_euclid(TAU), 2 * RIM + 2));
-            places.sort_by(|x, y| x.0.total_cmp(&y.0));
+            let (x, z) = azimuth(local);
+            let turn = z.atan2(x) / TAU;
+            let before = (turn - turn.floor()) * f64::from(RIM);
+            corners.insert((before as usize + 1).min(RIM as usize), corner((x, z), 2 * RIM + 2));
         }
-        places
-            .into_iter()
-            .map(|(angle, vertex)| {
-                self.corner(DVec3::new(radius * angle.cos(), y, radius * angle.sin()), vertex)
-            })
-            .collect()
+        corners
     }
 
     fn facet(&self, hull: &Hulled, names: Option<&[u32]>, direction: DVec3, local: DVec3) -> Face {
@@ -379,6 +386,15 @@ fn normal_across(u: DVec3, v: DVec3) -> Option<DVec3> {
     (area > SINE_MIN * longest).then(|| cross / area)
 }
 
+/// The cosine and the sine of sixteenths of a turn.
+fn on_circle(i: u32) -> (f64, f64) {
+    /// Those of an eighth of half a turn.
+    const COSINE: f64 = 0.923_879_532_511_286_7;
+    const SINE: f64 = 0.382_683_432_365_089_8;
+    let (x, z) = [(1.0, 0.0), (COSINE, SINE), (FRAC_1_SQRT_2, FRAC_1_SQRT_2), (SINE, COSINE)][i as usize % 4];
+    [(x, z), (-z, x), (-x, -z), (z, -x)][i as usize / 4]
+}
+
 /// The direction across the axis y, as a unit vector; x when there is none.
 fn azimuth(local: DVec3) -> (f64, f64) {
     let largest = local.x.abs().max(local.z.abs());
@@ -419,6 +435,16 @@ mod tests {
             for (p, q) in x.corners.iter().zip(&y.corners) {
                 assert!(p.vertex == q.vertex && (p.point - q.point).length() < 1e-14, "{at}, {toward}");
             }
+        }
+    }
+
+    /// Law: the corners of a rim are those of a regular polygon, in order.
+    #[test]
+    fn a_rim_is_regular() {
+        for i in 0..RIM {
+            let angle = TAU * f64::from(i) / f64::from(RIM);
+            let (x, z) = on_circle(i);
+            assert!((x - angle.cos()).abs() < 1e-15 && (z - angle.sin()).abs() < 1e-15, "{i}: {x} {z}");
         }
     }
 

@@ -18,6 +18,7 @@ mod joining;
 mod map;
 mod one_point;
 mod other;
+mod outline;
 mod own_feature;
 mod planes;
 mod region;
@@ -30,7 +31,6 @@ mod through;
 mod ways;
 
 use glam::{DVec2, DVec3};
-use smallvec::{SmallVec, smallvec};
 use solid_convex::{Penetration, Support, epa, gjk};
 
 use super::depth::of_common;
@@ -41,6 +41,7 @@ use crate::shape::{Body, Class, Complex};
 use clip::{Origin, clip};
 use face::Face;
 use map::Map;
+use outline::Outline;
 
 /// A part of the surface of a shape. Its number stays with the shape however it moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -52,6 +53,13 @@ pub enum Feature {
     Edge(u32, u32),
     /// A face, by a number of its own; of a mesh, the front (0) or back (1) of a triangle.
     Face(u32),
+}
+
+impl Feature {
+    /// The edge between two vertices, in either order.
+    fn edge(i: u32, j: u32) -> Feature {
+        Feature::Edge(i.min(j), i.max(j))
+    }
 }
 
 /// A point of contact of two shapes.
@@ -98,9 +106,6 @@ const DEPTH_ERROR: f64 = 4.0 * epa::DEPTH_TOLERANCE;
 /// Closest points nearer to each other than this, in the unit of the pair, give a direction of few digits; a separating axis, which then
 /// can only be off by their distance over the extent, is better.
 const NEAR: f64 = 1e-9;
-
-/// A projected polygon whose area is below this share of the square of its extent is a segment.
-const THIN: f64 = 1e-9;
 
 /// A contact in the common frame.
 #[derive(Clone, Copy, Debug)]
@@ -345,7 +350,9 @@ impl<'a> Pair<'a> {
         if a.is_ball() || b.is_ball() {
             return vec![deepest([touched(a, -normal), touched(b, normal)])];
         }
-        let (face_a, face_b) = facing(a, b, normal);
+        let mut face_a = a.face(-normal);
+        let mut face_b = b.face(normal);
+        leave_across(&mut face_a, &mut face_b, normal);
         let mut touches = self.clipped(a, &face_a, b, &face_b, normal);
         let error = SAME_DEPTH + DEPTH_ERROR * depth.abs();
         // Nothing is deeper along the normal; but a face is flat only up to what is a length to a much smaller body.
@@ -354,7 +361,7 @@ impl<'a> Pair<'a> {
             touch.depth = depth;
         }
         if touches.iter().all(|touch| touch.depth < depth - error) {
-            touches.push(deepest([feature_of(&face_a), feature_of(&face_b)]));
+            touches.push(deepest([face_a.feature(), face_b.feature()]));
         }
         touches
     }
@@ -372,49 +379,39 @@ impl<'a> Pair<'a> {
         // Around a point of the contact, so that what is far away does not cost digits.
         let origin = face_a.corners[0].point;
         let flat = |point: DVec3| DVec2::new(u.dot(point - origin), v.dot(point - origin));
-        let (order_a, polygon_a) = projected(face_a, flat);
-        let (order_b, polygon_b) = projected(face_b, flat);
+        let (seen_a, seen_b) = (Outline::new(face_a, flat), Outline::new(face_b, flat));
         let base = origin - normal * origin.dot(normal);
-        let corners = clip(&polygon_a, &polygon_b);
+        let corners = clip(&seen_a.polygon, &seen_b.polygon);
         let primitives = [a.primitive, b.primitive];
-        let touch = |corner: clip::Clipped| {
-            let at = base + u * corner.at.x + v * corner.at.y;
-            let of = |face: &Face, order: &[usize], i: usize| {
-                face.corners[order[if i == order.len() { 0 } else { i }]]
-            };
-            let edge = |face: &Face, order: &[usize], i: usize| {
-                let (x, y) = (of(face, order, i).vertex, of(face, order, i + 1).vertex);
-                Feature::Edge(x.min(y), x.max(y))
-            };
-            let vertex = |face: &Face, order: &[usize], i: usize| Feature::Vertex(of(face, order, i).vertex);
-            let features = match corner.origin {
-                Origin::OfA(i) => [vertex(face_a, &order_a, i), feature_of(face_b)],
-                Origin::OfB(j) => [feature_of(face_a), vertex(face_b, &order_b, j)],
-                Origin::Crossing(i, j) => [edge(face_a, &order_a, i), edge(face_b, &order_b, j)],
-            };
-            let height_a = a.height(face_a, at, normal, -normal)?;
-            let height_b = b.height(face_b, at, normal, normal)?;
-            let depth = height_b - height_a;
-            let (on_a, on_b) = (at + normal * height_a, at + normal * height_b);
-            (depth >= -self.margin - SAME_DEPTH).then_some(Touch { on_a, on_b, depth, primitives, features })
-        };
         let mut touches = Vec::with_capacity(corners.len());
-        touches.extend(corners.into_iter().filter_map(touch));
+        for clip::Clipped { at, origin } in &corners {
+            let at = base + u * at.x + v * at.y;
+            let heights = (a.height(face_a, at, normal, -normal), b.height(face_b, at, normal, normal));
+            let (Some(height_a), Some(height_b)) = heights else { continue };
+            let depth = height_b - height_a;
+            if depth < -self.margin - SAME_DEPTH {
+                continue;
+            }
+            let features = match *origin {
+                Origin::OfA(i) => [seen_a.vertex(i), face_b.feature()],
+                Origin::OfB(j) => [face_a.feature(), seen_b.vertex(j)],
+                Origin::Crossing(i, j) => [seen_a.edge(i), seen_b.edge(j)],
+            };
+            let (on_a, on_b) = (at + normal * height_a, at + normal * height_b);
+            touches.push(Touch { on_a, on_b, depth, primitives, features });
+        }
         touches
     }
 }
 
-/// What of two bodies lies across a normal: their faces, when one is aligned with it, else their edges and corners.
-fn facing(a: &face::Placed, b: &face::Placed, normal: DVec3) -> (Face, Face) {
-    let (mut face_a, mut face_b) = (a.face(-normal), b.face(normal));
+/// Leaves of the two faces that face each other along a normal what lies across it: all of both, when one is aligned with it, else their edges and corners.
+fn leave_across(face_a: &mut Face, face_b: &mut Face, normal: DVec3) {
     let across = face_a.is_aligned() || face_b.is_aligned();
-    if !(across && face_a.is_faced()) {
-        face_a.slim(-normal);
+    for (face, direction) in [(face_a, -normal), (face_b, normal)] {
+        if !(across && face.is_faced()) {
+            face.slim(direction);
+        }
     }
-    if !(across && face_b.is_faced()) {
-        face_b.slim(normal);
-    }
-    (face_a, face_b)
 }
 
 /// What of a body a ball touches, on the side that faces a direction: of a ball it is the one point.
@@ -426,35 +423,5 @@ fn touched(body: &face::Placed, direction: DVec3) -> Feature {
     if !face.is_aligned() {
         face.slim(direction);
     }
-    feature_of(&face)
-}
-
-/// What a point within a face is of.
-fn feature_of(face: &Face) -> Feature {
-    match face.corners[..] {
-        [corner] => Feature::Vertex(corner.vertex),
-        [from, to] => Feature::Edge(from.vertex.min(to.vertex), from.vertex.max(to.vertex)),
-        _ => Feature::Face(face.number),
-    }
-}
-
-/// The corners of a face in a plane, and which these are: of a polygon that is seen from its edge, the two ends.
-fn projected(face: &Face, flat: impl Fn(DVec3) -> DVec2) -> (SmallVec<[usize; 4]>, SmallVec<[DVec2; 4]>) {
-    let all: SmallVec<[DVec2; 4]> = face.corners.iter().map(|corner| flat(corner.point)).collect();
-    let far = |from: DVec2| {
-        let distance = |&i: &usize| all[i].distance_squared(from);
-        (0..all.len()).max_by(|i, j| distance(i).total_cmp(&distance(j)).then(j.cmp(i))).unwrap_or(0)
-    };
-    if all.len() >= 3 {
-        let area = clip::area(&all).abs();
-        // No two are further apart than twice what one is from the first: of most that is enough.
-        if area <= THIN * 4.0 * ring::extent_squared(&all) {
-            let from = far(all[0]);
-            let to = far(all[from]);
-            if area <= THIN * all[from].distance_squared(all[to]) {
-                return (smallvec![from, to], smallvec![all[from], all[to]]);
-            }
-        }
-    }
-    ((0..all.len()).collect(), all)
+    face.feature()
 }

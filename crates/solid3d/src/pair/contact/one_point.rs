@@ -24,14 +24,6 @@ pub(super) fn contact(
         return None;
     }
     let found = penetration(a, b)?;
-    // In the body's own space, as its placement changes no angle.
-    let feature = |of: Placed, facing: DVec3| -> Option<Feature> {
-        if of.shape.is_ball() {
-            return Some(Feature::Vertex(0));
-        }
-        let facing = direction(of.placement.matrix3.mul_transpose_vec3(facing))?;
-        Some(own_feature(&of.shape.body()?, facing))
-    };
     let normal = found.direction;
     let features = [feature(a, -normal)?, feature(b, normal)?];
     if let [Feature::Edge(..), Feature::Edge(..)] = features {
@@ -49,6 +41,16 @@ pub(super) fn contact(
         features,
     };
     Some(Manifold { normal, points: vec![point] })
+}
+
+/// What of a shape, whose placement changes no angle, faces a direction of the world.
+#[inline(always)] // two calls take a quarter longer
+fn feature(of: Placed, facing: DVec3) -> Option<Feature> {
+    if of.shape.is_ball() {
+        return Some(Feature::Vertex(0));
+    }
+    let facing = direction(of.placement.matrix3.mul_transpose_vec3(facing))?;
+    Some(own_feature(&of.shape.body()?, facing))
 }
 
 #[cfg(test)]

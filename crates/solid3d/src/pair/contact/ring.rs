@@ -35,7 +35,8 @@ impl On {
 pub(super) fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
     let area = area(by);
     let (turn, slack) = (area.signum(), slack(extent_squared(by), area));
-    let mut left = Ring::new(subject);
+    let mut left = Ring::default();
+    left.take(subject);
     for j in 0..by.len() {
         let (from, to) = (by[j], by[(j + 1) % by.len()]);
         let Some(along) = (to - from).try_normalize() else { continue };
@@ -64,6 +65,7 @@ struct Node {
 
 /// The working polygon, convex up to rounding: what an edge cuts off is in one piece, around the corner furthest beyond it, and that is near the one
 /// of the edge before.
+#[derive(Default)]
 struct Ring {
     nodes: SmallVec<[Node; 16]>,
     /// The first corner; `None` when nothing is left.
@@ -73,7 +75,8 @@ struct Ring {
 }
 
 impl Ring {
-    fn new(polygon: &[DVec2]) -> Ring {
+    /// Begins with all of a polygon. In place: the nodes are large.
+    fn take(&mut self, polygon: &[DVec2]) {
         let count = polygon.len();
         let node = |(i, &at): (usize, &DVec2)| Node {
             corner: Clipped { at, origin: Origin::OfA(i) },
@@ -81,43 +84,45 @@ impl Ring {
             before: (i + count - 1) % count,
             after: (i + 1) % count,
         };
-        Ring { nodes: polygon.iter().enumerate().map(node).collect(), first: Some(0), furthest: 0 }
+        self.nodes.extend(polygon.iter().enumerate().map(node));
+        self.first = Some(0);
     }
 
     /// Cuts off what is beyond edge `j` of a polygon by more than a slack; `inside` tells how far within it a point is.
     fn cut(&mut self, by: &[DVec2], j: usize, slack: f64, inside: impl Fn(DVec2) -> f64) {
         let Some(first) = self.first else { return };
-        let height = |ring: &Ring, i: usize| inside(ring.nodes[i].corner.at);
-        self.climb(slack, |ring, i| -height(ring, i));
-        let is_out = |ring: &Ring, i: usize| height(ring, i) < -slack;
-        if !is_out(self, self.furthest) {
+        let nodes = &self.nodes[..];
+        let height = |i: usize| inside(nodes[i].corner.at);
+        let is_out = |i: usize| height(i) < -slack;
+        let furthest = climb(nodes, self.furthest, slack, |i| -height(i));
+        self.furthest = furthest;
+        if !is_out(furthest) {
             return;
         }
         // The corners cut off, from the one to the other.
-        let [mut from, mut to] = [self.furthest; 2];
+        let [mut from, mut to] = [furthest; 2];
         let mut has_first = from == first;
-        while is_out(self, self.nodes[from].before) {
-            from = self.nodes[from].before;
+        while is_out(nodes[from].before) {
+            from = nodes[from].before;
             has_first |= from == first;
-            if from == self.furthest {
+            if from == furthest {
                 self.first = None;
                 return;
             }
         }
-        while is_out(self, self.nodes[to].after) {
-            to = self.nodes[to].after;
+        while is_out(nodes[to].after) {
+            to = nodes[to].after;
             has_first |= to == first;
         }
-        let crossing = |ring: &Ring, start: usize, end: usize| {
-            let (here, there) = (height(ring, start), height(ring, end));
-            let (start, end) = (&ring.nodes[start], &ring.nodes[end]);
+        let crossing = |start: usize, end: usize| {
+            let (here, there) = (height(start), height(end));
+            let (start, end) = (&nodes[start], &nodes[end]);
             let at = start.corner.at.lerp(end.corner.at, (here / (here - there)).clamp(0.0, 1.0));
             start.on.cut(at, by, j)
         };
-        let (before, after) = (self.nodes[from].before, self.nodes[to].after);
-        let (out, back) = (crossing(self, before, from), crossing(self, to, after));
-        let next = self.nodes.len();
-        let on = self.nodes[to].on;
+        let (before, after) = (nodes[from].before, nodes[to].after);
+        let (out, back) = (crossing(before, from), crossing(to, after));
+        let (next, on) = (nodes.len(), nodes[to].on);
         self.nodes.push(Node { corner: out, on: On::Clip(j), before, after: next + 1 });
         self.nodes.push(Node { corner: back, on, before: next, after });
         self.nodes[before].after = next;
@@ -125,25 +130,6 @@ impl Ring {
         self.furthest = next;
         if has_first {
             self.first = Some(next + 1);
-        }
-    }
-
-    /// Goes to the highest corner, from that of the last time on; past lower ones, if by no more than a slack.
-    fn climb(&mut self, slack: f64, height: impl Fn(&Ring, usize) -> f64) {
-        let start = self.furthest;
-        let mut highest = height(self, start);
-        for step in [|node: &Node| node.after, |node: &Node| node.before] {
-            let mut at = step(&self.nodes[start]);
-            while at != start {
-                let here = height(self, at);
-                if here < highest - slack {
-                    break;
-                }
-                if here > highest {
-                    (highest, self.furthest) = (here, at);
-                }
-                at = step(&self.nodes[at]);
-            }
         }
     }
 
@@ -166,6 +152,26 @@ impl Ring {
             }
         }
     }
+}
+
+/// The highest corner, sought from one on; past lower ones, if by no more than a slack.
+#[inline(always)]
+fn climb(nodes: &[Node], start: usize, slack: f64, height: impl Fn(usize) -> f64) -> usize {
+    let (mut furthest, mut highest) = (start, height(start));
+    for step in [|node: &Node| node.after, |node: &Node| node.before] {
+        let mut at = step(&nodes[start]);
+        while at != start {
+            let here = height(at);
+            if here < highest - slack {
+                break;
+            }
+            if here > highest {
+                (highest, furthest) = (here, at);
+            }
+            at = step(&nodes[at]);
+        }
+    }
+    furthest
 }
 
 #[cfg(test)]
@@ -265,7 +271,8 @@ mod tests {
                 (0..count).map(|i| middle + DVec2::from_angle(step * f64::from(i))).collect()
             };
             let (a, b) = (polygon(DVec2::new(0.3, 0.1)), polygon(DVec2::ZERO));
-            let (mut left, looks) = (Ring::new(&a), Cell::new(0));
+            let (mut left, looks) = (Ring::default(), Cell::new(0));
+            left.take(&a);
             for j in 0..b.len() {
                 let along = (b[(j + 1) % b.len()] - b[j]).normalize();
                 left.cut(&b, j, ON_EDGE_MIN, |p| {

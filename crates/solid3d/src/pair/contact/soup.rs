@@ -22,7 +22,7 @@ use super::inside::Inside;
 use super::other::Other;
 use super::side::{Corrected, Side};
 use super::stars::Stars;
-use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face, facing};
+use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face, leave_across};
 use crate::shape::{Body, Complex};
 use crate::tree::{LeafPairs, bits, pairs_on};
 
@@ -282,13 +282,16 @@ impl Pair<'_> {
 
     /// The contacts along a normal, given from `b` to `a`, that may not be that of the deepest point.
     pub(super) fn across(&self, a: &face::Placed, b: &face::Placed, normal: DVec3) -> Vec<Touch> {
-        let (face_a, face_b) = facing(a, b, normal);
+        let mut face_a = a.face(-normal);
+        let mut face_b = b.face(normal);
+        leave_across(&mut face_a, &mut face_b, normal);
         self.clipped(a, &face_a, b, &face_b, normal)
     }
 
     /// The contacts over a triangle along its own normal, given from `b` to `a`; `of_a` says whose it is.
     pub(super) fn over(&self, a: &face::Placed, b: &face::Placed, normal: DVec3, of_a: bool) -> Vec<Touch> {
-        let (mut face_a, mut face_b) = (a.face(-normal), b.face(normal));
+        let mut face_a = a.face(-normal);
+        let mut face_b = b.face(normal);
         let other = if of_a { &mut face_b } else { &mut face_a };
         if !other.is_faced() {
             let along = if of_a { normal } else { -normal };
