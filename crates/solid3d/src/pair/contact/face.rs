@@ -402,7 +402,7 @@ fn azimuth(local: DVec3) -> (f64, f64) {
         return (1.0, 0.0);
     }
     let (x, z) = (local.x / largest, local.z / largest);
-    let length = x.hypot(z);
+    let length = (x * x + z * z).sqrt();
     (x / length, z / length)
 }
 

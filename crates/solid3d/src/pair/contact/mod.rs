@@ -25,6 +25,7 @@ mod region;
 mod ring;
 mod side;
 mod soup;
+mod soup_body;
 mod stars;
 mod through;
 #[cfg(test)]
@@ -42,6 +43,7 @@ use clip::{Origin, clip};
 use face::Face;
 use map::Map;
 use outline::Outline;
+use soup_body::soup_body;
 
 /// A part of the surface of a shape. Its number stays with the shape however it moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -137,6 +139,18 @@ struct Meeting {
     on_b: DVec3,
 }
 
+impl Meeting {
+    /// Of what is known to have a common point.
+    fn touching(self) -> Meeting {
+        Meeting { depth: self.depth.max(0.0), ..self }
+    }
+
+    /// `None` for what is further apart than a margin.
+    fn within(self, margin: f64) -> Option<Meeting> {
+        (self.depth >= -margin).then_some(self)
+    }
+}
+
 /// A pair in its common frame.
 struct Pair<'a> {
     a: Placed<'a>,
@@ -181,7 +195,7 @@ pub(crate) fn contacts(
 /// The same of two convex shapes.
 fn contact_of_bodies(a: Placed, b: Placed, options: &ContactOptions) -> Option<Manifold> {
     let pair = Pair::new(a, b, options.margin);
-    let Patch { normal, touches, .. } = soup::body_body(&pair, &part(a), &part(b))?;
+    let Patch { normal, touches, .. } = pair.patch_of_bodies(&part(a), &part(b))?;
     Some(pair.manifold(normal, touches, options))
 }
 
@@ -271,11 +285,21 @@ impl<'a> Pair<'a> {
 
     fn patches(&self, a: &Part, b: &Part, scratch: &mut Scratch) -> Vec<Patch> {
         match (a, b) {
-            (Part::Body(..), Part::Body(..)) => soup::body_body(self, a, b).into_iter().collect(),
-            (Part::Soup(_), Part::Body(..)) => soup::soup_body(self, a, b, false, scratch),
-            (Part::Body(..), Part::Soup(_)) => soup::soup_body(self, b, a, true, scratch),
+            (Part::Body(..), Part::Body(..)) => self.patch_of_bodies(a, b).into_iter().collect(),
+            (Part::Soup(_), Part::Body(..)) => soup_body(self, a, b, false, scratch),
+            (Part::Body(..), Part::Soup(_)) => soup_body(self, b, a, true, scratch),
             (Part::Soup(of_a), Part::Soup(of_b)) => soup::soup_soup(self, of_a, of_b, scratch),
         }
+    }
+
+    /// The contacts of two bodies; `None` when they are further apart than the margin.
+    fn patch_of_bodies(&self, a: &Part, b: &Part) -> Option<Patch> {
+        let (Part::Body(kind_a, of_a), Part::Body(kind_b, of_b)) = (a, b) else { return None };
+        let meeting = self.meeting_of_bodies(*of_a, *of_b)?;
+        let [map_a, map_b] = &self.maps;
+        let (placed_a, placed_b) = (face::Placed::new(kind_a, map_a), face::Placed::new(kind_b, map_b));
+        let touches = self.touches(&placed_a, &placed_b, &meeting);
+        Some(Patch { normal: meeting.normal, touches, is_inward: false })
     }
 
     fn manifold(&self, normal: DVec3, mut points: Vec<Touch>, options: &ContactOptions) -> Manifold {

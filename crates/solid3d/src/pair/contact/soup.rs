@@ -1,9 +1,8 @@
-//! The contacts of pairs of primitives, with normals that the surfaces have.
+//! The contacts of the pairs of primitives of two soups, with normals that the surfaces have.
 //!
 //! Where the surface is flat all around a triangle it has one normal only, and no penetration depth needs to be searched for; else that
 //! is corrected as [`side`](super::side) says.
 
-use std::cell::LazyCell;
 use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
@@ -11,139 +10,17 @@ use glam::{DAffine3, DVec3};
 use solid_convex::simd::level;
 
 use super::super::frame::Frame;
-use super::super::reach::core;
 use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
-use super::super::table::PlacedConvex;
 use super::super::triangle_triangle::Triangle;
-use super::super::{Scratch, complex_convex, table, triangle_triangle};
+use super::super::{Scratch, table, triangle_triangle};
 use super::ball::Way;
 use super::difference::{self, Polytope};
-use super::inside::Inside;
 use super::other::Other;
 use super::side::{Corrected, Side};
 use super::stars::Stars;
-use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face, leave_across};
+use super::{Meeting, Pair, Patch, Touch, face, leave_across};
 use crate::shape::{Body, Complex};
 use crate::tree::{LeafPairs, bits, pairs_on};
-
-/// The contacts of two bodies.
-pub(super) fn body_body(pair: &Pair, a: &Part, b: &Part) -> Option<Patch> {
-    let (Part::Body(kind_a, of_a), Part::Body(kind_b, of_b)) = (a, b) else { return None };
-    let meeting = pair.meeting_of_bodies(*of_a, *of_b)?;
-    let [map_a, map_b] = &pair.maps;
-    let (placed_a, placed_b) = (face::Placed::new(kind_a, map_a), face::Placed::new(kind_b, map_b));
-    let touches = pair.touches(&placed_a, &placed_b, &meeting);
-    Some(Patch { normal: meeting.normal, touches, is_inward: false })
-}
-
-/// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
-pub(super) fn soup_body(
-    pair: &Pair,
-    soup: &Part,
-    body: &Part,
-    mirrored: bool,
-    scratch: &mut Scratch,
-) -> Vec<Patch> {
-    let (Part::Soup(complex), Part::Body(kind, support)) = (soup, body) else { return Vec::new() };
-    let (placed_soup, placed_body) = if mirrored { (pair.b, pair.a) } else { (pair.a, pair.b) };
-    let convex: PlacedConvex = (*support, placed_body.placement);
-    let [map_a, map_b] = &pair.maps;
-    let [map_soup, map_body] = if mirrored { [map_b, map_a] } else { [map_a, map_b] };
-    let body = face::Placed::new(kind, map_body);
-    let round = core(*support).zip(map_body.stretch());
-    let (ends, radius) = round.map_or(([DVec3::ZERO; 2], 0.0), |((ends, radius), stretch)| {
-        (ends.map(|end| map_body.point(end)), radius * stretch)
-    });
-    let corners = match round {
-        Some(_) if ends[0] == ends[1] => &ends[..1],
-        Some(_) => &ends[..],
-        None => &[],
-    };
-    let other = Other { primitive: 0, support: *support, map: map_body, corners, radius };
-    let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
-    let stars = Stars::new(complex, map_soup, found.len());
-    let inside = LazyCell::new(|| Inside::new(&body, found.len()));
-    // Without a margin all of them are known to meet the body.
-    let must = pair.margin == 0.0;
-    let cuboid = LazyCell::new(|| if must { Polytope::of(&body) } else { None });
-    let patch = |&primitive: &u32| {
-        let hull = complex.primitive_hull(primitive);
-        let primitive_body = Body::of_primitive(complex, primitive);
-        let corners = stars.corners(primitive);
-        let placed = face::Placed::of_primitive(&primitive_body, primitive, map_soup, &corners);
-        let side = Side::new(&stars, placed, &corners, other);
-        let sign = if mirrored { 1.0 } else { -1.0 };
-        let touches = |meeting: &Meeting| match mirrored {
-            true => pair.touches(&body, &side.body, meeting),
-            false => pair.touches(&side.body, &body, meeting),
-        };
-        let ball_over = |out: DVec3| {
-            let meeting = side.meeting_of_ball(out, mirrored)?.within(pair.margin + SAME_DEPTH)?;
-            Some(touches(&meeting))
-        };
-        let over = |out: DVec3| match mirrored {
-            _ if body.is_ball() => ball_over(out).unwrap_or_default(),
-            true => pair.over(&body, &side.body, out, false),
-            false => pair.over(&side.body, &body, -out, true),
-        };
-        let across = |out: DVec3| match mirrored {
-            true => pair.across(&body, &side.body, out),
-            false => pair.across(&side.body, &body, -out),
-        };
-        let (out, touches) = match side.flat() {
-            Some(normal) => (normal, over(normal)),
-            None => {
-                let meeting = match side.meeting_of_body(inside.as_ref(), cuboid.as_ref(), mirrored) {
-                    Some(meeting) if must => meeting.touching(),
-                    Some(meeting) => meeting.within(pair.margin)?,
-                    None if mirrored => pair.meeting(*support, &hull, must)?,
-                    None => pair.meeting(&hull, *support, must)?,
-                };
-                let corrected = side.corrected(meeting.normal * sign)?;
-                let touches = match corrected {
-                    Corrected::Kept(normal) => touches(&Meeting { normal: normal * sign, ..meeting }),
-                    Corrected::Adopted(normal) if !body.is_ball() => across(normal),
-                    Corrected::Adopted(normal) | Corrected::Replaced(normal) => over(normal),
-                };
-                (corrected.normal(), touches)
-            }
-        };
-        let is_inward = side.is_inward(out);
-        let normal = out * sign;
-        (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
-    };
-    found.iter().filter_map(patch).collect()
-}
-
-/// The primitives of a soup that meet a body; with a margin, those whose boxes are as near. Ascending: in an order that does not
-/// depend on the tree.
-fn near_body(
-    pair: &Pair,
-    soup: (&Complex, &DAffine3),
-    body: PlacedConvex,
-    mirrored: bool,
-    scratch: &mut Scratch,
-) -> Vec<u32> {
-    let mut found = Vec::new();
-    if pair.margin == 0.0 {
-        let _ = complex_convex::meeting_primitives(soup, body, scratch, &mut |primitive, _| {
-            found.push(primitive);
-            ControlFlow::Continue(())
-        });
-    } else {
-        let (query, _) = complex_convex::convex_in_complex(soup, body);
-        let (_, margins) = pair.margins(&pair.placing());
-        let query = query.inflated(margins[usize::from(mirrored)]);
-        let Scratch { traversal, primitive_tests, .. } = scratch;
-        let _ = soup.0.tree().overlapping(&query, traversal, |leaf| {
-            found.extend(leaf.iter().filter(|&&i| soup.0.primitive_bounds(i).overlaps(&query)));
-            ControlFlow::<()>::Continue(())
-        });
-        *primitive_tests += found.len() as u64;
-    }
-    found.sort_unstable();
-    found
-}
 
 /// Looks for pairs of primitives that meet; with a margin, those whose boxes are as near.
 struct NearPairs<'s> {
@@ -275,7 +152,7 @@ pub(super) fn whole(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
 
 impl Pair<'_> {
     /// The margin in a frame, and in the local spaces of the two.
-    fn margins(&self, placing: &Frame) -> (f64, [f64; 2]) {
+    pub(super) fn margins(&self, placing: &Frame) -> (f64, [f64; 2]) {
         let margin = self.margin / self.frame.scale * placing.scale;
         (margin, placing.stretch().map(|stretch| margin / stretch.least))
     }
@@ -298,17 +175,5 @@ impl Pair<'_> {
             other.slim(along);
         }
         self.clipped(a, &face_a, b, &face_b, normal)
-    }
-}
-
-impl Meeting {
-    /// Of what is known to have a common point.
-    fn touching(self) -> Meeting {
-        Meeting { depth: self.depth.max(0.0), ..self }
-    }
-
-    /// `None` for what is further apart than a margin.
-    fn within(self, margin: f64) -> Option<Meeting> {
-        (self.depth >= -margin).then_some(self)
     }
 }

@@ -31,7 +31,7 @@ const PART: usize = 128;
 /// The stars of the vertices of a soup: the primitives around each.
 pub(super) struct Stars<'a> {
     complex: &'a Complex,
-    map: &'a Map,
+    pub map: &'a Map,
     /// 1 when the normals of the triangles point out of a solid, -1 when into it, 0 when there is none.
     pub orientation: f64,
     /// Vertices with more primitives around them are hubs: their triangles do not each look at all others.

@@ -1,0 +1,179 @@
+//! The contacts of a soup and a body.
+
+use std::cell::OnceCell;
+use std::ops::ControlFlow;
+
+use glam::{DAffine3, DVec3};
+use solid_convex::Support;
+
+use super::super::reach::core;
+use super::super::table::PlacedConvex;
+use super::super::{Scratch, complex_convex};
+use super::difference::Polytope;
+use super::inside::Inside;
+use super::other::Other;
+use super::side::{Corrected, Side};
+use super::stars::Stars;
+use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face};
+use crate::shape::{Body, Complex};
+
+/// A soup and a body, of which primitives that meet it are looked at one after the other.
+struct Encounter<'a> {
+    pair: &'a Pair<'a>,
+    complex: &'a Complex,
+    stars: &'a Stars<'a>,
+    body: face::Placed<'a>,
+    other: Other<'a>,
+    /// What tells in closed form how a triangle lies to the body, once it was asked for.
+    told: OnceCell<(Option<Inside<'a>>, Option<Polytope>)>,
+    /// How many primitives there are to look at.
+    found: usize,
+    /// Whether the soup is the second of the pair.
+    mirrored: bool,
+}
+
+/// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
+pub(super) fn soup_body(
+    pair: &Pair,
+    soup: &Part,
+    body: &Part,
+    mirrored: bool,
+    scratch: &mut Scratch,
+) -> Vec<Patch> {
+    let (Part::Soup(complex), Part::Body(kind, support)) = (soup, body) else { return Vec::new() };
+    let (placed_soup, placed_body) = if mirrored { (pair.b, pair.a) } else { (pair.a, pair.b) };
+    let [map_a, map_b] = &pair.maps;
+    let [map_soup, map_body] = if mirrored { [map_b, map_a] } else { [map_a, map_b] };
+    let convex: PlacedConvex = (*support, placed_body.placement);
+    let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
+    if found.is_empty() {
+        return Vec::new();
+    }
+    let round = core(*support).zip(map_body.stretch());
+    let (ends, radius) = round.map_or(([DVec3::ZERO; 2], 0.0), |((ends, radius), stretch)| {
+        (ends.map(|end| map_body.point(end)), radius * stretch)
+    });
+    let corners = match round {
+        Some(_) if ends[0] == ends[1] => &ends[..1],
+        Some(_) => &ends[..],
+        None => &[],
+    };
+    let encounter = Encounter {
+        pair,
+        complex,
+        stars: &Stars::new(complex, map_soup, found.len()),
+        other: Other { primitive: 0, support: *support, map: map_body, corners, radius },
+        told: OnceCell::new(),
+        found: found.len(),
+        body: face::Placed::new(kind, map_body),
+        mirrored,
+    };
+    found.iter().filter_map(|&primitive| encounter.patch(primitive)).collect()
+}
+
+impl Encounter<'_> {
+    /// The contacts of a primitive; `None` where there are none.
+    fn patch(&self, primitive: u32) -> Option<Patch> {
+        let Encounter { pair, stars, .. } = *self;
+        let body = Body::of_primitive(self.complex, primitive);
+        let corners = stars.corners(primitive);
+        let placed = face::Placed::of_primitive(&body, primitive, stars.map, &corners);
+        let side = Side::new(stars, placed, &corners, self.other);
+        let (out, touches) = match side.flat() {
+            Some(normal) => (normal, self.over(&side, normal)),
+            None => {
+                let meeting = self.meeting(&side)?;
+                let corrected = side.corrected(meeting.normal * self.sign())?;
+                let touches = match corrected {
+                    Corrected::Kept(normal) => {
+                        let [a, b] = self.in_order(&side.body, &self.body);
+                        pair.touches(a, b, &Meeting { normal: normal * self.sign(), ..meeting })
+                    }
+                    Corrected::Adopted(normal) if !self.body.is_ball() => self.across(&side, normal),
+                    Corrected::Adopted(normal) | Corrected::Replaced(normal) => self.over(&side, normal),
+                };
+                (corrected.normal(), touches)
+            }
+        };
+        let (normal, is_inward) = (out * self.sign(), side.is_inward(out));
+        (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
+    }
+
+    /// How a primitive and the body lie to each other; `None` when they are further apart than the margin.
+    fn meeting(&self, side: &Side) -> Option<Meeting> {
+        let Encounter { pair, mirrored, .. } = *self;
+        // Without a margin all of them are known to meet the body.
+        let must = pair.margin == 0.0;
+        let (inside, cuboid) = self.told.get_or_init(|| {
+            let cuboid = must.then(|| Polytope::of(&self.body)).flatten();
+            (Inside::new(&self.body, self.found), cuboid)
+        });
+        match side.meeting_of_body(inside.as_ref(), cuboid.as_ref(), mirrored) {
+            Some(meeting) if must => Some(meeting.touching()),
+            Some(meeting) => meeting.within(pair.margin),
+            None => {
+                let hull = self.complex.primitive_hull(side.body.primitive);
+                let [a, b] = self.in_order::<&dyn Support>(&hull, self.other.support);
+                pair.meeting(a, b, must)
+            }
+        }
+    }
+
+    /// The contacts over a triangle along its own normal, or one that it has taken over.
+    fn over(&self, side: &Side, out: DVec3) -> Vec<Touch> {
+        let Encounter { pair, mirrored, .. } = *self;
+        let [a, b] = self.in_order(&side.body, &self.body);
+        if !self.body.is_ball() {
+            return pair.over(a, b, out * self.sign(), !mirrored);
+        }
+        let meeting = side.meeting_of_ball(out, mirrored);
+        let near = meeting.and_then(|meeting| meeting.within(pair.margin + SAME_DEPTH));
+        near.map_or_else(Vec::new, |meeting| pair.touches(a, b, &meeting))
+    }
+
+    /// The contacts along the normal of a face beside a triangle.
+    fn across(&self, side: &Side, out: DVec3) -> Vec<Touch> {
+        let [a, b] = self.in_order(&side.body, &self.body);
+        self.pair.across(a, b, out * self.sign())
+    }
+
+    /// What is of the first shape, then what is of the second.
+    fn in_order<T>(&self, of_soup: T, of_body: T) -> [T; 2] {
+        if self.mirrored { [of_body, of_soup] } else { [of_soup, of_body] }
+    }
+
+    /// A normal out of the soup times this leads from the second shape to the first.
+    fn sign(&self) -> f64 {
+        if self.mirrored { 1.0 } else { -1.0 }
+    }
+}
+
+/// The primitives of a soup that meet a body; with a margin, those whose boxes are as near. Ascending: in an order that does not
+/// depend on the tree.
+fn near_body(
+    pair: &Pair,
+    soup: (&Complex, &DAffine3),
+    body: PlacedConvex,
+    mirrored: bool,
+    scratch: &mut Scratch,
+) -> Vec<u32> {
+    let mut found = Vec::new();
+    if pair.margin == 0.0 {
+        let _ = complex_convex::meeting_primitives(soup, body, scratch, &mut |primitive, _| {
+            found.push(primitive);
+            ControlFlow::Continue(())
+        });
+    } else {
+        let (query, _) = complex_convex::convex_in_complex(soup, body);
+        let (_, margins) = pair.margins(&pair.placing());
+        let query = query.inflated(margins[usize::from(mirrored)]);
+        let Scratch { traversal, primitive_tests, .. } = scratch;
+        let _ = soup.0.tree().overlapping(&query, traversal, |leaf| {
+            found.extend(leaf.iter().filter(|&&i| soup.0.primitive_bounds(i).overlaps(&query)));
+            ControlFlow::<()>::Continue(())
+        });
+        *primitive_tests += found.len() as u64;
+    }
+    found.sort_unstable();
+    found
+}
