@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 use common::{assert_rate, at, placement, random_complex, random_mesh, sheet, size_of};
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
@@ -221,6 +221,32 @@ fn crossing_edges_have_one_point() {
     let here = tip(DAffine3::IDENTITY);
     let found = query::contacts(&cube(), &tip(beside), &cube(), &here, &within(0.05)).unwrap();
     assert_flat(&found[0], DVec3::Y, -0.02, 2);
+}
+
+/// A keel whose ends rise less than its sides stands on both ends of it, and is what touches, whichever end rounding puts lower.
+#[test]
+fn a_keel_stands_on_both_ends() {
+    let mut rng = seeded(SEED);
+    let sides = [-3.0, 3.0].into_iter().flat_map(|x| [-1.0, 1.0].map(|z| DVec3::new(x, 0.25, z)));
+    let corners: Vec<DVec3> = [DVec3::NEG_X, DVec3::X, DVec3::Y].into_iter().chain(sides).collect();
+    let (keel, floor) = (Shape::convex_hull(&corners).unwrap(), Shape::cuboid([20.0, 1.0, 20.0]).unwrap());
+    for case in 0..200 {
+        let turn = DQuat::from_rotation_y(rng.random_range(0.0..TAU));
+        let at_keel = DAffine3::from_rotation_translation(turn, DVec3::new(0.0, 0.49, 0.0));
+        let found = only(&keel, &at_keel, &floor, &DAffine3::IDENTITY);
+        assert_flat(&found, DVec3::Y, 0.01, 2);
+        let skew = DMat3::from_cols(DVec3::X, DVec3::new(2.0, 0.3, 1.0), DVec3::new(2.0, 0.3, -1.0));
+        let above = DAffine3::from_rotation_translation(turn, DVec3::new(0.0, 0.79, 0.0));
+        let found = only(&cube(), &(above * DAffine3::from_mat3(skew)), &floor, &DAffine3::IDENTITY);
+        assert_flat(&found, DVec3::Y, 0.01, 2);
+        // Across another keel, upside down, one point of both.
+        let (tilt, over) = (rng.random_range(0.3..2.8), DQuat::from_rotation_x(PI));
+        let across = DQuat::from_rotation_y(tilt) * turn * over;
+        let at_other = DAffine3::from_rotation_translation(across, DVec3::new(0.0, 0.5, 0.0));
+        let found = only(&keel, &at_keel, &keel, &at_other);
+        let [point] = &found.points[..] else { panic!("case {case}: {found:?}") };
+        assert_eq!(point.features, [Feature::Edge(0, 1); 2], "case {case}: {found:?}");
+    }
 }
 
 /// A box a little off a floor, tilted: all four corners within the margin, with their gaps.

@@ -36,6 +36,14 @@ pub(crate) struct Facet {
     pub lowest: u32,
 }
 
+impl Facet {
+    /// The corner that follows one of it.
+    pub fn after(&self, corner: u32) -> u32 {
+        let at = self.corners.iter().position(|&other| other == corner);
+        self.corners[at.map_or(0, |at| at + 1) % self.corners.len()]
+    }
+}
+
 impl Facets {
     /// The memory that they own, in bytes.
     pub fn bytes(&self) -> usize {

@@ -56,6 +56,11 @@ pub(super) fn is_aligned(cosine: f64) -> bool {
     cosine >= 1.0 - 0.5 * ALIGNED_SINE * ALIGNED_SINE
 }
 
+/// Whether an edge that leads so far from a furthest point lies across the direction along which that is.
+fn is_level(along: DVec3, direction: DVec3) -> bool {
+    -along.dot(direction) <= ALIGNED_SINE * along.length()
+}
+
 impl Face {
     /// Whether it is a polygon that lies across the direction it was asked for.
     pub fn is_aligned(&self) -> bool {
@@ -85,8 +90,7 @@ impl Face {
         let first = self.corners.iter().position(|corner| corner.vertex == highest.vertex).unwrap_or(0);
         let neighbours = [(first + 1) % count, (first + count - 1) % count].map(|i| self.corners[i]);
         let level = |corner: &&Corner| {
-            let along = corner.point - highest.point;
-            corner.vertex != highest.vertex && -along.dot(direction) <= ALIGNED_SINE * along.length()
+            corner.vertex != highest.vertex && is_level(corner.point - highest.point, direction)
         };
         let other = neighbours.iter().filter(level).max_by(|x, y| height(x).total_cmp(&height(y))).copied();
         self.corners.clear();
@@ -229,8 +233,17 @@ impl<'a> Placed<'a> {
                 let rows = self.map.inverse().transpose();
                 let normals = [0, 1, 2].map(|axis| unit(rows.col(axis) * signs[axis]));
                 let cosine = |axis: &usize| normals[*axis].dot(direction);
-                let best = (0..3).max_by(|x, y| cosine(x).total_cmp(&cosine(y)));
-                let axis = best.expect("a box has three axes");
+                let best_but = |axis: usize| {
+                    let others = (0..3).filter(|&other| other != axis);
+                    others.max_by(|x, y| cosine(x).total_cmp(&cosine(y))).expect("a box has three axes")
+                };
+                let mut axis = best_but(3);
+                // As of a hull: the edge that ends on this side may lie across the direction.
+                if !is_aligned(cosine(&axis))
+                    && is_level(self.map.linear().col(axis) * -signs[axis], direction)
+                {
+                    axis = best_but(axis);
+                }
                 (axis, normals[axis], cosine(&axis))
             }
         };
@@ -320,26 +333,38 @@ impl<'a> Placed<'a> {
 
     fn facet(&self, hull: &Hulled, names: Option<&[u32]>, direction: DVec3, local: DVec3) -> Face {
         let (points, facets) = (hull.points(), hull.facets());
-        let highest = hull.polytope().support_index(local);
-        let cosine = |face: u32| self.map.normal(facets.get(face).normal).dot(direction);
-        let better = |x: &u32, y: &u32| cosine(*x).total_cmp(&cosine(*y)).then(y.cmp(x));
-        // The furthest point may have been flattened out of an edge.
-        let at_highest = facets.at(highest).iter().copied().max_by(better);
-        let best = at_highest.or_else(|| (0..facets.len()).max_by(better));
         let named = |i: u32| names.map_or(i, |names| names[i as usize]);
         let corner = |&i: &u32| self.corner(points[i as usize], named(i));
-        match best {
-            Some(face) => Face {
-                corners: facets.get(face).corners.iter().map(corner).collect(),
-                normal: self.map.normal(facets.get(face).normal),
-                number: face,
-                cosine: cosine(face),
-            },
-            None => {
-                let corners = facets.extreme().iter().map(corner).collect();
-                Face { corners, normal: direction, number: 0, cosine: 1.0 }
-            }
+        let Some(number) = self.best_facet(hull, direction, hull.polytope().support_index(local)) else {
+            let corners = facets.extreme().iter().map(corner).collect();
+            return Face { corners, normal: direction, number: 0, cosine: 1.0 };
+        };
+        let facet = facets.get(number);
+        let normal = self.map.normal(facet.normal);
+        let corners = facet.corners.iter().map(corner).collect();
+        Face { corners, normal, number, cosine: normal.dot(direction) }
+    }
+
+    /// The facet of a hull that faces a direction best, of those at the furthest point; if an edge there lies across the direction, of the two beside
+    /// it, as another one that ends there may face it better.
+    fn best_facet(&self, hull: &Hulled, direction: DVec3, furthest: usize) -> Option<u32> {
+        let facets = hull.facets();
+        let cosine = |facet: u32| self.map.normal(facets.get(facet).normal).dot(direction);
+        let better = |x: &u32, y: &u32| cosine(*x).total_cmp(&cosine(*y)).then(y.cmp(x));
+        let there = facets.at(furthest).iter().copied();
+        let Some(best) = there.clone().max_by(better) else {
+            // The furthest point was flattened out of an edge.
+            return (0..facets.len()).max_by(better);
+        };
+        if is_aligned(cosine(best)) {
+            return Some(best);
         }
+        let way = |end: u32| self.map.linear() * (hull.points()[end as usize] - hull.points()[furthest]);
+        let ends = there.clone().map(|facet| facets.get(facet).after(furthest as u32));
+        let level = ends.map(|end| (end, way(end))).filter(|&(_, way)| is_level(way, direction));
+        let edge = level.max_by(|(_, x), (_, y)| x.dot(direction).total_cmp(&y.dot(direction)));
+        let has_edge = |&facet: &u32| edge.is_none_or(|(end, _)| facets.get(facet).corners.contains(&end));
+        there.filter(has_edge).max_by(better)
     }
 
     /// Both sides of a triangle are its face. One without area is a segment.
