@@ -249,6 +249,34 @@ fn a_keel_stands_on_both_ends() {
     }
 }
 
+/// What reaches over the edge between two triangles of one floor, by however little, is held up by both.
+#[test]
+fn a_floor_of_two_triangles_pushes_nothing_down() {
+    let mut rng = seeded(SEED);
+    let (floor, mut both) = (floor(1), 0);
+    for case in 0..5_000 {
+        // A keel, and what is above it.
+        let mut above = || {
+            DVec3::new(rng.random_range(-0.3..1.0), rng.random_range(0.03..0.5), rng.random_range(-0.4..0.4))
+        };
+        let corners: Vec<DVec3> =
+            [DVec3::ZERO, DVec3::X].into_iter().chain([(); 6].map(|()| above())).collect();
+        let shape = Shape::convex_hull(&corners).unwrap();
+        // One of the diagonals is the edge, over which the keel leads by so little.
+        let turn = DQuat::from_rotation_y(rng.random_range(0.0..TAU));
+        let across = DVec3::new(1.0, 0.0, [1.0, -1.0][case % 2]).normalize();
+        let beyond =
+            across * (turn * DVec3::X).dot(across).signum() * 10f64.powf(rng.random_range(-4.0..-1.0));
+        let low = DVec3::NEG_Y * rng.random_range(0.001..0.02);
+        let at = DAffine3::from_rotation_translation(turn, beyond - turn * DVec3::X + low);
+        let found = contacts(&shape, &at, &floor, &DAffine3::IDENTITY);
+        let touched = found.iter().flat_map(|region| region.points.iter().map(|point| point.primitives[1]));
+        both += usize::from(touched.collect::<BTreeSet<u32>>().len() == 2);
+        assert!(found.iter().all(|region| region.normal.y > 0.999_999), "case {case}: {found:#?}");
+    }
+    assert!(both > 1_000, "{both} are over both triangles");
+}
+
 /// A box a little off a floor, tilted: all four corners within the margin, with their gaps.
 #[test]
 fn gaps_within_the_margin_are_contacts() {

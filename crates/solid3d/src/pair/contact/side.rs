@@ -96,6 +96,27 @@ impl<'a> Side<'a> {
         Some(if depth <= opposite { normal } else { -normal })
     }
 
+    /// Whether a normal is that of the triangle, and leads to the side on which the way out is longer. It seems shorter of this triangle alone, where only
+    /// a sliver of the other is over it: the rest is over the next, which lies in the same plane and is among those that the other has `met`. Of a solid
+    /// the side is known.
+    pub fn is_cut_short(&self, out: DVec3, met: &[u32]) -> bool {
+        let Some(normal) = self.body.plane.filter(|&normal| is_parallel(normal, out)) else { return false };
+        if self.stars.orientation != 0.0 {
+            return false;
+        }
+        let [depth, opposite] = self.other.depths(self.corners, out);
+        let vertices = self.stars.welded(self.body.primitive);
+        let goes_on = |edge: [u32; 2]| {
+            self.stars.around_all(&edge).any(|beside| {
+                beside != self.body.primitive
+                    && met.binary_search(&beside).is_ok()
+                    && is_parallel(self.stars.plane(beside, &self.other).normal, normal)
+            })
+        };
+        opposite < depth
+            && (0..vertices.len()).any(|i| goes_on([vertices[i], vertices[(i + 1) % vertices.len()]]))
+    }
+
     /// Whether a normal points into a solid.
     pub fn is_inward(&self, out: DVec3) -> bool {
         let orientation = self.stars.orientation;

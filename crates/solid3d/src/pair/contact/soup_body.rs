@@ -26,8 +26,8 @@ struct Encounter<'a> {
     other: Other<'a>,
     /// What tells in closed form how a triangle lies to the body, once it was asked for.
     told: OnceCell<(Option<Inside<'a>>, Option<Polytope>)>,
-    /// How many primitives there are to look at.
-    found: usize,
+    /// The primitives that meet the body, or are near it; ascending.
+    found: &'a [u32],
     /// Whether the soup is the second of the pair.
     mirrored: bool,
 }
@@ -64,7 +64,7 @@ pub(super) fn soup_body(
         stars: &Stars::new(complex, map_soup, found.len()),
         other: Other { primitive: 0, support: *support, map: map_body, corners, radius },
         told: OnceCell::new(),
-        found: found.len(),
+        found: &found,
         body: face::Placed::new(kind, map_body),
         mirrored,
     };
@@ -83,7 +83,12 @@ impl Encounter<'_> {
             Some(normal) => (normal, self.over(&side, normal)),
             None => {
                 let meeting = self.meeting(&side)?;
-                let corrected = side.corrected(meeting.normal * self.sign())?;
+                let corrected = match side.corrected(meeting.normal * self.sign())? {
+                    Corrected::Kept(out) | Corrected::Replaced(out) if side.is_cut_short(out, self.found) => {
+                        Corrected::Replaced(-out)
+                    }
+                    corrected => corrected,
+                };
                 let touches = match corrected {
                     Corrected::Kept(normal) => {
                         let [a, b] = self.in_order(&side.body, &self.body);
@@ -106,7 +111,7 @@ impl Encounter<'_> {
         let must = pair.margin == 0.0;
         let (inside, cuboid) = self.told.get_or_init(|| {
             let cuboid = must.then(|| Polytope::of(&self.body)).flatten();
-            (Inside::new(&self.body, self.found), cuboid)
+            (Inside::new(&self.body, self.found.len()), cuboid)
         });
         match side.meeting_of_body(inside.as_ref(), cuboid.as_ref(), mirrored) {
             Some(meeting) if must => Some(meeting.touching()),

@@ -267,7 +267,7 @@ impl<'a> Stars<'a> {
 
     /// The plane of a triangle beside another shape.
     #[inline(always)]
-    fn plane(&self, triangle: u32, other: &Other) -> Plane {
+    pub fn plane(&self, triangle: u32, other: &Other) -> Plane {
         let planes = self.planes.get_or_init(|| Planes::new(self.found));
         planes.beside(other, triangle, || self.normal_and_point(triangle))
     }
