@@ -11,7 +11,7 @@ const THIN: f64 = 1e-9;
 
 /// A face in a plane.
 pub(super) struct Outline<'f> {
-    pub face: &'f Face,
+    face: &'f Face,
     pub polygon: SmallVec<[DVec2; 4]>,
     /// Of a face that is seen from its edge, which corners the two of the polygon are.
     ends: Option<[usize; 2]>,
