@@ -105,16 +105,21 @@ impl<'a> Side<'a> {
             return false;
         }
         let [depth, opposite] = self.other.depths(self.corners, out);
-        let vertices = self.stars.welded(self.body.primitive);
+        if depth <= opposite {
+            return false;
+        }
         let goes_on = |edge: [u32; 2]| {
-            self.stars.around_all(&edge).any(|beside| {
-                beside != self.body.primitive
-                    && met.binary_search(&beside).is_ok()
-                    && is_parallel(self.stars.plane(beside, &self.other).normal, normal)
-            })
+            // What is around an edge between two hubs is too much to look at for each triangle there.
+            let is_looked_at = edge.iter().any(|&end| !self.stars.is_hub(end));
+            is_looked_at
+                && self.stars.around_all(&edge).any(|beside| {
+                    beside != self.body.primitive
+                        && met.binary_search(&beside).is_ok()
+                        && is_parallel(self.stars.plane(beside, &self.other).normal, normal)
+                })
         };
-        opposite < depth
-            && (0..vertices.len()).any(|i| goes_on([vertices[i], vertices[(i + 1) % vertices.len()]]))
+        let vertices = self.stars.welded(self.body.primitive);
+        (0..vertices.len()).any(|i| goes_on([vertices[i], vertices[(i + 1) % vertices.len()]]))
     }
 
     /// Whether a normal points into a solid.
