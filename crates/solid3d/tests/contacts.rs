@@ -14,7 +14,7 @@ use common::{assert_rate, at, placement, random_complex, random_mesh, sheet, siz
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
-use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
+use solid_oracle::generate::{Pair, Regime, direction, in_cube, random_pair, seeded};
 use solid3d::query::{self, ContactOptions, ContactPoint, Feature, Manifold};
 use solid3d::{Motion, Response, Shape, When, World, WorldOptions, glam};
 
@@ -275,6 +275,43 @@ fn a_floor_of_two_triangles_pushes_nothing_down() {
         assert!(found.iter().all(|region| region.normal.y > 0.999_999), "case {case}: {found:#?}");
     }
     assert!(both > 1_000, "{both} are over both triangles");
+}
+
+/// What comes through one triangle of a floor and leans over others is as deep as in a slab.
+#[test]
+fn what_leans_over_is_as_deep_as_it_is() {
+    let mut rng = seeded(SEED);
+    let (slab, below) = (Shape::cuboid([10.0, 1.0, 10.0]).unwrap(), at(0.0, -0.5, 0.0));
+    let (floors, mut upward) = ([1, 4, 50].map(floor), 0);
+    for case in 0..1_500 {
+        let turned = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..TAU));
+        let (shape, turned) = match case % 3 {
+            // Sheared, so that corners are acute.
+            0 => (
+                cube(),
+                turned * DAffine3::from_mat3(DMat3::from_cols(DVec3::X, direction(&mut rng), DVec3::Z)),
+            ),
+            _ => {
+                let corners = [(); 9].map(|()| in_cube(&mut rng) * DVec3::new(1.0, 0.4, 0.3));
+                (Shape::convex_hull(&corners).unwrap(), turned)
+            }
+        };
+        let low = query::bounds(&shape, &turned).unwrap().min.y;
+        let place = in_cube(&mut rng) * 3.0;
+        let depth = rng.random_range(0.001..0.03);
+        let placed = DAffine3::from_translation(DVec3::new(place.x, -low - depth, place.z)) * turned;
+        let expected = deepest(&contacts(&shape, &placed, &slab, &below));
+        for floor in &floors {
+            let found = contacts(&shape, &placed, floor, &DAffine3::IDENTITY);
+            // What is nearly flat leaves a surface downward where more of it is below, or is below it.
+            if found.first().is_some_and(|region| region.normal.y > 0.0) {
+                let off = (deepest(&found) - expected).abs();
+                assert!(off < 1e-6 * expected, "case {case}: {found:#?}, {expected}");
+                upward += 1;
+            }
+        }
+    }
+    assert!(upward > 4_450, "{upward} of 4,500 are held up");
 }
 
 /// A box a little off a floor, tilted: all four corners within the margin, with their gaps.

@@ -19,6 +19,7 @@ mod map;
 mod one_point;
 mod other;
 mod outline;
+mod overhang;
 mod own_feature;
 mod planes;
 mod region;

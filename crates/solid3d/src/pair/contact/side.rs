@@ -96,6 +96,11 @@ impl<'a> Side<'a> {
         Some(if depth <= opposite { normal } else { -normal })
     }
 
+    /// Whether a normal is that of the triangle, or its opposite.
+    pub fn is_own(&self, out: DVec3) -> bool {
+        self.body.plane.is_some_and(|normal| is_parallel(normal, out))
+    }
+
     /// Whether a normal is that of the triangle, and leads to the side on which the way out is longer. It seems shorter of this triangle alone, where only
     /// a sliver of the other is over it: the rest is over the next, which lies in the same plane and is among those that the other has `met`. Of a solid
     /// the side is known.
@@ -108,18 +113,14 @@ impl<'a> Side<'a> {
         if depth <= opposite {
             return false;
         }
-        let goes_on = |edge: [u32; 2]| {
-            // What is around an edge between two hubs is too much to look at for each triangle there.
-            let is_looked_at = edge.iter().any(|&end| !self.stars.is_hub(end));
-            is_looked_at
-                && self.stars.around_all(&edge).any(|beside| {
-                    beside != self.body.primitive
-                        && met.binary_search(&beside).is_ok()
-                        && is_parallel(self.stars.plane(beside, &self.other).normal, normal)
-                })
+        let goes_on = |beside: u32| {
+            met.binary_search(&beside).is_ok() && self.stars.is_level(beside, normal, &self.other)
         };
         let vertices = self.stars.welded(self.body.primitive);
-        (0..vertices.len()).any(|i| goes_on([vertices[i], vertices[(i + 1) % vertices.len()]]))
+        (0..vertices.len()).any(|i| {
+            let edge = [vertices[i], vertices[(i + 1) % vertices.len()]];
+            self.stars.across(edge, self.body.primitive).any(goes_on)
+        })
     }
 
     /// Whether a normal points into a solid.

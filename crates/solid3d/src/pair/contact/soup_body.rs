@@ -12,6 +12,7 @@ use super::super::{Scratch, complex_convex};
 use super::difference::Polytope;
 use super::inside::Inside;
 use super::other::Other;
+use super::overhang::Overhang;
 use super::side::{Corrected, Side};
 use super::stars::Stars;
 use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face};
@@ -68,21 +69,49 @@ pub(super) fn soup_body(
         body: face::Placed::new(kind, map_body),
         mirrored,
     };
-    found.iter().filter_map(|&primitive| encounter.patch(primitive)).collect()
+    let mut overhang = Overhang::new(encounter.stars, encounter.other, &found);
+    let mut patches: Vec<Patch> =
+        found.iter().filter_map(|&primitive| encounter.patch(primitive, &mut overhang)).collect();
+    patches
+        .extend(overhang.found.iter().filter_map(|&(triangle, out)| encounter.patch_behind(triangle, out)));
+    patches
 }
 
 impl Encounter<'_> {
     /// The contacts of a primitive; `None` where there are none.
-    fn patch(&self, primitive: u32) -> Option<Patch> {
-        let Encounter { pair, stars, .. } = *self;
+    fn patch(&self, primitive: u32, overhang: &mut Overhang) -> Option<Patch> {
+        self.with_side(primitive, |side| {
+            let (out, touches) = self.way_out(side)?;
+            if !self.body.is_ball() && side.is_own(out) {
+                overhang.look(primitive, out);
+            }
+            self.patch_of(side, out, touches)
+        })
+    }
+
+    /// The contacts of a triangle that the body does not meet, but is behind.
+    fn patch_behind(&self, triangle: u32, out: DVec3) -> Option<Patch> {
+        self.with_side(triangle, |side| self.patch_of(side, out, self.over(side, out)))
+    }
+
+    fn with_side<R>(&self, primitive: u32, ask: impl FnOnce(&Side) -> R) -> R {
         let body = Body::of_primitive(self.complex, primitive);
-        let corners = stars.corners(primitive);
-        let placed = face::Placed::of_primitive(&body, primitive, stars.map, &corners);
-        let side = Side::new(stars, placed, &corners, self.other);
-        let (out, touches) = match side.flat() {
-            Some(normal) => (normal, self.over(&side, normal)),
+        let corners = self.stars.corners(primitive);
+        let placed = face::Placed::of_primitive(&body, primitive, self.stars.map, &corners);
+        ask(&Side::new(self.stars, placed, &corners, self.other))
+    }
+
+    fn patch_of(&self, side: &Side, out: DVec3, touches: Vec<Touch>) -> Option<Patch> {
+        let (normal, is_inward) = (out * self.sign(), side.is_inward(out));
+        (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
+    }
+
+    /// A normal out of a primitive along which the body leaves it, and the contacts along that, if any.
+    fn way_out(&self, side: &Side) -> Option<(DVec3, Vec<Touch>)> {
+        Some(match side.flat() {
+            Some(normal) => (normal, self.over(side, normal)),
             None => {
-                let meeting = self.meeting(&side)?;
+                let meeting = self.meeting(side)?;
                 let corrected = match side.corrected(meeting.normal * self.sign())? {
                     Corrected::Kept(out) | Corrected::Replaced(out) if side.is_cut_short(out, self.found) => {
                         Corrected::Replaced(-out)
@@ -92,16 +121,14 @@ impl Encounter<'_> {
                 let touches = match corrected {
                     Corrected::Kept(normal) => {
                         let [a, b] = self.in_order(&side.body, &self.body);
-                        pair.touches(a, b, &Meeting { normal: normal * self.sign(), ..meeting })
+                        self.pair.touches(a, b, &Meeting { normal: normal * self.sign(), ..meeting })
                     }
-                    Corrected::Adopted(normal) if !self.body.is_ball() => self.across(&side, normal),
-                    Corrected::Adopted(normal) | Corrected::Replaced(normal) => self.over(&side, normal),
+                    Corrected::Adopted(normal) if !self.body.is_ball() => self.across(side, normal),
+                    Corrected::Adopted(normal) | Corrected::Replaced(normal) => self.over(side, normal),
                 };
                 (corrected.normal(), touches)
             }
-        };
-        let (normal, is_inward) = (out * self.sign(), side.is_inward(out));
-        (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
+        })
     }
 
     /// How a primitive and the body lie to each other; `None` when they are further apart than the margin.

@@ -95,11 +95,24 @@ impl<'a> Stars<'a> {
     /// The primitives that have all of some vertices, of which there is one at least. Cost: follows those around the vertex that has the
     /// fewest.
     pub fn around_all(&self, vertices: &[u32]) -> impl Iterator<Item = u32> {
-        let stars = vertices.iter().map(|&vertex| self.around(vertex));
-        let fewest = stars.min_by_key(|star| star.len()).unwrap_or_default();
+        let stars = vertices.iter().map(|&vertex| (vertex, self.around(vertex)));
+        let (own, fewest) = stars.min_by_key(|(_, star)| star.len()).unwrap_or_default();
         let has_all =
-            |triangle: u32| vertices.len() == 1 || vertices.iter().all(|&vertex| self.has(triangle, vertex));
-        fewest.iter().copied().filter(move |&triangle| has_all(triangle))
+            move |&triangle: &u32| vertices.iter().all(|&vertex| vertex == own || self.has(triangle, vertex));
+        fewest.iter().copied().filter(has_all)
+    }
+
+    /// The primitives at an edge of one of them, but for that. At one between two hubs none: what is around it is too much to look at for each of them.
+    pub fn across(&self, [from, to]: [u32; 2], own: u32) -> impl Iterator<Item = u32> {
+        let [near, far] =
+            if self.around(from).len() <= self.around(to).len() { [from, to] } else { [to, from] };
+        let star = if self.is_hub(near) { &[] } else { self.around(near) };
+        star.iter().copied().filter(move |&primitive| primitive != own && self.has(primitive, far))
+    }
+
+    /// Whether a normal, or its opposite, is that of a triangle.
+    pub fn is_level(&self, triangle: u32, normal: DVec3, other: &Other) -> bool {
+        is_parallel(self.plane(triangle, other).normal, normal)
     }
 
     /// Whether the surface has a normal at what of some vertices is highest along it: nothing around that is higher.
