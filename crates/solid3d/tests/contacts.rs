@@ -285,11 +285,17 @@ fn what_leans_over_is_as_deep_as_it_is() {
     let (floors, mut upward) = ([1, 4, 50].map(floor), 0);
     for case in 0..1_500 {
         let turned = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..TAU));
-        let (shape, turned) = match case % 3 {
+        let (shape, turned) = match case % 5 {
             // Sheared, so that corners are acute.
             0 => (
                 cube(),
                 turned * DAffine3::from_mat3(DMat3::from_cols(DVec3::X, direction(&mut rng), DVec3::Z)),
+            ),
+            1 => (Shape::cone(0.4, 0.3).unwrap(), turned),
+            // Nearly upright: as deep as a point of its rim, which is no corner of what is clipped.
+            2 => (
+                Shape::cylinder(0.3, 0.2).unwrap(),
+                DAffine3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 0.005)),
             ),
             _ => {
                 let corners = [(); 9].map(|()| in_cube(&mut rng) * DVec3::new(1.0, 0.4, 0.3));

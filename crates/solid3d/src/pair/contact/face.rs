@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use smallvec::{SmallVec, smallvec};
 use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Line, Sphere, Support, unit_scale};
 
-use super::Feature;
 use super::map::{Map, unit};
+use super::{Feature, SAME_DEPTH};
 use crate::shape::{Body, Hulled};
 
 /// Corners of the polygon that stands for a circle: what is cut off is 2 % of the radius.
@@ -273,12 +273,7 @@ impl<'a> Placed<'a> {
         if of_cap >= of_side {
             let first = if y < 0.0 { RIM } else { 0 };
             let number = u32::from(y < 0.0);
-            return Face {
-                corners: self.rim(radius, y, first, of_cap, local),
-                normal: cap,
-                number,
-                cosine: of_cap,
-            };
+            return Face { corners: self.rim(radius, y, first, local), normal: cap, number, cosine: of_cap };
         }
         let end = |y: f64, vertex: u32| self.corner(DVec3::new(radius * x, y, radius * z), vertex);
         let corners = smallvec![end(half, 2 * RIM), end(-half, 2 * RIM + 1)];
@@ -294,7 +289,7 @@ impl<'a> Placed<'a> {
         let side = self.map.normal(DVec3::new(x * across, along, z * across));
         let (of_base, of_side) = (base.dot(direction), side.dot(direction));
         if of_base >= of_side {
-            let corners = self.rim(radius, -half, RIM, of_base, local);
+            let corners = self.rim(radius, -half, RIM, local);
             return Face { corners, normal: base, number: 1, cosine: of_base };
         }
         let corners = smallvec![
@@ -319,10 +314,12 @@ impl<'a> Placed<'a> {
     }
 
     /// A circle across the axis y: corners at places that stay with the body, and, when it is tilted, the furthest point.
-    fn rim(&self, radius: f64, y: f64, first: u32, cosine: f64, local: DVec3) -> Corners {
+    fn rim(&self, radius: f64, y: f64, first: u32, local: DVec3) -> Corners {
+        /// How far a circle reaches beyond a polygon of so many corners, in radii, at most: 1 - cos(pi / 16).
+        const BEYOND: f64 = 0.019_3;
         let corner = |(x, z): (f64, f64), vertex| self.corner(DVec3::new(radius * x, y, radius * z), vertex);
         let mut corners: Corners = (0..RIM).map(|i| corner(on_circle(i), first + i)).collect();
-        if !is_aligned(cosine) {
+        if BEYOND * radius * DVec2::new(local.x, local.z).length() > SAME_DEPTH {
             let (x, z) = azimuth(local);
             let turn = z.atan2(x) / TAU;
             let before = (turn - turn.floor()) * f64::from(RIM);
