@@ -320,6 +320,49 @@ fn what_leans_over_is_as_deep_as_it_is() {
     assert!(upward > 4_450, "{upward} of 4,500 are held up");
 }
 
+/// The ridge of a roof of small triangles has the normals that the edge of a wedge has, and faces their own.
+#[test]
+fn a_ridge_of_small_triangles_is_an_edge() {
+    let mut rng = seeded(SEED);
+    let corner = |x: f64, y: f64| DVec3::new(x, -y.abs(), y);
+    let wedge =
+        Shape::convex_hull(&[-5.0, 5.0].map(|x| [-2.0, 0.0, 2.0].map(|y| corner(x, y))).concat()).unwrap();
+    let roof = sheet(41, 101, [false, false], |u, v| corner(10.0 * v - 5.0, 4.0 * u - 2.0)).shape();
+    let slope = DVec3::new(0.0, 1.0, 1.0).normalize();
+    let mut at_the_ridge = 0;
+    for case in 0..2_000 {
+        let shape = match case % 4 {
+            0 => Shape::cone(0.3, 0.6).unwrap(),
+            1 => Shape::cylinder(0.2, 0.5).unwrap(),
+            2 => Shape::cuboid([0.3, 0.4, 0.5]).unwrap(),
+            _ => Shape::convex_hull(&[(); 12].map(|()| in_cube(&mut rng) * 0.3)).unwrap(),
+        };
+        let turned = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..TAU));
+        let (above, aside) = (DAffine3::from_translation(DVec3::Y), rng.random_range(-0.05..0.05));
+        let high = above * turned;
+        let hit =
+            query::cast_shape(&shape, &high, DVec3::NEG_Y * 2.0, &wedge, &at(0.03, 0.0, aside), DVec3::ZERO);
+        let depth = 10f64.powf(rng.random_range(-4.0..-1.5));
+        let lower = DVec3::NEG_Y * (2.0 * hit.unwrap().unwrap().time + depth);
+        let placed = DAffine3::from_translation(lower - DVec3::new(0.03, 0.0, aside)) * high;
+        let expected = only(&shape, &placed, &wedge, &DAffine3::IDENTITY);
+        if expected.normal.dot(slope).max(expected.normal.dot(slope * DVec3::new(1.0, 1.0, -1.0))) > 0.999_999
+        {
+            continue;
+        }
+        for region in contacts(&shape, &placed, &roof, &DAffine3::IDENTITY) {
+            let is_of_a_face = (region.normal.abs() - slope).length() < 1e-6;
+            let off = deepest(std::slice::from_ref(&region)) - deepest(std::slice::from_ref(&expected));
+            assert!(
+                is_of_a_face || region.normal.distance(expected.normal) < 1e-4 && off.abs() < 1e-6,
+                "case {case}: {region:#?}, not {expected:#?}"
+            );
+            at_the_ridge += usize::from(!is_of_a_face);
+        }
+    }
+    assert!(at_the_ridge > 500, "{at_the_ridge}");
+}
+
 /// A box a little off a floor, tilted: all four corners within the margin, with their gaps.
 #[test]
 fn gaps_within_the_margin_are_contacts() {

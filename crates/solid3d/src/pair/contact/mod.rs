@@ -23,6 +23,7 @@ mod overhang;
 mod own_feature;
 mod planes;
 mod region;
+mod ridge;
 mod ring;
 mod side;
 mod soup;

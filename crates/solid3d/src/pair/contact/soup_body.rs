@@ -15,7 +15,7 @@ use super::other::Other;
 use super::overhang::Overhang;
 use super::side::{Corrected, Side};
 use super::stars::Stars;
-use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face};
+use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge};
 use crate::shape::{Body, Complex};
 
 /// A soup and a body, of which primitives that meet it are looked at one after the other.
@@ -74,6 +74,11 @@ pub(super) fn soup_body(
         found.iter().filter_map(|&primitive| encounter.patch(primitive, &mut overhang)).collect();
     patches
         .extend(overhang.found.iter().filter_map(|&(triangle, out)| encounter.patch_behind(triangle, out)));
+    if patches.is_empty() {
+        // Where a body leaves an edge last it may lean over that, and not meet it.
+        let near = beside_body((complex, placed_soup.placement), convex, 0.0, scratch);
+        patches.extend(encounter.patch_at_a_ridge(&near));
+    }
     patches
 }
 
@@ -92,6 +97,16 @@ impl Encounter<'_> {
     /// The contacts of a triangle that the body does not meet, but is behind.
     fn patch_behind(&self, triangle: u32, out: DVec3) -> Option<Patch> {
         self.with_side(triangle, |side| self.patch_of(side, out, self.over(side, out)))
+    }
+
+    /// The contacts across an edge of the surface, which is one of some triangles.
+    fn patch_at_a_ridge(&self, triangles: &[u32]) -> Option<Patch> {
+        let (triangle, way) = ridge::shortest(self.stars, &self.other, triangles)?;
+        self.with_side(triangle, |side| {
+            let [a, b] = self.in_order(&side.body, &self.body);
+            let touches = self.pair.touches(a, b, &way.meeting(self.mirrored));
+            self.patch_of(side, way.out, touches)
+        })
     }
 
     fn with_side<R>(&self, primitive: u32, ask: impl FnOnce(&Side) -> R) -> R {
@@ -189,23 +204,33 @@ fn near_body(
     mirrored: bool,
     scratch: &mut Scratch,
 ) -> Vec<u32> {
-    let mut found = Vec::new();
-    if pair.margin == 0.0 {
-        let _ = complex_convex::meeting_primitives(soup, body, scratch, &mut |primitive, _| {
-            found.push(primitive);
-            ControlFlow::Continue(())
-        });
-    } else {
-        let (query, _) = complex_convex::convex_in_complex(soup, body);
+    if pair.margin > 0.0 {
         let (_, margins) = pair.margins(&pair.placing());
-        let query = query.inflated(margins[usize::from(mirrored)]);
-        let Scratch { traversal, primitive_tests, .. } = scratch;
-        let _ = soup.0.tree().overlapping(&query, traversal, |leaf| {
-            found.extend(leaf.iter().filter(|&&i| soup.0.primitive_bounds(i).overlaps(&query)));
-            ControlFlow::<()>::Continue(())
-        });
-        *primitive_tests += found.len() as u64;
+        return beside_body(soup, body, margins[usize::from(mirrored)], scratch);
     }
+    let mut found = Vec::new();
+    let _ = complex_convex::meeting_primitives(soup, body, scratch, &mut |primitive, _| {
+        found.push(primitive);
+        ControlFlow::Continue(())
+    });
+    found.sort_unstable();
+    found
+}
+
+/// The primitives of a soup whose boxes are as near to a body as a margin, in the space of the soup. Ascending.
+fn beside_body(
+    soup: (&Complex, &DAffine3),
+    body: PlacedConvex,
+    margin: f64,
+    Scratch { traversal, primitive_tests, .. }: &mut Scratch,
+) -> Vec<u32> {
+    let query = complex_convex::convex_in_complex(soup, body).0.inflated(margin);
+    let mut found = Vec::new();
+    let _ = soup.0.tree().overlapping(&query, traversal, |leaf| {
+        found.extend(leaf.iter().filter(|&&i| soup.0.primitive_bounds(i).overlaps(&query)));
+        ControlFlow::<()>::Continue(())
+    });
+    *primitive_tests += found.len() as u64;
     found.sort_unstable();
     found
 }
