@@ -13,80 +13,17 @@ use super::stars::{LEVEL, Stars};
 /// By so many halvings an angle is as small as rounding.
 const HALVINGS: usize = 52;
 
-/// The shortest way of a body out of a surface along a normal that this has at an edge of one of some triangles, between those of the two that meet there,
-/// and the triangle. Cost: five support points for each edge, and fifty where there is such a way.
-pub(super) fn shortest(stars: &Stars, body: &Other, triangles: &[u32]) -> Option<(u32, Way)> {
-    let mut shortest = None::<(u32, Way)>;
-    for &triangle in triangles {
-        let (corners, vertices) = (stars.corners(triangle), stars.welded(triangle));
-        let (&[p, q, r], &[u, v, w]) = (&corners[..], &vertices[..]) else { continue };
-        for (ends, far, edge) in [([p, q], r, [u, v]), ([q, r], p, [v, w]), ([r, p], q, [w, u])] {
-            for arc in arcs(stars, body, triangle, (ends, far, edge)) {
-                if let Some(way) = way(ends, arc, body)
-                    && shortest.as_ref().is_none_or(|(_, known)| way.depth < known.depth)
-                {
-                    shortest = Some((triangle, way));
-                }
-            }
-        }
-    }
-    shortest
-}
+/// Normals from one to another.
+type Arc = [DVec3; 2];
 
-/// The normals that a surface has at an edge of a triangle, with its third corner: from one to the other. None where it is flat, or where there are more than two
-/// triangles.
-fn arcs(
-    stars: &Stars,
-    body: &Other,
+/// An edge of a triangle.
+#[derive(Clone, Copy)]
+struct Edge {
     triangle: u32,
-    ([from, to], far, edge): ([DVec3; 2], DVec3, [u32; 2]),
-) -> SmallVec<[[DVec3; 2]; 2]> {
-    let none = SmallVec::new();
-    let own = stars.plane(triangle, body).normal;
-    let Some(aside) = own.cross(to - from).try_normalize() else { return none };
-    let mut others = stars.across(edge, triangle);
-    let (beside, None) = (others.next(), others.next()) else { return none };
-    let Some(beside) = beside else {
-        // The end of the surface.
-        let aside = if aside.dot(far - from) > 0.0 { -aside } else { aside };
-        return smallvec![[own, aside], [aside, -own]];
-    };
-    let bend = |normal: DVec3, corners: &[DVec3]| {
-        let heights = corners.iter().map(|&corner| normal.dot(corner - from));
-        heights.max_by(|x, y| x.abs().total_cmp(&y.abs())).unwrap_or(0.0)
-    };
-    let next = stars.plane(beside, body).normal;
-    let (of_next, of_own) = (bend(own, &stars.corners(beside)), bend(next, &[far]));
-    let is_out = stars.orientation * of_next <= 0.0;
-    if !is_out || of_next.abs() < LEVEL || of_own.abs() < LEVEL {
-        return none;
-    }
-    smallvec![[-own * of_next.signum(), -next * of_own.signum()]]
-}
-
-/// The shortest way of a body out of an edge along a normal between two, where it is shorter than along those beside it and the body leaves the edge last.
-fn way([from, to]: [DVec3; 2], [first, last]: [DVec3; 2], body: &Other) -> Option<Way> {
-    let along = (to - from).try_normalize()?;
-    let turn = last - first;
-    let look = |normal: DVec3| {
-        let (tip, toward) = (body.furthest(-normal), turn - normal * normal.dot(turn));
-        Look { normal, tip, slope: toward.dot(from - tip) }
-    };
-    let parts = [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| look((first + turn * part).normalize()));
-    let lowest = |[mut before, mut after]: [Look; 2]| {
-        for _ in 0..HALVINGS {
-            let middle = look((before.normal + after.normal).normalize());
-            *(if middle.slope < 0.0 { &mut before } else { &mut after }) = middle;
-        }
-        let tip = before.tip.lerp(after.tip, before.slope / (before.slope - after.slope));
-        let (out, place) = (before.normal, along.dot(tip - from));
-        let is_at_the_edge = (0.0..=from.distance(to)).contains(&place);
-        let way = Way { out, depth: out.dot(from - tip), foot: from + along * place };
-        (is_at_the_edge && way.depth >= 0.0).then_some(way)
-    };
-    let valleys = parts.windows(2).filter(|ends| ends[0].slope < 0.0 && ends[1].slope > 0.0);
-    let ways = valleys.filter_map(|ends| lowest([ends[0], ends[1]]));
-    ways.min_by(|x, y| x.depth.total_cmp(&y.depth))
+    ends: [DVec3; 2],
+    /// The third corner.
+    far: DVec3,
+    vertices: [u32; 2],
 }
 
 /// What is found along a normal.
@@ -95,6 +32,79 @@ struct Look {
     normal: DVec3,
     /// The point of the body that is furthest against it.
     tip: DVec3,
-    /// How much deeper the body gets where it is turned.
+    /// How much deeper the body gets where the normal is turned along the arc.
     slope: f64,
+}
+
+/// The shortest way of a body out of a surface along a normal that this has at an edge of one of some triangles, between those of the two that meet there,
+/// and the triangle. Cost: five support points for each edge, and fifty where there is such a way.
+pub(super) fn shortest(stars: &Stars, body: &Other, triangles: &[u32]) -> Option<(u32, Way)> {
+    let edges = triangles.iter().filter_map(|&triangle| Edge::all(stars, triangle)).flatten();
+    let ways = edges.flat_map(|edge| {
+        let of_edge = edge.arcs(stars, body).into_iter().filter_map(move |arc| edge.way(arc, body));
+        of_edge.map(move |way| (edge.triangle, way))
+    });
+    ways.min_by(|(_, x), (_, y)| x.depth.total_cmp(&y.depth))
+}
+
+impl Edge {
+    /// Those of a primitive, if it is a triangle.
+    fn all(stars: &Stars, triangle: u32) -> Option<[Edge; 3]> {
+        let (corners, vertices) = (stars.corners(triangle), stars.welded(triangle));
+        let (&[p, q, r], &[u, v, w]) = (&corners[..], &vertices[..]) else { return None };
+        let edge = |ends, far, vertices| Edge { triangle, ends, far, vertices };
+        Some([edge([p, q], r, [u, v]), edge([q, r], p, [v, w]), edge([r, p], q, [w, u])])
+    }
+
+    /// The normals that the surface has here, none where it is flat, or where more than two triangles meet.
+    fn arcs(&self, stars: &Stars, body: &Other) -> SmallVec<[Arc; 2]> {
+        let none = SmallVec::new();
+        let [from, to] = self.ends;
+        let own = stars.plane(self.triangle, body).normal;
+        let mut others = stars.across(self.vertices, self.triangle);
+        let (beside, None) = (others.next(), others.next()) else { return none };
+        let Some(beside) = beside else {
+            // The end of the surface.
+            let Some(aside) = own.cross(to - from).try_normalize() else { return none };
+            let aside = if aside.dot(self.far - from) > 0.0 { -aside } else { aside };
+            return smallvec![[own, aside], [aside, -own]];
+        };
+        let furthest = |normal: DVec3, corners: &[DVec3]| {
+            let heights = corners.iter().map(|&corner| normal.dot(corner - from));
+            heights.max_by(|x, y| x.abs().total_cmp(&y.abs())).unwrap_or(0.0)
+        };
+        let next = stars.plane(beside, body).normal;
+        let (of_next, of_own) = (furthest(own, &stars.corners(beside)), furthest(next, &[self.far]));
+        let leads_in = stars.orientation * of_next > 0.0;
+        if leads_in || of_next.abs() < LEVEL || of_own.abs() < LEVEL {
+            return none;
+        }
+        smallvec![[-own * of_next.signum(), -next * of_own.signum()]]
+    }
+
+    /// The shortest way of a body along a normal of an arc, where it is shorter than along those beside it and the body leaves the edge last.
+    fn way(&self, [first, last]: Arc, body: &Other) -> Option<Way> {
+        let [from, to] = self.ends;
+        let along = (to - from).try_normalize()?;
+        let turn = last - first;
+        let look = |normal: DVec3| {
+            let (tip, toward) = (body.furthest(-normal), turn - normal * normal.dot(turn));
+            Look { normal, tip, slope: toward.dot(from - tip) }
+        };
+        let lowest = |[mut before, mut after]: [Look; 2]| {
+            for _ in 0..HALVINGS {
+                let middle = look((before.normal + after.normal).normalize());
+                *(if middle.slope < 0.0 { &mut before } else { &mut after }) = middle;
+            }
+            let tip = before.tip.lerp(after.tip, before.slope / (before.slope - after.slope));
+            let (out, place) = (before.normal, along.dot(tip - from));
+            let is_at_the_edge = (0.0..=from.distance(to)).contains(&place);
+            let way = Way { out, depth: out.dot(from - tip), foot: from + along * place };
+            (is_at_the_edge && way.depth >= 0.0).then_some(way)
+        };
+        let looks = [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| look((first + turn * part).normalize()));
+        let valleys = looks.windows(2).filter(|ends| ends[0].slope < 0.0 && ends[1].slope > 0.0);
+        let ways = valleys.filter_map(|ends| lowest([ends[0], ends[1]]));
+        ways.min_by(|x, y| x.depth.total_cmp(&y.depth))
+    }
 }

@@ -1,6 +1,6 @@
 //! The contacts of a soup and a body.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
@@ -31,6 +31,9 @@ struct Encounter<'a> {
     found: &'a [u32],
     /// Whether the soup is the second of the pair.
     mirrored: bool,
+    /// Whether some primitive that meets the body had contacts where they are in each other, and whether some had none.
+    answered: Cell<bool>,
+    unanswered: Cell<bool>,
 }
 
 /// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
@@ -68,13 +71,11 @@ pub(super) fn soup_body(
         found: &found,
         body: face::Placed::new(kind, map_body),
         mirrored,
+        answered: Cell::new(false),
+        unanswered: Cell::new(false),
     };
-    let mut overhang = Overhang::new(encounter.stars, encounter.other, &found);
-    let mut patches: Vec<Patch> =
-        found.iter().filter_map(|&primitive| encounter.patch(primitive, &mut overhang)).collect();
-    patches
-        .extend(overhang.found.iter().filter_map(|&(triangle, out)| encounter.patch_behind(triangle, out)));
-    if patches.is_empty() {
+    let mut patches = encounter.patches();
+    if encounter.unanswered.get() && !encounter.answered.get() {
         // Where a body leaves an edge last it may lean over that, and not meet it.
         let near = beside_body((complex, placed_soup.placement), convex, 0.0, scratch);
         patches.extend(encounter.patch_at_a_ridge(&near));
@@ -83,11 +84,30 @@ pub(super) fn soup_body(
 }
 
 impl Encounter<'_> {
+    /// The contacts of all that was found, and of what the body leans over.
+    fn patches(&self) -> Vec<Patch> {
+        let mut overhang = Overhang::new(self.stars, self.other, self.found);
+        let mut patches: Vec<Patch> =
+            self.found.iter().filter_map(|&primitive| self.patch(primitive, &mut overhang)).collect();
+        if !overhang.found.is_empty() {
+            self.answered.set(true);
+            patches.extend(
+                overhang.found.iter().filter_map(|&(triangle, out)| self.patch_behind(triangle, out)),
+            );
+            patches.sort_by_key(|patch| patch.touches[0].primitives); // stable
+        }
+        patches
+    }
+
     /// The contacts of a primitive; `None` where there are none.
     fn patch(&self, primitive: u32, overhang: &mut Overhang) -> Option<Patch> {
         self.with_side(primitive, |side| {
-            let (out, touches) = self.way_out(side)?;
-            if !self.body.is_ball() && side.is_own(out) {
+            let (out, touches, meets) = self.way_out(side)?;
+            if meets {
+                let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
+                (if is_told { &self.answered } else { &self.unanswered }).set(true);
+            }
+            if meets && !self.body.is_ball() && side.is_own(out) {
                 overhang.look(primitive, out);
             }
             self.patch_of(side, out, touches)
@@ -121,10 +141,10 @@ impl Encounter<'_> {
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     }
 
-    /// A normal out of a primitive along which the body leaves it, and the contacts along that, if any.
-    fn way_out(&self, side: &Side) -> Option<(DVec3, Vec<Touch>)> {
+    /// A normal out of a primitive along which the body leaves it, the contacts along that, if any, and whether the two meet.
+    fn way_out(&self, side: &Side) -> Option<(DVec3, Vec<Touch>, bool)> {
         Some(match side.flat() {
-            Some(normal) => (normal, self.over(side, normal)),
+            Some(normal) => (normal, self.over(side, normal), self.pair.margin == 0.0),
             None => {
                 let meeting = self.meeting(side)?;
                 let corrected = match side.corrected(meeting.normal * self.sign())? {
@@ -141,7 +161,7 @@ impl Encounter<'_> {
                     Corrected::Adopted(normal) if !self.body.is_ball() => self.across(side, normal),
                     Corrected::Adopted(normal) | Corrected::Replaced(normal) => self.over(side, normal),
                 };
-                (corrected.normal(), touches)
+                (corrected.normal(), touches, meeting.depth >= 0.0)
             }
         })
     }
