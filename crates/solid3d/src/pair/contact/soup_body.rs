@@ -89,11 +89,11 @@ impl Encounter<'_> {
         let mut overhang = Overhang::new(self.stars, self.other, self.found);
         let mut patches: Vec<Patch> =
             self.found.iter().filter_map(|&primitive| self.patch(primitive, &mut overhang)).collect();
-        if !overhang.found.is_empty() {
+        let behind = overhang.found.iter().filter_map(|&(triangle, out)| self.patch_behind(triangle, out));
+        let behind: Vec<Patch> = behind.collect();
+        if !behind.is_empty() {
             self.answered.set(true);
-            patches.extend(
-                overhang.found.iter().filter_map(|&(triangle, out)| self.patch_behind(triangle, out)),
-            );
+            patches.extend(behind);
             patches.sort_by_key(|patch| patch.touches[0].primitives); // stable
         }
         patches
