@@ -4,7 +4,6 @@
 use std::collections::BTreeSet;
 
 use glam::DVec3;
-use smallvec::{SmallVec, smallvec};
 
 use super::other::Other;
 use super::stars::Stars;
@@ -25,34 +24,39 @@ impl<'a> Overhang<'a> {
         Overhang { stars, body, met, looked_at: BTreeSet::new(), found: Vec::new() }
     }
 
-    /// Goes from a triangle that the body meets, and leaves along a normal of it, to the one in front of where it is deepest, across others of that
+    /// Goes straight from a triangle that the body meets, and leaves along a normal of it, to the one in front of where it is deepest, through others of that
     /// plane which it does not meet. Cost: each of these is looked at once.
     pub fn look(&mut self, first: u32, out: DVec3) {
         let tip = self.body.furthest(-out);
-        let mut pending: SmallVec<[u32; 8]> = smallvec![first];
-        while let Some(triangle) = pending.pop() {
-            let (corners, vertices) = (self.stars.corners(triangle), self.stars.welded(triangle));
-            let mut is_in_front = triangle != first;
-            for i in 0..3 {
-                let [j, k] = [(i + 1) % 3, (i + 2) % 3];
-                let inward = out.cross(corners[j] - corners[i]);
-                let height = |point: DVec3| inward.dot(point - corners[i]);
-                if height(tip) * height(corners[k]) >= 0.0 {
-                    continue;
-                }
-                is_in_front = false;
-                for beside in self.stars.across([vertices[i], vertices[j]], triangle) {
-                    let goes_on = self.met.binary_search(&beside).is_err()
-                        && self.stars.is_level(beside, out, &self.body)
-                        && self.looked_at.insert(beside);
-                    if goes_on {
-                        pending.push(beside);
-                    }
-                }
-            }
-            if is_in_front {
-                self.found.push((triangle, out));
-            }
+        let corners = self.stars.corners(first);
+        let start = corners.iter().sum::<DVec3>() / 3.0;
+        let mut triangle = first;
+        while let Some(edge) = exit(&self.stars.corners(triangle), out, start, tip) {
+            let vertices = self.stars.welded(triangle);
+            let mut across = self.stars.across([vertices[edge], vertices[(edge + 1) % 3]], triangle);
+            let next = across.find(|beside| {
+                self.met.binary_search(beside).is_err()
+                    && self.stars.is_level(*beside, out, &self.body)
+                    && self.looked_at.insert(*beside)
+            });
+            let Some(next) = next else { return };
+            triangle = next;
+        }
+        if triangle != first {
+            self.found.push((triangle, out));
         }
     }
+}
+
+/// The edge of a triangle through which a straight way leaves it, seen along the triangle's normal; `None` of one that ends in it.
+fn exit(corners: &[DVec3], normal: DVec3, from: DVec3, to: DVec3) -> Option<usize> {
+    let leaves = |i: usize| {
+        let [p, q, r] = [0, 1, 2].map(|k| corners[(i + k) % 3]);
+        let inward = normal.cross(q - p);
+        let inward = inward * inward.dot(r - p).signum();
+        let (before, after) = (inward.dot(from - p), inward.dot(to - p));
+        (after < 0.0 && before > after).then(|| (before / (before - after), i))
+    };
+    let (_, edge) = (0..3).filter_map(leaves).min_by(|(s, _), (t, _)| s.total_cmp(t))?;
+    Some(edge)
 }
