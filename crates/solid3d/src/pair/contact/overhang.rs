@@ -28,8 +28,7 @@ impl<'a> Overhang<'a> {
     /// plane which it does not meet. Cost: each of these is looked at once.
     pub fn look(&mut self, first: u32, out: DVec3) {
         let tip = self.body.furthest(-out);
-        let corners = self.stars.corners(first);
-        let start = corners.iter().sum::<DVec3>() / 3.0;
+        let start = self.stars.corners(first).iter().sum::<DVec3>() / 3.0;
         let mut triangle = first;
         while let Some(edge) = exit(&self.stars.corners(triangle), out, start, tip) {
             let vertices = self.stars.welded(triangle);
@@ -55,7 +54,8 @@ fn exit(corners: &[DVec3], normal: DVec3, from: DVec3, to: DVec3) -> Option<usiz
         let inward = normal.cross(q - p);
         let inward = inward * inward.dot(r - p).signum();
         let (before, after) = (inward.dot(from - p), inward.dot(to - p));
-        (after < 0.0 && before > after).then(|| (before / (before - after), i))
+        let part = if before > after { before / (before - after) } else { f64::INFINITY };
+        (after < 0.0).then_some((part, i))
     };
     let (_, edge) = (0..3).filter_map(leaves).min_by(|(s, _), (t, _)| s.total_cmp(t))?;
     Some(edge)
