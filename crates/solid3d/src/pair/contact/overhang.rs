@@ -12,7 +12,7 @@ use super::stars::Stars;
 pub(super) struct Overhang<'a> {
     stars: &'a Stars<'a>,
     body: Other<'a>,
-    /// The primitives that the body meets; ascending.
+    /// The primitives that the body meets, or is near; ascending.
     met: &'a [u32],
     looked_at: BTreeSet<u32>,
     /// What was found: triangles that the body does not meet, each with the normal along which it leaves them.
@@ -32,8 +32,8 @@ impl<'a> Overhang<'a> {
         let mut triangle = first;
         while let Some(edge) = exit(&self.stars.corners(triangle), out, start, tip) {
             let vertices = self.stars.welded(triangle);
-            let mut across = self.stars.across([vertices[edge], vertices[(edge + 1) % 3]], triangle);
-            let next = across.find(|beside| {
+            let ends = [vertices[edge], vertices[(edge + 1) % 3]];
+            let next = self.stars.across(&ends, triangle).find(|beside| {
                 self.met.binary_search(beside).is_err()
                     && self.stars.is_level(*beside, out, &self.body)
                     && self.looked_at.insert(*beside)

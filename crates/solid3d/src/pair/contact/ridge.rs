@@ -61,7 +61,7 @@ impl Edge {
         let none = SmallVec::new();
         let [from, to] = self.ends;
         let own = stars.plane(self.triangle, body).normal;
-        let mut others = stars.across(self.vertices, self.triangle);
+        let mut others = stars.across(&self.vertices, self.triangle);
         let (beside, None) = (others.next(), others.next()) else { return none };
         let Some(beside) = beside else {
             // The end of the surface.

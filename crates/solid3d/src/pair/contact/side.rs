@@ -119,7 +119,7 @@ impl<'a> Side<'a> {
         let vertices = self.stars.welded(self.body.primitive);
         (0..vertices.len()).any(|i| {
             let edge = [vertices[i], vertices[(i + 1) % vertices.len()]];
-            self.stars.across(edge, self.body.primitive).any(goes_on)
+            self.stars.across(&edge, self.body.primitive).any(goes_on)
         })
     }
 

@@ -106,9 +106,9 @@ impl Encounter<'_> {
             if meets {
                 let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
                 (if is_told { &self.answered } else { &self.unanswered }).set(true);
-            }
-            if meets && !self.body.is_ball() && side.is_own(out) {
-                overhang.look(primitive, out);
+                if !self.body.is_ball() && side.is_own(out) {
+                    overhang.look(primitive, out);
+                }
             }
             self.patch_of(side, out, touches)
         })

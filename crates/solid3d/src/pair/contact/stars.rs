@@ -103,11 +103,9 @@ impl<'a> Stars<'a> {
     }
 
     /// The primitives at an edge of one of them, but for that. At one between two hubs none: what is around it is too much to look at for each of them.
-    pub fn across(&self, [from, to]: [u32; 2], own: u32) -> impl Iterator<Item = u32> {
-        let [near, far] =
-            if self.around(from).len() <= self.around(to).len() { [from, to] } else { [to, from] };
-        let star = if self.is_hub(near) { &[] } else { self.around(near) };
-        star.iter().copied().filter(move |&primitive| primitive != own && self.has(primitive, far))
+    pub fn across(&self, edge: &[u32; 2], own: u32) -> impl Iterator<Item = u32> {
+        let around = self.hub(edge).is_none().then(|| self.around_all(edge));
+        around.into_iter().flatten().filter(move |&primitive| primitive != own)
     }
 
     /// Whether a normal, or its opposite, is that of a triangle.
