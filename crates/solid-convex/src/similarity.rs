@@ -66,9 +66,21 @@ fn dot<S: Simd>(u: [f64x2<S>; 3], v: [f64x2<S>; 3]) -> f64x2<S> {
 /// The squares of the scales of two placements that are similarities of plain sizes, and so good placements; `None` unless both are.
 #[inline(always)]
 pub fn plain_squares<S: Simd>(simd: S, [a, b]: [&DAffine3; 2]) -> Option<[f64; 2]> {
-    let ((of_a, a_is_good), (of_b, b_is_good)) = (plain_square(simd, a), plain_square(simd, b));
+    let ((of_a, a_is_good), (of_b, b_is_good)) = (look(simd, a), look(simd, b));
+    all_is_good(a_is_good & b_is_good).then_some([of_a, of_b])
+}
+
+/// The square of the scale of one placement, as [`plain_squares`].
+#[inline(always)]
+pub fn plain_square<S: Simd>(simd: S, at: &DAffine3) -> Option<f64> {
+    let (square, is_good) = look(simd, at);
+    all_is_good(is_good).then_some(square)
+}
+
+#[inline(always)]
+fn all_is_good<S: Simd>(is_good: mask64x4<S>) -> bool {
     // The fourth lane is of no row.
-    ((a_is_good & b_is_good).to_bitmask() & 0b111 == 0b111).then_some([of_a, of_b])
+    is_good.to_bitmask() & 0b111 == 0b111
 }
 
 /// The square of the scale of a placement, if it is a good one that has a scale, and whether it is: then all is true, but what the fourth lane
@@ -77,7 +89,7 @@ pub fn plain_squares<S: Simd>(simd: S, [a, b]: [&DAffine3; 2]) -> Option<[f64; 2
 /// A similarity times its transpose is its squared scale: that takes the sums of products of columns, without any across a vector. The placement
 /// is read as it lies, column by column, with the next after each. One mask for all, since single comparisons are slow to join.
 #[inline(always)]
-fn plain_square<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) -> (f64, mask64x4<S>) {
+fn look<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) -> (f64, mask64x4<S>) {
     let columns: &[f64; 9] = matrix3.as_ref();
     let at = |start: usize| f64x4::from_slice(simd, &columns[start..start + 4]);
     let splat = |value: f64| f64x4::splat(simd, value);

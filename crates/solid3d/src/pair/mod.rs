@@ -43,6 +43,7 @@ use glam::{DAffine3, DVec3};
 
 pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
+pub use closed_form::ClosestPoint;
 pub(crate) use closed_form::{
     closest_to, contains, nearest_on_surface, quickly_closest, quickly_penetration,
 };
@@ -58,7 +59,8 @@ pub(crate) use reach::{world_bounds, world_bounds_into};
 pub(crate) use scratch::Scratch;
 use solid_convex::gjk::Glance;
 use solid_convex::{Closest, Polytope, Witness, gjk};
-pub(crate) use surface::{SurfacePoint, surface_point};
+pub use surface::SignedDistance;
+pub(crate) use surface::surface_point;
 pub use swept::Path;
 pub(crate) use table::{
     axis, closest, closest_within, convex_closest_within, convex_intersects, decide, intersection,

@@ -31,6 +31,7 @@ use solid_convex::simd::dispatch;
 use crate::bounds::Aabb;
 use crate::error::Result;
 use crate::pair::{self, Placed, Relation, Scratch};
+pub use crate::pair::{ClosestPoint, SignedDistance};
 pub use crate::pair::{ContactOptions, ContactPoint, Feature, Manifold};
 pub use crate::pair::{Faces, FromInside, Ray, RayHit, RayOptions, SurfaceHit};
 pub use crate::pair::{IntersectionCurve, Path, Polyline, PrimitivePair, Segment};
@@ -44,9 +45,9 @@ pub(crate) use impact::impact_of;
 pub use impact::{Impact, ImpactOptions, time_of_impact, time_of_impact_deforming};
 pub use pair_cache::PairCache;
 pub use penetration::{Penetration, penetration};
-pub use point::{ClosestPoint, closest_point, contains_point, winding_number};
+pub use point::{closest_point, contains_point, winding_number};
 pub use ray::{cast_ray, cast_ray_all, ray_meets};
-pub use surface::{SignedDistance, signed_distance};
+pub use surface::signed_distance;
 
 /// The distance of two placed shapes, with their closest points.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,9 +6,9 @@ use std::sync::LazyLock;
 use glam::{DAffine3, DVec3};
 
 use super::cast::bounded;
-use super::{Distance, distance, intersects, placed};
+use super::{Distance, distance, intersects, placed, unchecked};
 use crate::error::{Error, Result};
-use crate::pair;
+use crate::pair::{self, ClosestPoint};
 use crate::placement::direction;
 use crate::shape::{Shape, ShapeKind};
 
@@ -23,9 +23,11 @@ use crate::shape::{Shape, ShapeKind};
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<bool> {
-    let body = placed(shape, placement)?;
+    if let Some(answer) = pair::contains(unchecked(shape, placement), point) {
+        return Ok(answer);
+    }
     let (of_point, at) = as_shape(point)?;
-    pair::contains(body, point).map_or_else(|| intersects(shape, placement, of_point, &at), Ok)
+    intersects(shape, placement, of_point, &at)
 }
 
 /// The point of a placed shape that is closest to a point, and their distance: of solids 0 inside, where the point itself is the
@@ -39,22 +41,15 @@ pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Resu
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn closest_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<ClosestPoint> {
-    let body = placed(shape, placement)?;
-    let (of_point, at) = as_shape(point)?;
-    if let Some((distance, point)) = pair::closest_to(body, point) {
-        return Ok(ClosestPoint { point, distance });
-    }
-    let Distance { distance, point_on_a, .. } = distance(shape, placement, of_point, &at)?;
-    Ok(ClosestPoint { point: point_on_a, distance })
+    pair::closest_to(unchecked(shape, placement), point, || at_length(shape, placement, point))
 }
 
-/// The point of a shape that is closest to another point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClosestPoint {
-    /// The closest point of the shape. Space: world.
-    pub point: DVec3,
-    /// The distance to it, at least 0.
-    pub distance: f64,
+/// The same, of whatever has no closed form.
+#[inline(never)]
+fn at_length(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<ClosestPoint> {
+    let (of_point, at) = as_shape(point)?;
+    let Distance { distance, point_on_a, .. } = distance(shape, placement, of_point, &at)?;
+    Ok(ClosestPoint { point: point_on_a, distance })
 }
 
 /// How often a mesh winds around a point: the generalised winding number. Of a closed mesh that is not solid it is a whole number,

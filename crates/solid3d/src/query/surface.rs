@@ -2,23 +2,11 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::placed;
 use super::point::as_shape;
+use super::{placed, unchecked};
 use crate::error::Result;
-use crate::pair::{self, Placed, Scratch};
+use crate::pair::{self, Placed, Scratch, SignedDistance};
 use crate::shape::Shape;
-
-/// How far a point is from the surface of a shape, and where that is nearest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SignedDistance {
-    /// The distance to the surface: negative inside a solid. World units.
-    pub distance: f64,
-    /// The nearest point of the surface. Space: world.
-    pub point: DVec3,
-    /// The unit vector out of the shape, across the surface there: the point that was asked about is at `point + normal * distance`.
-    /// Space: world.
-    pub normal: DVec3,
-}
 
 /// How far a point is from the surface of a placed shape: positive outside, negative inside, with the nearest point of the surface
 /// and the outward normal there. Of several nearest points it is one, the same for the same input.
@@ -57,13 +45,14 @@ pub struct SignedDistance {
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn signed_distance(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<SignedDistance> {
+    pair::nearest_on_surface(unchecked(shape, placement), point, || at_length(shape, placement, point))
+}
+
+/// The same, of whatever has no closed form.
+#[inline(never)]
+fn at_length(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<SignedDistance> {
     let shape = placed(shape, placement)?;
     let (of_point, at) = as_shape(point)?;
-    let at_length = || {
-        let of_point = Placed { shape: of_point, placement: &at };
-        Scratch::with(|scratch| pair::surface_point(shape, of_point, scratch))
-    };
-    let found = pair::nearest_on_surface(shape, point).unwrap_or_else(at_length);
-    let pair::SurfacePoint { distance, point, normal } = found;
-    Ok(SignedDistance { distance, point, normal })
+    let of_point = Placed { shape: of_point, placement: &at };
+    Ok(Scratch::with(|scratch| pair::surface_point(shape, of_point, scratch)))
 }

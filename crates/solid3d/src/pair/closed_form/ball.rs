@@ -4,10 +4,10 @@ use fearless_simd::Simd;
 use glam::DVec3;
 use solid_convex::{Closest, Penetration, Witness};
 
-use super::point::{Foot, Seen, extent, of_body};
+use super::Relation;
+use super::foot::{Foot, extent, of_body};
 use super::quick::{MARGIN_TO_ERROR, View};
 use super::similarity::Similarity;
-use super::{Gap, Relation};
 use crate::pair::Placed;
 
 /// A ball and a body.
@@ -43,16 +43,6 @@ pub(super) fn plain_view<'a, S: Simd>(
     let view = View::of(simd, [ball.placement, body.placement])?;
     let margin = view.margin([radius, extent])?;
     Some((view, margin))
-}
-
-/// How far a point is from a body, and the point of the body that is nearest, in the world: as of a ball without a radius.
-pub(crate) fn closest_to(body: Placed, point: DVec3) -> Option<(f64, DVec3)> {
-    let seen = Seen::new(body, point)?;
-    let gap = seen.distance();
-    Some(match (Gap { least: gap, greatest: gap }).intersects()? {
-        true => (0.0, point),
-        false => (gap / seen.scale, body.placement.translation + seen.to_surface()),
-    })
 }
 
 impl<'a> BallAndBody<'a> {

@@ -8,6 +8,7 @@
 mod ball;
 mod boxes;
 mod cast;
+mod foot;
 mod point;
 mod quick;
 mod round;
@@ -24,11 +25,11 @@ use solid_convex::{Closest, Penetration, unit_scale};
 use super::{Mirror, Placed, Relation};
 use crate::shape::{ShapeKind, Simple};
 use ball::BallAndBody;
-pub(crate) use ball::closest_to;
 use boxes::PlacedBox;
 pub(super) use cast::cast;
-pub(super) use point::foot;
-pub(crate) use point::{contains, nearest_on_surface};
+pub(super) use foot::foot;
+pub use point::ClosestPoint;
+pub(crate) use point::{closest_to, contains, nearest_on_surface};
 use round::{Cores, PlacedRound};
 pub(super) use similarity::Similarity;
 
@@ -199,7 +200,7 @@ fn in_unit<T: Lengths>(a: Placed, b: Placed, find: impl Fn(Placed, Placed) -> Op
 
 /// How far a shape reaches from its origin, or a bound on that; `None` for a hull or a complex shape, and for what its placement does not leave what it is.
 fn reach(placed: Placed) -> Option<f64> {
-    let radius = placed.shape.ball_radius().or_else(|| point::extent(&placed.shape.body()?))?;
+    let radius = placed.shape.ball_radius().or_else(|| foot::extent(&placed.shape.body()?))?;
     Some(radius * Similarity::new(&placed.placement.matrix3)?.stretch)
 }
 

@@ -1,274 +1,151 @@
-//! A point and a body that its placement leaves what it is: how far the point is from the surface, on either side of it.
-//!
-//! A turned body is a turned profile. Cylinders and cones are figures of the half plane of the distance to the axis and the height,
-//! so that each is decided by two edges.
+//! A point and a body that its placement leaves what it is.
 
-use glam::{DAffine3, DVec2, DVec3};
-use solid_convex::gjk::{self, Balls};
-use solid_convex::{FaceTowards, Polytope, Support, unit_scale};
+use std::hint::select_unpredictable;
+
+use fearless_simd::{Simd, f64x2, prelude::*};
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::simd::dispatch;
+use solid_convex::similarity::plain_square;
+use solid_convex::{MAGNITUDE_MAX, unit_scale};
 
 use super::GAP_MIN;
-use super::similarity::Similarity;
-use crate::pair::{POINT, Placed, SurfacePoint};
-use crate::placement::length_and_direction;
+use super::foot::{Foot, extent, is_within, of_body};
+use crate::error::Result;
+use crate::pair::{Placed, SignedDistance};
+use crate::placement;
 use crate::shape::Body;
 
-/// Where a surface is nearest to a point, in the space of the surface.
-pub(super) struct Foot<V> {
-    /// Negative inside.
+/// The point of a shape that is closest to another point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosestPoint {
+    /// The closest point of the shape. Space: world.
+    pub point: DVec3,
+    /// The distance to it, at least 0.
     pub distance: f64,
-    /// Outward, of length one.
-    pub normal: V,
-    /// Where it is.
-    pub at: V,
 }
 
 /// A point beside a body that its placement leaves what it is, in the body's own directions.
 struct Beside<'a> {
     body: Body<'a>,
-    at: Similarity,
-    /// World lengths times this are lengths in the unit of the pair, in which the size of the data is in [1, 2): squares neither overflow nor underflow.
-    scale: f64,
-    /// How many times its own size the body is, and the point. In the unit of the pair.
+    linear: &'a DMat3,
+    /// What the scale of the placement times this is 1.
+    shrink: f64,
+    /// How many times its own size the body is. In the unit of the pair.
     stretch: f64,
+    /// The unit of the pair, a power of two of the world's, in which the size of the data is in [1, 2): squares neither overflow nor underflow.
+    unit: f64,
+    /// From the body's origin. In the unit of the pair.
     point: DVec3,
 }
 
 impl<'a> Beside<'a> {
-    /// `None` for a mesh or a complex shape, and for placements that are not a rotation with a uniform scale.
+    /// `None` for a mesh or a complex shape, for placements that are not a rotation with a uniform scale, or not good, and for a point that is out of range.
     #[inline(always)]
-    fn new(body: Placed<'a>, point: DVec3) -> Option<Self> {
-        let DAffine3 { matrix3, translation } = body.placement;
-        let body = body.shape.body()?;
-        let extent = extent(&body)?;
-        let at = Similarity::new(matrix3)?;
-        let offset = point - *translation;
-        let scale = unit_scale(extent * at.stretch + offset.abs().element_sum());
-        let point = DVec3::from(at.units().map(|axis| axis.dot(offset * scale)));
-        Some(Beside { body, at, scale, stretch: at.stretch * scale, point })
-    }
-}
-
-/// Whether a point is in a body; `None` where it is too near to the surface to tell.
-pub(crate) fn contains(body: Placed, point: DVec3) -> Option<bool> {
-    let Beside { body, stretch, point, .. } = Beside::new(body, point)?;
-    is_within(&body, stretch, point, 0.0, GAP_MIN)
-}
-
-/// A point as a body sees it that its placement leaves what it is.
-pub(super) struct Seen {
-    /// Where the surface is nearest, in the body's own directions and the unit of the pair.
-    foot: Foot<DVec3>,
-    at: Similarity,
-    /// World lengths times this are lengths in the unit of the pair.
-    pub scale: f64,
-}
-
-impl Seen {
-    /// `None` as [`Beside::new`] says, and in a hull, or near to it, where its planes do not tell.
-    #[inline(always)] // most callers want a part of it
-    pub fn new(body: Placed, point: DVec3) -> Option<Seen> {
-        let Beside { body, at, scale, stretch, point } = Beside::new(body, point)?;
-        Some(Seen { foot: of_body(&body, stretch, point)?, at, scale })
-    }
-
-    /// How far the point is from the surface, negative inside. In the unit of the pair.
-    pub fn distance(&self) -> f64 {
-        self.foot.distance
-    }
-
-    /// The outward normal of the surface, where it is nearest. Space: world.
-    pub fn normal(&self) -> DVec3 {
-        self.turned(self.foot.normal)
-    }
-
-    /// The way from the origin of the body to the nearest point of its surface. Space: world.
-    pub fn to_surface(&self) -> DVec3 {
-        self.turned(self.foot.at) / self.scale
+    fn new<S: Simd>(simd: S, body: Placed<'a>, point: &DVec3) -> Option<Self> {
+        let DAffine3 { matrix3: linear, translation } = body.placement;
+        let of = body.shape.body()?;
+        let extent = extent(&of)?;
+        let stretch = match plain_square(simd, body.placement) {
+            Some(square) => square.sqrt(),
+            None => stretch_at_length(body.placement)?,
+        };
+        // By pairs of numbers, as a copy is written: what is read in other pairs is waited for.
+        let lanes = |v: &DVec3| (f64x2::from_slice(simd, &v.as_ref()[..2]), v.z);
+        let (xy, z) = lanes(point);
+        let (at_xy, at_z) = lanes(translation);
+        let is_in_range =
+            xy.abs().simd_le(f64x2::splat(simd, MAGNITUDE_MAX)).all_true() & (z.abs() <= MAGNITUDE_MAX);
+        let xy = xy - at_xy;
+        let offset = DVec3::new(xy.as_slice()[0], xy.as_slice()[1], z - at_z);
+        let scale = unit_scale(extent * stretch + offset.abs().element_sum());
+        let shrink = 1.0 / stretch;
+        let point = to_body(linear, offset * scale) * shrink;
+        is_in_range.then_some(Beside {
+            body: of,
+            linear,
+            shrink,
+            stretch: stretch * scale,
+            unit: 1.0 / scale,
+            point,
+        })
     }
 
     /// A vector in the body's own directions as the world has it.
+    #[inline(always)]
     fn turned(&self, v: DVec3) -> DVec3 {
-        let [x, y, z] = self.at.units();
-        x * v.x + y * v.y + z * v.z
+        let DMat3 { x_axis, y_axis, z_axis } = self.linear;
+        (x_axis * v.x + y_axis * v.y + z_axis * v.z) * self.shrink
     }
 }
 
-/// The point of the surface of a body nearest to a point of the world; `None` where [`Seen::new`] says so.
-pub(crate) fn nearest_on_surface(shape: Placed, point: DVec3) -> Option<SurfacePoint> {
-    let seen = Seen::new(shape, point)?;
-    let (distance, normal) = (seen.distance() / seen.scale, seen.normal());
-    Some(SurfacePoint { distance, point: point - normal * distance, normal })
-}
-
-/// How far a point is from the surface of a ball, box, cone, cylinder or capsule, negative inside, and the outward normal where that is nearest;
-/// at an `offset` from the body's origin. No unit is sought: the size of the data must be near 1.
-pub(in crate::pair) fn foot(body: &Body, at: &Similarity, offset: DVec3) -> Option<(f64, DVec3)> {
-    let [x, y, z] = at.units();
-    let foot = of_body(body, at.stretch, DVec3::new(x.dot(offset), y.dot(offset), z.dot(offset)))?;
-    Some((foot.distance, x * foot.normal.x + y * foot.normal.y + z * foot.normal.z))
-}
-
-/// A bound on the coordinates of a body; `None` for a primitive of a complex shape.
-#[inline(always)]
-pub(super) fn extent(body: &Body) -> Option<f64> {
-    Some(match body {
-        Body::Sphere(shape) => shape.radius(),
-        Body::Cuboid(shape) => shape.size().max_element(),
-        Body::Cone(shape) => shape.radius() + shape.height(),
-        Body::Cylinder(shape) => shape.radius() + shape.height(),
-        Body::Capsule(shape) => shape.radius() + shape.height(),
-        Body::Hull { hull, .. } => hull.polytope().farthest(),
-        Body::Simplex { .. } => return None,
-    })
-}
-
-/// Whether a point is within a radius of a body that is `stretch` times its own size; `None` where it is within a margin of that, or the planes of a
-/// hull do not tell.
-#[inline(always)]
-pub(super) fn is_within(body: &Body, stretch: f64, p: DVec3, radius: f64, margin: f64) -> Option<bool> {
-    if let Body::Hull { hull, .. } = body {
-        return is_within_of_hull(hull.polytope(), p / stretch, radius / stretch, margin / stretch);
-    }
-    let gap = of_body(body, stretch, p)?.distance - radius;
-    (gap.abs() > margin).then_some(gap < 0.0)
-}
-
-/// By the balls around it and in it, then by the face that is towards the point. In the hull's own unit.
-#[inline]
-fn is_within_of_hull(hull: &Polytope, point: DVec3, radius: f64, margin: f64) -> Option<bool> {
-    let Balls { inner, outer } = hull.balls()?;
-    let (far, near) = (outer.radius + radius + margin, inner.radius + radius - margin);
-    if point.distance_squared(outer.center) > far * far {
-        return Some(false);
-    }
-    if inner.radius > 0.0 && near > 0.0 && point.distance_squared(inner.center) < near * near {
-        return Some(true);
-    }
-    let face = hull.face_towards(point)?;
-    let gap = face.distance - radius;
-    (gap > margin || (face.is_nearest && gap < -margin)).then_some(gap < 0.0)
-}
-
-/// For a body that is `stretch` times its own size.
-#[inline(always)]
-pub(super) fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
-    let half = |height: f64| 0.5 * height * stretch;
-    Some(match body {
-        Body::Sphere(shape) => of_capsule(shape.radius() * stretch, 0.0, p),
-        Body::Capsule(shape) => of_capsule(shape.radius() * stretch, half(shape.height()), p),
-        Body::Cuboid(shape) => of_box(shape.size() * (0.5 * stretch), p),
-        Body::Cylinder(shape) => {
-            turned(p, |q| of_rectangle(DVec2::new(shape.radius() * stretch, half(shape.height())), q))
-        }
-        Body::Cone(shape) => turned(p, |q| of_cone(shape.radius() * stretch, half(shape.height()), q)),
-        Body::Hull { hull, .. } => of_hull(hull.polytope(), stretch, p)?,
-        Body::Simplex { .. } => return None,
-    })
-}
-
-/// By the face that is towards the point, where that is nearest; else by a search, of what is outside.
-#[inline(always)]
-fn of_hull(hull: &Polytope, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
-    /// From the origin, beside the reach of the hull: of what is round, a face is nearest to less than half of what is beyond that.
-    const NEAR: f64 = 1.5;
-    let point = p / stretch;
-    let is_near = point.length_squared() < (NEAR * hull.farthest()).powi(2);
-    let face = if is_near { hull.face_towards(point) } else { None };
-    match face {
-        Some(FaceTowards { distance, normal, is_nearest: true }) => {
-            let distance = distance * stretch;
-            Some(Foot { distance, normal, at: p - normal * distance })
-        }
-        _ => foot_by_search(hull, stretch, point),
-    }
-}
-
-/// `None` inside, and so near to the surface that what is rounded on the way from there would show at the other end of the hull.
+/// The scale of a good placement of any size: that of the same one near the size 1, whose digits are the same.
 #[inline(never)]
-fn foot_by_search(hull: &Polytope, stretch: f64, point: DVec3) -> Option<Foot<DVec3>> {
-    /// Beside how far the hull and the point are from the origin.
-    const NEAR: f64 = 0.1;
-    let at = DAffine3::from_translation(point);
-    let found = gjk::quickly_closest(hull, &DAffine3::IDENTITY, &POINT, &at)?;
-    let size = hull.farthest() + point.abs().max_element();
-    let (length, normal) = length_and_direction(point - found.point_on_a)?;
-    (length > NEAR * size).then(|| Foot {
-        distance: found.distance * stretch,
-        normal,
-        at: found.point_on_a * stretch,
+fn stretch_at_length(at: &DAffine3) -> Option<f64> {
+    let linear = &placement::checked(at).ok()?.matrix3;
+    let scale = unit_scale(linear.x_axis.abs().max_element());
+    let near = DAffine3 { matrix3: *linear * scale, translation: DVec3::ZERO };
+    Some(dispatch!(simd => plain_square(simd, &near))?.sqrt() / scale)
+}
+
+/// A vector times the matrix, transposed: glam's product is not always inlined, and is then called without vectors.
+#[inline(always)]
+pub(super) fn to_body(DMat3 { x_axis, y_axis, z_axis }: &DMat3, v: DVec3) -> DVec3 {
+    DVec3::new(x_axis.dot(v), y_axis.dot(v), z_axis.dot(v))
+}
+
+/// Whether a point is in a body; `None` where it is too near to the surface to tell. The placement need not have been checked: that of an answer is good.
+pub(crate) fn contains(body: Placed, point: DVec3) -> Option<bool> {
+    dispatch!(simd => {
+        let beside = Beside::new(simd, body, &point)?;
+        is_within(&beside.body, beside.stretch, beside.point, 0.0, GAP_MIN)
     })
 }
 
-#[inline(always)]
-fn of_capsule(radius: f64, half_height: f64, p: DVec3) -> Foot<DVec3> {
-    let core = DVec3::Y * p.y.clamp(-half_height, half_height);
-    let (length, normal) = polar(p - core, DVec3::X);
-    Foot { distance: length - radius, normal, at: core + normal * radius }
+/// The point of the surface of a body nearest to a point of the world; by another way as [`Beside::new`] says, and in a hull, or near to it, where its planes
+/// do not tell. The placement as in [`contains`].
+pub(crate) fn nearest_on_surface(
+    body: Placed,
+    point: DVec3,
+    otherwise: impl Fn() -> Result<SignedDistance>,
+) -> Result<SignedDistance> {
+    // What is given back is written once, where the caller has it.
+    dispatch!(simd => match foot_beside(simd, body, point) {
+        Some((beside, foot)) => {
+            Ok(SignedDistance {
+                distance: foot.distance * beside.unit,
+                point: body.placement.translation + beside.turned(foot.at) * beside.unit,
+                normal: beside.turned(foot.normal),
+            })
+        }
+        None => otherwise(),
+    })
 }
 
-#[inline(always)]
-fn of_box(half: DVec3, p: DVec3) -> Foot<DVec3> {
-    let beyond = p.abs() - half;
-    if beyond.max_element() > 0.0 {
-        let (distance, normal) = polar(beyond.max(DVec3::ZERO), DVec3::X);
-        return Foot { distance, normal: normal.copysign(p), at: p.clamp(-half, half) };
-    }
-    let axis = beyond.max_position();
-    let mut at = p;
-    at[axis] = half[axis].copysign(p[axis]);
-    Foot { distance: beyond[axis], normal: DVec3::AXES[axis] * 1f64.copysign(p[axis]), at }
+/// The point of a body that is closest to a point of the world; by another way as [`nearest_on_surface`] says, and too near to the surface.
+pub(crate) fn closest_to(
+    body: Placed,
+    point: DVec3,
+    otherwise: impl Fn() -> Result<ClosestPoint>,
+) -> Result<ClosestPoint> {
+    dispatch!(simd => match foot_beside(simd, body, point) {
+        Some((beside, foot)) if foot.distance.abs() > GAP_MIN => {
+            let on_surface = body.placement.translation + beside.turned(foot.at) * beside.unit;
+            // Nobody can foretell which it is.
+            let (is_inside, outside) = (foot.distance < 0.0, foot.distance * beside.unit);
+            let pick = |k: usize| select_unpredictable(is_inside, point[k], on_surface[k]);
+            Ok(ClosestPoint {
+                point: DVec3::new(pick(0), pick(1), pick(2)),
+                distance: select_unpredictable(is_inside, 0.0, outside),
+            })
+        }
+        _ => otherwise(),
+    })
 }
 
-/// Of a body that turns about the axis y, by what its profile is nearest to.
+/// Where the surface is nearest.
 #[inline(always)]
-fn turned(p: DVec3, profile: impl Fn(DVec2) -> Foot<DVec2>) -> Foot<DVec3> {
-    let (radius, outward) = polar(DVec3::new(p.x, 0.0, p.z), DVec3::X);
-    let Foot { distance, normal, at } = profile(DVec2::new(radius, p.y));
-    let turned = |q: DVec2| outward * q.x + DVec3::Y * q.y;
-    Foot { distance, normal: turned(normal), at: turned(at) }
-}
-
-/// The profile of a cylinder: symmetric, up to the corner `half`.
-#[inline(always)]
-fn of_rectangle(half: DVec2, p: DVec2) -> Foot<DVec2> {
-    let beyond = p.abs() - half;
-    let up = 1f64.copysign(p.y);
-    if beyond.x > 0.0 && beyond.y > 0.0 {
-        let (distance, normal) = polar(DVec3::new(beyond.x, beyond.y * up, 0.0), DVec3::X);
-        Foot { distance, normal: normal.truncate(), at: DVec2::new(half.x, half.y * up) }
-    } else if beyond.x >= beyond.y {
-        Foot { distance: beyond.x, normal: DVec2::X, at: DVec2::new(half.x, p.y) }
-    } else {
-        Foot { distance: beyond.y, normal: DVec2::Y * up, at: DVec2::new(p.x, half.y * up) }
-    }
-}
-
-/// The profile of a cone: the base at `-half_height`, the apex above.
-#[inline(always)]
-fn of_cone(radius: f64, half_height: f64, p: DVec2) -> Foot<DVec2> {
-    let (apex, rim) = (DVec2::new(0.0, half_height), DVec2::new(radius, -half_height));
-    let (length, side) = polar(DVec3::new(2.0 * half_height, radius, 0.0), DVec3::X);
-    let side = side.truncate();
-    let (beyond_side, below) = (side.dot(p - apex), -half_height - p.y);
-    // How far down the side the foot is.
-    let down = DVec2::new(side.y, -side.x).dot(p - apex);
-    let inside = beyond_side <= 0.0 && below <= 0.0;
-    let over_side = beyond_side > 0.0 && (0.0..=length).contains(&down);
-    let under_base = below > 0.0 && p.x <= radius;
-    if over_side || (inside && beyond_side >= below) {
-        Foot { distance: beyond_side, normal: side, at: p - side * beyond_side }
-    } else if under_base || inside {
-        Foot { distance: below, normal: DVec2::NEG_Y, at: DVec2::new(p.x, -half_height) }
-    } else {
-        let corner = if down < 0.0 { apex } else { rim };
-        let (distance, normal) = polar((p - corner).extend(0.0), DVec3::X);
-        Foot { distance, normal: normal.truncate(), at: corner }
-    }
-}
-
-/// The length of a vector and its direction, which for zero is another.
-#[inline(always)]
-fn polar(v: DVec3, of_zero: DVec3) -> (f64, DVec3) {
-    length_and_direction(v).unwrap_or((0.0, of_zero))
+fn foot_beside<S: Simd>(simd: S, body: Placed, point: DVec3) -> Option<(Beside, Foot<DVec3>)> {
+    let beside = Beside::new(simd, body, &point)?;
+    let foot = of_body(&beside.body, beside.stretch, beside.point)?;
+    Some((beside, foot))
 }

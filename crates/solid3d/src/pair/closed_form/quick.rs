@@ -3,13 +3,14 @@
 use std::ops::RangeInclusive;
 
 use fearless_simd::Simd;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 use solid_convex::gjk::Glance;
 use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_squares};
 use solid_convex::{Closest, Penetration, Witness};
 
 use super::GAP_MIN;
-use super::point::{extent, is_within};
+use super::foot::{extent, is_within};
+use super::point::to_body;
 use super::round::Products;
 use crate::pair::Placed;
 use crate::shape::{Body, Round, Simple};
@@ -324,9 +325,7 @@ impl<'a> View<'a> {
     /// A vector of the world in the own space of one of the two, times the square of its scale.
     #[inline(always)]
     pub fn local(&self, k: usize, v: DVec3) -> DVec3 {
-        let DMat3 { x_axis, y_axis, z_axis } = self.at[k].matrix3;
-        // Of the matrix, transposed; glam's product is not always inlined, and is then called without vectors.
-        DVec3::new(x_axis.dot(v), y_axis.dot(v), z_axis.dot(v))
+        to_body(&self.at[k].matrix3, v)
     }
 }
 

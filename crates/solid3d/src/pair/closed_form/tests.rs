@@ -259,7 +259,8 @@ fn balls_and_bodies_are_told_as_gjk_and_epa_tell_them() {
             let (point, on_body) =
                 (at_a.translation, if case % 2 == 0 { found.points.on_b } else { found.points.on_a });
             assert_eq!(contains(placed[1], point), Some(hit), "{context}");
-            let (distance, of_body) = closest_to(placed[1], point).unwrap();
+            let ClosestPoint { distance, point: of_body } =
+                closest_to(placed[1], point, || unreachable!("{context}")).unwrap();
             assert!((distance - found.distance).abs() < 1e-14, "{context}: {distance}, {found:?}");
             assert!(of_body.distance(at_b.transform_point3(on_body)) < 1e-12, "{context}: {of_body}");
         }

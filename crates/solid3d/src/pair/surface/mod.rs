@@ -15,14 +15,15 @@ use super::{Placed, Scratch, closest, penetration};
 use crate::placement::direction;
 use crate::shape::{Class, ShapeKind};
 
-/// Where the surface of a shape is nearest to a point. Space: world.
+/// How far a point is from the surface of a shape, and where that is nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SurfacePoint {
-    /// The distance: negative inside.
+pub struct SignedDistance {
+    /// The distance to the surface: negative inside a solid. World units.
     pub distance: f64,
-    /// The nearest point.
+    /// The nearest point of the surface. Space: world.
     pub point: DVec3,
-    /// The outward normal there, of length one.
+    /// The unit vector out of the shape, across the surface there: the point that was asked about is at `point + normal * distance`.
+    /// Space: world.
     pub normal: DVec3,
 }
 
@@ -31,7 +32,7 @@ pub(crate) struct SurfacePoint {
 const NEAR: f64 = 4.0 * TOUCHING_ERROR;
 
 /// The point of the surface of `shape` nearest to `point`, a shape of one point; of a body that has a closed form, where that says nothing.
-pub(crate) fn surface_point(shape: Placed, point: Placed, scratch: &mut Scratch) -> SurfacePoint {
+pub(crate) fn surface_point(shape: Placed, point: Placed, scratch: &mut Scratch) -> SignedDistance {
     match (shape.shape.class(), point.shape.class()) {
         (Class::Complex(mesh), Class::Convex(one)) if mesh.is_solid() => {
             solid::surface_point((mesh, shape.placement), (one, point.placement), scratch)
@@ -41,13 +42,13 @@ pub(crate) fn surface_point(shape: Placed, point: Placed, scratch: &mut Scratch)
 }
 
 /// Of a convex shape, or a union of such.
-fn of_union(shape: Placed, point: Placed, scratch: &mut Scratch) -> SurfacePoint {
+fn of_union(shape: Placed, point: Placed, scratch: &mut Scratch) -> SignedDistance {
     if let Some(found) = penetration(point, shape, scratch) {
         let on_surface = shape.placement.transform_point3(found.points.on_b);
         // A surface has no inside, whatever rounding makes of its thickness; and 0 is not -0.
         let has_inside = shape.shape.kind() != ShapeKind::Mesh && found.depth > 0.0;
         let distance = if has_inside { -found.depth } else { 0.0 };
-        return SurfacePoint { distance, point: on_surface, normal: found.direction };
+        return SignedDistance { distance, point: on_surface, normal: found.direction };
     }
     let closest = closest(shape, point, scratch);
     // Not from points of the world, whose rounding is that of their coordinates.
@@ -63,7 +64,7 @@ fn of_union(shape: Placed, point: Placed, scratch: &mut Scratch) -> SurfacePoint
         // What is flat has two sides.
         if normal.dot(way) < 0.0 { -normal } else { normal }
     };
-    SurfacePoint { distance: closest.distance, point: on_surface, normal }
+    SignedDistance { distance: closest.distance, point: on_surface, normal }
 }
 
 /// The direction of a vector; of zero any.

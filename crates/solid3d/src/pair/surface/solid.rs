@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 use solid_convex::simd::level;
 use solid_convex::{Closest, Points, gjk};
 
-use super::{NEAR, SurfacePoint, away};
+use super::{NEAR, SignedDistance, away};
 use crate::bounds::Aabb;
 use crate::pair::complex_convex::{is_confirmed, nearest_to, point_at};
 use crate::pair::containment::PlacedSolid;
@@ -24,7 +24,11 @@ const NEAR_FACE: f64 = 1.0 / (1u64 << 26) as f64;
 const BESIDE: f64 = 1e-6;
 
 /// For a point, which is given as a convex shape.
-pub(super) fn surface_point(mesh: PlacedComplex, point: PlacedConvex, scratch: &mut Scratch) -> SurfacePoint {
+pub(super) fn surface_point(
+    mesh: PlacedComplex,
+    point: PlacedConvex,
+    scratch: &mut Scratch,
+) -> SignedDistance {
     let frame = complex_convex::frame(mesh, point);
     let solid = PlacedSolid::new(mesh.0, &frame.common[0]).expect("the caller saw that it is solid");
     let inside = solid.contains(frame.common[1].translation, scratch);
@@ -37,7 +41,7 @@ pub(super) fn surface_point(mesh: PlacedComplex, point: PlacedConvex, scratch: &
     let side = if inside { -1.0 } else { 1.0 };
     // Not from points of the world, whose rounding is that of their coordinates.
     let way = point.1.translation - mesh.1.translation - mesh.1.matrix3 * points.on_a;
-    SurfacePoint {
+    SignedDistance {
         distance: side * distance,
         point: mesh.1.transform_point3(points.on_a),
         normal: away(way) * side,
@@ -52,7 +56,7 @@ fn close_by(
     (solid, inside): (&PlacedSolid, bool),
     bound: f64,
     scratch: &mut Scratch,
-) -> SurfacePoint {
+) -> SignedDistance {
     let [to_common, point_to_common] = &frame.common;
     let p = point_to_common.translation;
     let local = frame.b_to_a.translation;
@@ -90,7 +94,7 @@ fn close_by(
         }
         _ => away(from) * side,
     };
-    SurfacePoint {
+    SignedDistance {
         distance: if foot.distance > 0.0 { side * foot.distance / frame.scale } else { 0.0 },
         point: frame.to_world(foot.point),
         normal,
