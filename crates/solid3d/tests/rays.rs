@@ -10,11 +10,11 @@ mod common;
 use common::{
     assert_rate, bumpy_sphere, direction, in_cube, placement, random_complex, random_mesh, shape_of, torus,
 };
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
-use solid3d::query::{self, Faces, FromInside, Ray, RayOptions};
+use solid3d::query::{self, Faces, FromInside, Ray, RayHit, RayOptions};
 use solid3d::{Error, Shape, ShapeKind, glam};
 
 const PASSES: RayOptions = RayOptions { faces: Faces::Both, from_inside: FromInside::Passes };
@@ -162,6 +162,46 @@ fn a_placement_takes_hits_along() {
     }
     println!("{hits} of {cases} hit");
     assert!((0.3..=0.8).contains(&(f64::from(hits) / f64::from(cases))));
+}
+
+/// What a placement turns and scales alike has a way of its own, and is hit as what is skewed by so little that nothing shows it, but the way that it takes.
+#[test]
+fn what_is_turned_is_hit_as_what_is_skewed_a_little() {
+    let mut rng = seeded(94);
+    let (mut hits, mut backs, cases) = (0, 0, 6000);
+    for case in 0..cases {
+        let shape = shape_of(&random_shape(&mut rng, 1.0));
+        let size = 10f64.powi(rng.random_range(-6..7)) * [1.0, -1.0][rng.random_range(0..2)];
+        let turn = DQuat::from_axis_angle(direction(&mut rng), rng.random_range(0.0..3.1));
+        let to = in_cube(&mut rng) * 10.0 * size;
+        let at = DAffine3::from_scale_rotation_translation(DVec3::splat(size), turn, to);
+        let skew = DMat3::from_cols(DVec3::X, DVec3::new(1e-12, 1.0, 0.0), DVec3::Z);
+        let skewed = DAffine3 { matrix3: at.matrix3 * skew, ..at };
+        let ray = some_ray(&mut rng, &shape, &at);
+        let options = RayOptions {
+            faces: [Faces::Both, Faces::Front, Faces::Back][rng.random_range(0..3)],
+            from_inside: [FromInside::Hits, FromInside::Passes][rng.random_range(0..2)],
+        };
+        let [x, y] = [&at, &skewed].map(|at| query::cast_ray(&shape, at, &ray, &options).unwrap());
+        let all = query::cast_ray_all(&shape, &at, &ray, &options).unwrap();
+        assert_eq!(
+            (x.as_ref(), x.is_some()),
+            (all.first(), query::ray_meets(&shape, &at, &ray, &options).unwrap())
+        );
+        let (Some(x), Some(y)) = (x, y) else {
+            assert_eq!(x.is_some(), y.is_some(), "case {case}: {x:?} {y:?}");
+            continue;
+        };
+        let slope = x.surface.map_or(1.0, |on| on.normal.dot(ray.direction.normalize()).abs());
+        let apart = (x.point - y.point).length() / size.abs();
+        assert!(apart * slope < 1e-9, "case {case}: {x:?} {y:?}");
+        let back = |hit: &RayHit| hit.surface.map(|on| on.back);
+        assert_eq!(back(&x), back(&y), "case {case}");
+        hits += 1;
+        backs += usize::from(back(&x) == Some(true));
+    }
+    println!("{hits} of {cases} hit, {backs} from the back");
+    assert!(hits > 3 * cases / 10 && backs > cases / 20);
 }
 
 /// All triangles one by one, in the world.

@@ -42,7 +42,7 @@ pub struct Line {
 
 impl Line {
     /// `None` when the direction is zero or something is not finite. Coordinates may be up to 1e200.
-    #[inline]
+    #[inline(always)]
     pub fn new(origin: DVec3, direction: DVec3) -> Option<Line> {
         let largest = direction.abs().max_element();
         if !(largest > 0.0 && largest.is_finite() && origin.is_finite()) {
@@ -60,6 +60,7 @@ impl Line {
 
     /// The foot in a unit near `size`, and the factor to that unit; `None` when the line clearly passes a shape that
     /// reaches no further than `size` along any axis.
+    #[inline(always)]
     fn near(&self, size: f64) -> Option<(DVec3, f64)> {
         /// The foot of a line that meets such a shape is within sqrt(3) of it.
         const BEYOND: f64 = 2.0;
@@ -68,7 +69,7 @@ impl Line {
     }
 
     /// A chord whose ends are measured along the line from its foot, in a unit of the given scale.
-    #[inline]
+    #[inline(always)]
     fn chord(&self, span: Option<Chord>, scale: f64) -> Option<Chord> {
         let unit = 1.0 / scale;
         let end = |end: End| End { t: (self.to_foot + end.t * unit) * self.scale, ..end };
@@ -102,6 +103,7 @@ impl Chord {
     };
 
     /// What two chords of a line have in common.
+    #[inline(always)]
     fn and(self, other: Chord) -> Option<Chord> {
         let enter = if other.enter.t > self.enter.t { other.enter } else { self.enter };
         let leave = if other.leave.t < self.leave.t { other.leave } else { self.leave };
@@ -109,6 +111,7 @@ impl Chord {
     }
 
     /// From the first end to the last of two chords.
+    #[inline(always)]
     fn hull(self, other: Chord) -> Chord {
         Chord {
             enter: if other.enter.t < self.enter.t { other.enter } else { self.enter },
@@ -118,6 +121,7 @@ impl Chord {
 }
 
 /// The chord of what lies within `half` of the origin along an axis.
+#[inline(always)]
 fn slab(foot: DVec3, along: DVec3, axis: usize, half: f64) -> Option<Chord> {
     let (p, d) = (foot[axis], along[axis]);
     if d == 0.0 {
@@ -143,6 +147,7 @@ impl Cuboid {
     /// assert_eq!((chord.enter.t, chord.enter.normal), (2.0, DVec3::Z));
     /// # Ok::<(), solid_convex::SizeError>(())
     /// ```
+    #[inline(always)] // into a kernel
     pub fn chord(&self, line: &Line) -> Option<Chord> {
         let half = 0.5 * self.size();
         let (foot, scale) = line.near(half.max_element())?;

@@ -6,7 +6,7 @@ use super::{Chord, End, Line, slab};
 use crate::{Capsule, Cylinder, Sphere};
 
 /// The chord of a ball whose centre is on the axis y, at `center`.
-#[inline]
+#[inline(always)]
 fn ball(line: &Line, foot: DVec3, center: f64, radius: f64) -> Option<Chord> {
     let along = line.along;
     // From the point closest to the centre: the square of the distance loses nothing to that along the line.
@@ -21,6 +21,7 @@ fn ball(line: &Line, foot: DVec3, center: f64, radius: f64) -> Option<Chord> {
 }
 
 /// The chord of the endless cylinder around the axis y.
+#[inline(always)]
 fn endless_cylinder(foot: DVec3, along: DVec3, radius: f64) -> Option<Chord> {
     let across = along.x * along.x + along.z * along.z;
     if across == 0.0 {
@@ -39,12 +40,14 @@ fn endless_cylinder(foot: DVec3, along: DVec3, radius: f64) -> Option<Chord> {
 }
 
 /// The chord of a cylinder around the axis y.
+#[inline(always)]
 pub(super) fn capped_cylinder(foot: DVec3, along: DVec3, radius: f64, half_height: f64) -> Option<Chord> {
     endless_cylinder(foot, along, radius)?.and(slab(foot, along, 1, half_height)?)
 }
 
 impl Sphere {
     /// The part of a line that is in the ball.
+    #[inline(always)]
     pub fn chord(&self, line: &Line) -> Option<Chord> {
         let (foot, scale) = line.near(self.radius())?;
         line.chord(ball(line, foot, 0.0, self.radius() * scale), scale)
@@ -53,6 +56,7 @@ impl Sphere {
 
 impl Cylinder {
     /// The part of a line that is in the cylinder.
+    #[inline(always)]
     pub fn chord(&self, line: &Line) -> Option<Chord> {
         let (radius, half) = (self.radius(), 0.5 * self.height());
         let (foot, scale) = line.near(radius.max(half))?;
@@ -62,6 +66,7 @@ impl Cylinder {
 
 impl Capsule {
     /// The part of a line that is in the capsule.
+    #[inline(always)]
     pub fn chord(&self, line: &Line) -> Option<Chord> {
         let (radius, half) = (self.radius(), 0.5 * self.height());
         let (foot, scale) = line.near(radius + half)?;

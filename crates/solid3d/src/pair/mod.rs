@@ -54,7 +54,7 @@ pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;
 pub use ray::{Faces, FromInside, Ray, RayHit, RayOptions, SurfaceHit};
-pub(crate) use ray::{Hits, Wanted, ray_hits};
+pub(crate) use ray::{Hits, Wanted, first_hit, ray_hits};
 pub(crate) use reach::{world_bounds, world_bounds_into};
 pub(crate) use scratch::Scratch;
 use solid_convex::gjk::Glance;

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 
-use super::{Ray, RayHit, RayOptions, placed};
+use super::{Ray, RayHit, RayOptions, placed, unchecked};
 use crate::error::Result;
 use crate::pair::{self, Hits, Scratch, Wanted};
 use crate::shape::Shape;
@@ -40,6 +40,18 @@ use crate::shape::Shape;
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn cast_ray(
+    shape: &Shape,
+    placement: &DAffine3,
+    ray: &Ray,
+    options: &RayOptions,
+) -> Result<Option<RayHit>> {
+    let at_length = || first_at_length(shape, placement, ray, options);
+    pair::first_hit(unchecked(shape, placement), ray.checked()?, options, at_length)
+}
+
+/// The same, of whatever has no closed form.
+#[inline(never)]
+fn first_at_length(
     shape: &Shape,
     placement: &DAffine3,
     ray: &Ray,

@@ -6,6 +6,7 @@ use super::{Geometry, Shape};
 
 impl Shape {
     /// The part of a line, in local space, that is in the shape; `None` for a kind without a closed form, or where that does not tell.
+    #[inline(always)]
     pub(crate) fn chord(&self, line: &Line) -> Option<Option<Chord>> {
         match &self.geometry {
             Geometry::Sphere(shape) => Some(shape.chord(line)),

@@ -29,6 +29,7 @@ use boxes::PlacedBox;
 pub(super) use cast::cast;
 pub(super) use foot::foot;
 pub use point::ClosestPoint;
+pub(super) use point::to_body;
 pub(crate) use point::{closest_to, contains, nearest_on_surface};
 use round::{Cores, PlacedRound};
 pub(super) use similarity::Similarity;

@@ -89,7 +89,7 @@ fn stretch_at_length(at: &DAffine3) -> Option<f64> {
 
 /// A vector times the matrix, transposed: glam's product is not always inlined, and is then called without vectors.
 #[inline(always)]
-pub(super) fn to_body(DMat3 { x_axis, y_axis, z_axis }: &DMat3, v: DVec3) -> DVec3 {
+pub(in crate::pair) fn to_body(DMat3 { x_axis, y_axis, z_axis }: &DMat3, v: DVec3) -> DVec3 {
     DVec3::new(x_axis.dot(v), y_axis.dot(v), z_axis.dot(v))
 }
 

@@ -1,34 +1,113 @@
 //! A ray against a convex shape.
 
-use glam::{DAffine3, DVec3};
-use solid_convex::{Line, Support, gjk};
+use fearless_simd::Simd;
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::simd::dispatch;
+use solid_convex::similarity::plain_square;
+use solid_convex::{Chord, Line, Support, gjk};
 
+use super::super::closed_form::to_body;
 use super::super::reach::image_reach;
 use super::super::{POINT, Placed};
-use super::{Faces, Hits, SurfaceHit, Wanted, world_normal};
+use super::{Faces, FromInside, Hits, Ray, RayHit, RayOptions, SurfaceHit, Wanted, world_normal};
+use crate::error::Result;
 use crate::placement::inverse_linear;
+use crate::shape::{Class, Shape};
 
 /// Where a ray meets a surface from outside or inside, and a vector that tells the outward normal there.
 type End = (f64, DVec3);
 
+/// What a placement leaves what it is, as a ray sees it.
+struct Similar<'a> {
+    at: &'a DAffine3,
+    /// The square of the scale.
+    square: f64,
+}
+
+impl<'a> Similar<'a> {
+    /// `None` for what is not a rotation with a uniform scale of a plain size: of a good placement then.
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, at: &'a DAffine3) -> Option<Self> {
+        Some(Similar { at, square: plain_square(simd, at)? })
+    }
+
+    #[inline(always)]
+    fn chord(&self, shape: &Shape, ray: &Ray) -> Option<Option<Chord>> {
+        let inverse = 1.0 / self.square;
+        let to_local = |v: DVec3| to_body(&self.at.matrix3, v) * inverse;
+        chord(shape, to_local(ray.origin - self.at.translation), to_local(ray.direction))
+    }
+
+    /// The world's unit normal, by that in local space.
+    #[inline(always)]
+    fn normal(&self, local: DVec3) -> DVec3 {
+        let DMat3 { x_axis, y_axis, z_axis } = self.at.matrix3;
+        (x_axis * local.x + y_axis * local.y + z_axis * local.z) * (1.0 / self.square.sqrt())
+    }
+}
+
+/// The part of a ray's line in a convex shape, in whose space the ray is given; `None` where there is no closed form, or where that does not tell.
+#[inline(always)]
+fn chord(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<Option<Chord>> {
+    shape.chord(&Line::new(origin, direction)?)
+}
+
+/// The first hit of a ray on a body that has a closed form, and that its placement leaves what it is, which need not have been checked: that of an answer is good.
+/// Of others what `otherwise` says.
+pub(crate) fn first_hit(
+    body: Placed,
+    ray: &Ray,
+    options: &RayOptions,
+    otherwise: impl Fn() -> Result<Option<RayHit>>,
+) -> Result<Option<RayHit>> {
+    if let Class::Complex(_) = body.shape.class() {
+        return otherwise();
+    }
+    // What is given back is written once, where the caller has it.
+    dispatch!(simd => {
+        let Some(similar) = Similar::new(simd, body.placement) else { return otherwise() };
+        let Some(chord) = similar.chord(body.shape, ray) else { return otherwise() };
+        let Some(Chord { enter, leave }) = chord else { return Ok(None) };
+        if options.from_inside == FromInside::Hits && enter.t <= 0.0 && leave.t >= 0.0 {
+            return Ok(Some(RayHit { t: 0.0, point: ray.origin, surface: None }));
+        }
+        let counts = |t: f64, back: bool| options.faces.includes(back) && (0.0..=ray.max).contains(&t);
+        let (t, normal, back) = if counts(enter.t, false) {
+            (enter.t, enter.normal, false)
+        } else if counts(leave.t.max(enter.t), true) {
+            // As [`report`] has it.
+            (leave.t.max(enter.t), -leave.normal, true)
+        } else {
+            return Ok(None);
+        };
+        let surface = SurfaceHit { normal: similar.normal(normal), back, primitive: 0, barycentric: None };
+        Ok(Some(RayHit { t, point: ray.at(t), surface: Some(surface) }))
+    })
+}
+
+/// All hits that are wanted on a convex shape.
 pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
-    let DAffine3 { matrix3, translation } = placed.placement;
-    let to_local_linear = inverse_linear(matrix3);
-    let origin = to_local_linear * (hits.ray.origin - *translation);
-    let direction = to_local_linear * hits.ray.direction;
-    let Some(chord) = Line::new(origin, direction).and_then(|line| placed.shape.chord(&line)) else {
-        return hull_hits(shape, placed.placement, 0, hits);
+    let at = placed.placement;
+    let (chord, similar) = match dispatch!(simd => Similar::new(simd, at)) {
+        Some(similar) => (similar.chord(placed.shape, hits.ray), Some(similar)),
+        None => {
+            let to_local = inverse_linear(&at.matrix3);
+            let origin = to_local * (hits.ray.origin - at.translation);
+            (chord(placed.shape, origin, to_local * hits.ray.direction), None)
+        }
     };
-    let Some(chord) = chord else { return };
-    let end = |end: solid_convex::End| (end.t, end.normal);
-    let (enter, leave) = (end(chord.enter), end(chord.leave));
-    if enter.0 <= 0.0 && leave.0 >= 0.0 {
+    let Some(chord) = chord else { return hull_hits(shape, at, 0, hits) };
+    let Some(Chord { enter, leave }) = chord else { return };
+    if enter.t <= 0.0 && leave.t >= 0.0 {
         hits.add_inside();
     }
     // A normal of a flattened apex may vanish; then the way of the ray will do.
     let way = hits.ray.direction;
-    let placed = |local| world_normal(&to_local_linear, local).unwrap_or_else(|| way.normalize_or_zero());
-    report(hits, 0, Some(enter), || Some(leave), placed);
+    let placed = |local| match &similar {
+        Some(similar) => similar.normal(local),
+        None => world_normal(&inverse_linear(&at.matrix3), local).unwrap_or_else(|| way.normalize_or_zero()),
+    };
+    report(hits, 0, Some((enter.t, enter.normal)), || Some((leave.t, leave.normal)), placed);
 }
 
 /// A ray against the hull of points, or any other support mapping: casts of a point from either end.
@@ -55,6 +134,7 @@ pub(super) fn hull_hits(shape: &dyn Support, at: &DAffine3, primitive: u32, hits
 
 /// Reports where a ray comes into a convex shape, and where it leaves it, as far as that is wanted; `placed` makes outward unit normals of the
 /// world of what the ends tell.
+#[inline(always)]
 fn report(
     hits: &mut Hits,
     primitive: u32,
@@ -62,19 +142,29 @@ fn report(
     leave: impl FnOnce() -> Option<End>,
     placed: impl Fn(DVec3) -> DVec3,
 ) {
-    let faces = hits.options.faces;
-    let add = |hits: &mut Hits, end: Option<End>, back: bool| {
-        let end = end.filter(|&(t, _)| hits.options.faces.includes(back) && hits.wants(t, primitive));
-        if let Some((t, normal)) = end {
-            let normal = if back { -placed(normal) } else { placed(normal) };
-            hits.add(t, Some(SurfaceHit { normal, back, primitive, barycentric: None }));
-        }
-        end.is_some()
-    };
-    let entered = add(hits, enter, false);
+    let entered = add(hits, primitive, enter, false, &placed);
     // A ray leaves later than it enters, also what is so thin that rounding would turn that round.
-    if faces != Faces::Front && hits.until >= 0.0 && (!entered || hits.wanted == Wanted::All) {
+    if hits.options.faces != Faces::Front && hits.until >= 0.0 && (!entered || hits.wanted == Wanted::All) {
         let least = enter.map_or(f64::NEG_INFINITY, |(t, _)| t);
-        add(hits, leave().map(|(t, normal)| (t.max(least), normal)), true);
+        let leave = leave().map(|(t, normal)| (t.max(least), normal));
+        add(hits, primitive, leave, true, &placed);
     }
+}
+
+/// Adds an end, if it is wanted.
+#[inline(always)]
+fn add(
+    hits: &mut Hits,
+    primitive: u32,
+    end: Option<End>,
+    back: bool,
+    placed: &impl Fn(DVec3) -> DVec3,
+) -> bool {
+    let Some((t, normal)) = end else { return false };
+    let is_wanted = hits.options.faces.includes(back) && hits.wants(t, primitive);
+    if is_wanted {
+        let normal = if back { -placed(normal) } else { placed(normal) };
+        hits.add(t, Some(SurfaceHit { normal, back, primitive, barycentric: None }));
+    }
+    is_wanted
 }

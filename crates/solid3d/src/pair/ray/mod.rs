@@ -7,6 +7,7 @@ mod convex;
 mod glance;
 mod triangle;
 
+pub(crate) use convex::first_hit;
 use glam::{DMat3, DVec3};
 
 use super::{Placed, Scratch};
