@@ -18,7 +18,7 @@ const VOLUME_MIN: f64 = 1e-12;
 /// The placement itself when it can be used: finite, in range, and not singular.
 #[inline]
 pub(crate) fn checked(placement: &DAffine3) -> Result<&DAffine3> {
-    if dispatch!(simd => plainly_good(simd, placement)) {
+    if dispatch!(simd => is_plainly_good(simd, placement)) {
         Ok(placement)
     } else {
         checked_at_length(placement)
@@ -58,7 +58,7 @@ pub(crate) fn is_same(a: &DAffine3, b: &DAffine3) -> bool {
 /// It is read by pairs of numbers from its beginning, as it was last written where it was handed over as a copy: what is written so and read in
 /// other pairs is waited for.
 #[inline(always)]
-fn plainly_good<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) -> bool {
+pub(crate) fn is_plainly_good<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) -> bool {
     /// Sums of the squares of all entries between which no product below overflows or loses digits. Where the volume is plain too, no axis
     /// is shorter than a billionth of the longest.
     const PLAIN_SQUARES: RangeInclusive<f64> = 1e-40..=1e40;
@@ -154,7 +154,7 @@ mod tests {
 
     /// On every level, which must say the same.
     fn is_plain(placement: &DAffine3) -> bool {
-        let [scalar, wide] = levels().map(|level| dispatch!(level, simd => plainly_good(simd, placement)));
+        let [scalar, wide] = levels().map(|level| dispatch!(level, simd => is_plainly_good(simd, placement)));
         assert_eq!(scalar, wide, "{placement}");
         scalar
     }

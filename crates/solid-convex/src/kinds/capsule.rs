@@ -52,7 +52,7 @@ impl Support for Capsule {
         Locus::Sphere { center: DVec3::Y * with_sign(self.half_height, point.y), radius: self.radius }
     }
 
-    #[inline]
+    #[inline(always)]
     fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
         let ends = reach([linear.x_axis, linear.y_axis, linear.z_axis]) * self.radius;
         symmetric(linear.y_axis.abs() * self.half_height + ends)

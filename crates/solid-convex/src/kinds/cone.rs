@@ -52,7 +52,7 @@ impl Support for Cone {
         if point.y < 0.0 { Locus::Circle { radius: self.radius } } else { Locus::Point }
     }
 
-    #[inline]
+    #[inline(always)]
     fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
         let base = reach([linear.x_axis, linear.z_axis]) * self.radius;
         let apex = linear.y_axis * self.half_height;

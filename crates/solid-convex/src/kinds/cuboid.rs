@@ -41,7 +41,7 @@ impl Support for Cuboid {
         self.half
     }
 
-    #[inline]
+    #[inline(always)]
     fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
         let half = self.half;
         symmetric(linear.x_axis.abs() * half.x + linear.y_axis.abs() * half.y + linear.z_axis.abs() * half.z)

@@ -46,7 +46,7 @@ impl Support for Cylinder {
         Locus::Circle { radius: self.radius }
     }
 
-    #[inline]
+    #[inline(always)]
     fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
         let discs = reach([linear.x_axis, linear.z_axis]) * self.radius;
         symmetric(linear.y_axis.abs() * self.half_height + discs)

@@ -11,23 +11,35 @@ pub(super) const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
 
 /// How far the image of a segment, disc or ball of radius 1 reaches along each axis, from the images of one, two or three unit vectors that
 /// span it at right angles: the lengths of the rows of the map. Rows are right up to a rounding error of the longest.
-#[inline]
+#[inline(always)] // into a kernel
 pub(super) fn reach<const N: usize>(spanning: [DVec3; N]) -> DVec3 {
-    let rows = |scale: f64| {
-        let squares: DVec3 = spanning.iter().map(|&column| (column * scale) * (column * scale)).sum();
-        (squares.max_element(), DVec3::new(squares.x.sqrt(), squares.y.sqrt(), squares.z.sqrt()))
-    };
-    let (longest, lengths) = rows(1.0);
-    if PLAIN.contains(&longest) {
-        return lengths;
+    let squares = squared_rows(&spanning);
+    if PLAIN.contains(&squares.max_element()) {
+        return DVec3::new(squares.x.sqrt(), squares.y.sqrt(), squares.z.sqrt());
     }
-    let scale =
-        unit_scale(spanning.iter().fold(0.0, |largest, column| largest.max(column.abs().max_element())));
-    rows(scale).1 / scale
+    scaled_reach(spanning)
+}
+
+#[inline(always)]
+fn squared_rows(spanning: &[DVec3]) -> DVec3 {
+    let mut squares = DVec3::ZERO;
+    for &column in spanning {
+        squares += column * column;
+    }
+    squares
+}
+
+/// The same by the largest coordinate.
+#[cold]
+fn scaled_reach<const N: usize>(spanning: [DVec3; N]) -> DVec3 {
+    let largest = spanning.iter().fold(0.0, |largest, column| column.abs().max_element().max(largest));
+    let scale = unit_scale(largest);
+    let squares = squared_rows(&spanning.map(|column| column * scale));
+    DVec3::new(squares.x.sqrt(), squares.y.sqrt(), squares.z.sqrt()) / scale
 }
 
 /// What reaches as far to either side.
-#[inline]
+#[inline(always)]
 pub(super) fn symmetric(half: DVec3) -> [DVec3; 2] {
     [-half, half]
 }

@@ -60,7 +60,7 @@ impl Support for Sphere {
         Locus::Sphere { center: DVec3::ZERO, radius: self.radius }
     }
 
-    #[inline]
+    #[inline(always)]
     fn image_bounds(&self, linear: &DMat3) -> [DVec3; 2] {
         symmetric(reach([linear.x_axis, linear.y_axis, linear.z_axis]) * self.radius)
     }

@@ -280,6 +280,19 @@ pub fn intersection_curve(
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn bounds(shape: &Shape, placement: &DAffine3) -> Result<Aabb> {
+    // In one kernel, and written once, where the caller has it.
+    dispatch!(simd => if placement::is_plainly_good(simd, placement) {
+        let mut bounds = Aabb::EMPTY;
+        pair::world_bounds_into(simd, unchecked(shape, placement), &mut bounds);
+        Ok(bounds)
+    } else {
+        bounds_at_length(shape, placement)
+    })
+}
+
+/// The same of a placement that takes a closer look.
+#[inline(never)]
+fn bounds_at_length(shape: &Shape, placement: &DAffine3) -> Result<Aabb> {
     Ok(pair::world_bounds(placed(shape, placement)?))
 }
 
