@@ -1,12 +1,11 @@
 //! When two shapes that move along straight lines first meet. Only the relative motion counts: `A` moves, `B` stands still.
 //!
-//! Two balls in closed form, convex against convex by the GJK cast; complex shapes by branch and bound over their trees, with the boxes of one swept through
+//! Convex against convex by the GJK cast; complex shapes by branch and bound over their trees, with the boxes of one swept through
 //! the space of the other. The time found so far cuts off what is met later, and so do the planes of the last impacts, of what is behind them.
 
 use glam::{DAffine3, DVec3};
 use solid_convex::{Impact, gjk};
 
-use super::closed_form;
 use super::complex_convex::convex_in_complex;
 use super::frame::{Frame, ROUNDINGS, slack};
 use super::table::{PlacedComplex, PlacedConvex, convex};
@@ -22,9 +21,6 @@ const END: f64 = 1.0 + 4.0 * f64::EPSILON;
 /// When `a`, moving by `motion` relative to `b` in a unit of time, first meets it in that time; at time 0 without a normal.
 pub(crate) fn cast(a: Placed, motion: DVec3, b: Placed, scratch: &mut Scratch) -> Option<Impact> {
     let (at_a, at_b) = (a.placement, b.placement);
-    if let Some(found) = closed_form::cast(a, motion, b) {
-        return found;
-    }
     if motion != DVec3::ZERO
         && let Some(((on_a, _), (on_b, _))) = convex(a, b)
     {

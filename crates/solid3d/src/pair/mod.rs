@@ -45,7 +45,8 @@ pub(crate) use approach::{Approach, approach, overlap, proximity};
 pub(crate) use cast::cast;
 pub use closed_form::ClosestPoint;
 pub(crate) use closed_form::{
-    closest_to, contains, nearest_on_surface, quickly_closest, quickly_penetration,
+    by_cast, by_quickly_closest, closest_to, contains, nearest_on_surface, quickly_closest,
+    quickly_penetration,
 };
 pub(crate) use coherent::{closest_again, intersects_again, penetration_again};
 pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};
@@ -153,6 +154,7 @@ pub(crate) fn still_separated(axis: &DVec3, a: Placed, b: Placed) -> bool {
 }
 
 /// The world point between a point of each shape, which are the same up to rounding.
+#[inline(always)] // into a kernel
 pub(crate) fn midpoint(a: Placed, b: Placed, witness: &Witness) -> DVec3 {
     let on_a = a.placement.transform_point3(witness.on_a);
     let on_b = b.placement.transform_point3(witness.on_b);

@@ -1,11 +1,11 @@
 //! Shapes that move along straight lines.
 
 use glam::{DAffine3, DVec3};
-use solid_convex::MAGNITUDE_MAX;
+use solid_convex::{Impact, MAGNITUDE_MAX};
 
-use super::placed;
+use super::{placed, unchecked};
 use crate::error::{Error, Result};
-use crate::pair::{self, Scratch};
+use crate::pair::{self, Placed, Scratch};
 use crate::shape::Shape;
 
 /// When and where two moving shapes first meet.
@@ -50,18 +50,37 @@ pub fn cast_shape(
     placement_b: &DAffine3,
     motion_b: DVec3,
 ) -> Result<Option<ShapeCast>> {
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
     bounded("motion_a", motion_a)?;
     bounded("motion_b", motion_b)?;
-    let impact = Scratch::with(|scratch| pair::cast(a, motion_a - motion_b, b, scratch));
-    Ok(impact.map(|impact| {
+    let (a, b, motions) = (unchecked(a, placement_a), unchecked(b, placement_b), [motion_a, motion_b]);
+    pair::by_cast(
+        a,
+        motion_a - motion_b,
+        b,
+        #[inline(always)]
+        |impact| Ok(impact.map(|impact| ShapeCast::new(a, b, motions, &impact))),
+        || cast_at_length(a, b, motions),
+    )
+}
+
+/// The same, of whatever has no closed form.
+#[inline(never)]
+fn cast_at_length(a: Placed, b: Placed, motions: [DVec3; 2]) -> Result<Option<ShapeCast>> {
+    let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
+    let impact = Scratch::with(|scratch| pair::cast(a, motions[0] - motions[1], b, scratch));
+    Ok(impact.map(|impact| ShapeCast::new(a, b, motions, &impact)))
+}
+
+impl ShapeCast {
+    #[inline(always)]
+    fn new(a: Placed, b: Placed, [motion_a, motion_b]: [DVec3; 2], impact: &Impact) -> ShapeCast {
         let moved = motion_a * (0.5 * impact.time) + motion_b * (0.5 * impact.time);
         ShapeCast {
             time: impact.time,
             point: pair::midpoint(a, b, &impact.points) + moved,
             normal: impact.normal,
         }
-    }))
+    }
 }
 
 /// Whether each coordinate is finite and in range.

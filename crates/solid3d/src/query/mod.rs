@@ -188,15 +188,18 @@ pub fn separating_axis(
 /// ```
 pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAffine3) -> Result<Distance> {
     let (on_a, on_b) = (unchecked(a, placement_a), unchecked(b, placement_b));
-    if let Some(closest) = pair::quickly_closest(on_a, on_b) {
-        return Ok(Distance::new(on_a, on_b, &closest));
-    }
     if let (Some(on_a), Some(on_b)) = (a.polytope(), b.polytope())
         && let Some(found) = gjk::quickly_closest(on_a, placement_a, on_b, placement_b)
     {
         return Ok(found.into());
     }
-    distance_at_length(on_a, on_b)
+    pair::by_quickly_closest(
+        on_a,
+        on_b,
+        #[inline(always)]
+        |closest| Ok(Distance::new(on_a, on_b, closest)),
+        || distance_at_length(on_a, on_b),
+    )
 }
 
 /// What [`distance`](distance()) says, where nothing was said yet.
@@ -216,6 +219,7 @@ impl From<ClosestInWorld> for Distance {
 }
 
 impl Distance {
+    #[inline(always)]
     fn new(a: Placed, b: Placed, closest: &Closest) -> Distance {
         Distance {
             distance: closest.distance,

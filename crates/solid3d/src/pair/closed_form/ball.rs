@@ -7,7 +7,6 @@ use solid_convex::{Closest, Penetration, Witness};
 use super::Relation;
 use super::foot::{Foot, extent, of_body};
 use super::quick::{MARGIN_TO_ERROR, View};
-use super::similarity::Similarity;
 use crate::pair::Placed;
 
 /// A ball and a body.
@@ -20,15 +19,6 @@ pub(super) struct BallAndBody<'a> {
     radius: f64,
     /// The least gap or overlap that is decided. World units.
     margin: f64,
-}
-
-/// A ball, or a point, that its placement leaves one: with its radius in the world.
-#[inline(always)]
-pub(super) fn placed_ball(ball: Placed) -> Option<(Similarity, f64)> {
-    let radius = ball.shape.ball_radius()?;
-    let at = Similarity::new(&ball.placement.matrix3)?;
-    let radius = radius * at.stretch;
-    Some((at, radius))
 }
 
 /// A ball and a body, in this order, with the least gap or overlap that is decided. `None` for other shapes, for placements that are not a rotation
@@ -55,6 +45,12 @@ impl<'a> BallAndBody<'a> {
         let foot = of_body(&body.shape.body()?, view.scales[1], center)?;
         let radius = ball.shape.ball_radius()? * view.scales[0];
         Some(BallAndBody { view, center, foot, radius, margin })
+    }
+
+    /// The closest points of the two, where [`new`](Self::new) and [`closest`](Self::closest) say them.
+    #[inline(always)]
+    pub fn quickly_closest<S: Simd>(simd: S, ball: Placed<'a>, body: Placed<'a>) -> Option<Closest> {
+        BallAndBody::new(simd, ball, body)?.closest()
     }
 
     #[inline(always)]

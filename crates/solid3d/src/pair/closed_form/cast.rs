@@ -1,20 +1,24 @@
 //! When two balls, one of which moves along a straight line, first meet: a quadratic equation.
 
+use fearless_simd::Simd;
 use glam::DVec3;
 use solid_convex::{Impact, Witness, unit_scale};
 
 use super::GAP_MIN;
-use super::ball::placed_ball;
+use super::point::{stretch, to_body};
 use crate::pair::Placed;
 
 /// The gap at the time that is given, in the unit of the pair: above what rounding moves, so that the time is never past the impact.
 const GAP: f64 = 0.25 * GAP_MIN;
 
 /// When the first, moving by `motion` in a unit of time, meets the second in that time; `Some(None)` when it does not. `None` for other shapes, and for placements
-/// that are not a rotation with a uniform scale; where they are not clearly apart at the start, or do no more than graze each other, GJK has to say.
-pub(in crate::pair) fn cast(a: Placed, motion: DVec3, b: Placed) -> Option<Option<Impact>> {
-    let (at_a, radius_a) = placed_ball(a)?;
-    let (at_b, radius_b) = placed_ball(b)?;
+/// that are not a rotation with a uniform scale; where they are not clearly apart at the start, or do no more than graze each other, GJK has to say. Placements
+/// need not have been checked: those of an answer are good.
+#[inline(always)]
+pub(in crate::pair) fn cast<S: Simd>(simd: S, a: Placed, motion: DVec3, b: Placed) -> Option<Option<Impact>> {
+    let (of_a, of_b) = (a.shape.ball_radius()?, b.shape.ball_radius()?);
+    let (stretch_a, stretch_b) = (stretch(simd, a.placement)?, stretch(simd, b.placement)?);
+    let (radius_a, radius_b) = (of_a * stretch_a, of_b * stretch_b);
     let between = a.placement.translation - b.placement.translation;
     let scale = unit_scale(radius_a + radius_b + between.abs().element_sum() + motion.abs().element_sum());
     let (start, way, radii) = (between * scale, motion * scale, (radius_a + radius_b) * scale);
@@ -42,6 +46,9 @@ pub(in crate::pair) fn cast(a: Placed, motion: DVec3, b: Placed) -> Option<Optio
         return None;
     }
     let normal = there / length;
-    let points = Witness { on_a: at_a.local(normal * -radius_a), on_b: at_b.local(normal * radius_b) };
+    let points = Witness {
+        on_a: to_body(&a.placement.matrix3, normal * -of_a) / stretch_a,
+        on_b: to_body(&b.placement.matrix3, normal * of_b) / stretch_b,
+    };
     Some(Some(Impact { time, normal: Some(normal), points }))
 }

@@ -20,13 +20,13 @@ use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::gjk::Glance;
 use solid_convex::simd::dispatch;
-use solid_convex::{Closest, Penetration, unit_scale};
+use solid_convex::{Closest, Impact, Penetration, unit_scale};
 
 use super::{Mirror, Placed, Relation};
 use crate::shape::{ShapeKind, Simple};
 use ball::BallAndBody;
 use boxes::PlacedBox;
-pub(super) use cast::cast;
+use cast::cast;
 pub(super) use foot::foot;
 pub use point::ClosestPoint;
 pub(super) use point::to_body;
@@ -150,6 +150,24 @@ fn are_round(a: Placed, b: Placed) -> bool {
     [a, b].iter().all(|of| matches!(of.shape.kind(), ShapeKind::Sphere | ShapeKind::Capsule))
 }
 
+/// What `found` makes of when two balls first meet, as [`cast`](cast::cast) says it, in one kernel; `otherwise` where that says nothing.
+#[inline(always)]
+pub(crate) fn by_cast<T>(
+    a: Placed,
+    motion: DVec3,
+    b: Placed,
+    found: impl Fn(Option<Impact>) -> T,
+    otherwise: impl Fn() -> T,
+) -> T {
+    if a.shape.ball_radius().is_none() || b.shape.ball_radius().is_none() {
+        return otherwise();
+    }
+    dispatch!(simd => match cast(simd, a, motion, b) {
+        Some(impact) => found(impact),
+        None => otherwise(),
+    })
+}
+
 /// Whether they intersect, with the evidence; `None` where GJK has to say.
 pub(super) fn intersection(a: Placed, b: Placed) -> Option<Relation> {
     of_simple(a, b).or_else(|| of_ball(a, b, |pair| pair.relation()))
@@ -178,13 +196,30 @@ pub(super) fn closest(a: Placed, b: Placed) -> Option<Closest> {
 
 /// What [`closest`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.
 pub(crate) fn quickly_closest(a: Placed, b: Placed) -> Option<Closest> {
+    by_quickly_closest(a, b, |closest| Some(*closest), || None)
+}
+
+/// What `found` makes of that, in one kernel with it, so that it is written once, where the caller has it; `otherwise` where nothing is said.
+#[inline(always)]
+pub(crate) fn by_quickly_closest<T>(
+    a: Placed,
+    b: Placed,
+    found: impl Fn(&Closest) -> T,
+    otherwise: impl Fn() -> T,
+) -> T {
     if are_simple(a, b) {
-        dispatch!(simd => quick::closest(simd, a, b))
-    } else if a.shape.is_ball() || b.shape.is_ball() {
-        quickly_of_ball(a, b, |pair| pair.closest())
-    } else {
-        None
+        return dispatch!(simd => match quick::closest(simd, a, b) {
+            Some(closest) => found(&closest),
+            None => otherwise(),
+        });
     }
+    let order = if a.shape.is_ball() || b.shape.is_ball() { ball_is_first(a, b) } else { None };
+    let Some(in_order) = order else { return otherwise() };
+    let (ball, body) = if in_order { (a, b) } else { (b, a) };
+    dispatch!(simd => match BallAndBody::quickly_closest(simd, ball, body) {
+        Some(closest) => found(&if in_order { closest } else { closest.mirrored() }),
+        None => otherwise(),
+    })
 }
 
 /// What is found in a unit of length near the size of the data, so that answers do not depend on the unit.

@@ -45,10 +45,7 @@ impl<'a> Beside<'a> {
         let DAffine3 { matrix3: linear, translation } = body.placement;
         let of = body.shape.body()?;
         let extent = extent(&of)?;
-        let stretch = match plain_square(simd, body.placement) {
-            Some(square) => square.sqrt(),
-            None => stretch_at_length(body.placement)?,
-        };
+        let stretch = stretch(simd, body.placement)?;
         // By pairs of numbers, as a copy is written: what is read in other pairs is waited for.
         let lanes = |v: &DVec3| (f64x2::from_slice(simd, &v.as_ref()[..2]), v.z);
         let (xy, z) = lanes(point);
@@ -75,6 +72,15 @@ impl<'a> Beside<'a> {
     fn turned(&self, v: DVec3) -> DVec3 {
         let DMat3 { x_axis, y_axis, z_axis } = self.linear;
         (x_axis * v.x + y_axis * v.y + z_axis * v.z) * self.shrink
+    }
+}
+
+/// The scale of a placement; `None` of one that is not a rotation with a uniform scale, or not good.
+#[inline(always)]
+pub(super) fn stretch<S: Simd>(simd: S, at: &DAffine3) -> Option<f64> {
+    match plain_square(simd, at) {
+        Some(square) => Some(square.sqrt()),
+        None => stretch_at_length(at),
     }
 }
 

@@ -176,7 +176,9 @@ fn balls_meet_when_gjk_says_so() {
         let aside = way.any_orthonormal_vector() * rng.random_range(0.0..[1.5, 1e-3][case % 2]);
         let motion = (way + aside) * [0.9, 1.1, 30.0, -1.0][case / 16 % 4];
         let context = format!("seed {SEED}, case {case}: {at_a}, {at_b}, {motion}");
-        let Some(found) = cast(a, motion, b) else { continue };
+        let seen = levels().map(|level| dispatch!(level, simd => cast(simd, a, motion, b)));
+        assert_eq!(seen[0], seen[1], "{context}");
+        let Some(found) = seen[0] else { continue };
         decided += 1;
         let slow = gjk::cast(support(a.shape), &at_a, motion, support(b.shape), &at_b, 1.0);
         assert_eq!(found.is_some(), slow.is_some(), "{context}: {found:?}, {slow:?}");
