@@ -87,27 +87,31 @@ pub(crate) fn first_hit(
 
 /// All hits that are wanted on a convex shape.
 pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
-    let at = placed.placement;
-    let (chord, similar) = match dispatch!(simd => Similar::new(simd, at)) {
-        Some(similar) => (similar.chord(placed.shape, hits.ray), Some(similar)),
-        None => {
-            let to_local = inverse_linear(&at.matrix3);
-            let origin = to_local * (hits.ray.origin - at.translation);
-            (chord(placed.shape, origin, to_local * hits.ray.direction), None)
-        }
+    let (at, ray) = (placed.placement, hits.ray);
+    let told = if let Some(similar) = dispatch!(simd => Similar::new(simd, at)) {
+        chord_hits(similar.chord(placed.shape, ray), hits, |local| similar.normal(local))
+    } else {
+        let to_local = inverse_linear(&at.matrix3);
+        let origin = to_local * (ray.origin - at.translation);
+        // A normal of a flattened apex may vanish; then the way of the ray will do.
+        chord_hits(chord(placed.shape, origin, to_local * ray.direction), hits, |local| {
+            world_normal(&to_local, local).unwrap_or_else(|| ray.direction.normalize_or_zero())
+        })
     };
-    let Some(chord) = chord else { return hull_hits(shape, at, 0, hits) };
-    let Some(Chord { enter, leave }) = chord else { return };
-    if enter.t <= 0.0 && leave.t >= 0.0 {
-        hits.add_inside();
+    if !told {
+        hull_hits(shape, at, 0, hits);
     }
-    // A normal of a flattened apex may vanish; then the way of the ray will do.
-    let way = hits.ray.direction;
-    let placed = |local| match &similar {
-        Some(similar) => similar.normal(local),
-        None => world_normal(&inverse_linear(&at.matrix3), local).unwrap_or_else(|| way.normalize_or_zero()),
-    };
-    report(hits, 0, Some((enter.t, enter.normal)), || Some((leave.t, leave.normal)), placed);
+}
+
+/// The same by the chord, if that is known: whether it is.
+fn chord_hits(chord: Option<Option<Chord>>, hits: &mut Hits, placed: impl Fn(DVec3) -> DVec3) -> bool {
+    if let Some(Some(Chord { enter, leave })) = chord {
+        if enter.t <= 0.0 && leave.t >= 0.0 {
+            hits.add_inside();
+        }
+        report(hits, 0, Some((enter.t, enter.normal)), || Some((leave.t, leave.normal)), placed);
+    }
+    chord.is_some()
 }
 
 /// A ray against the hull of points, or any other support mapping: casts of a point from either end.
@@ -134,7 +138,6 @@ pub(super) fn hull_hits(shape: &dyn Support, at: &DAffine3, primitive: u32, hits
 
 /// Reports where a ray comes into a convex shape, and where it leaves it, as far as that is wanted; `placed` makes outward unit normals of the
 /// world of what the ends tell.
-#[inline(always)]
 fn report(
     hits: &mut Hits,
     primitive: u32,
@@ -152,7 +155,6 @@ fn report(
 }
 
 /// Adds an end, if it is wanted.
-#[inline(always)]
 fn add(
     hits: &mut Hits,
     primitive: u32,
