@@ -5,7 +5,7 @@ use glam::DVec3;
 use solid_convex::{Impact, Witness, unit_scale};
 
 use super::GAP_MIN;
-use super::point::{stretch, to_body};
+use super::similarity::{stretch, to_body};
 use crate::pair::Placed;
 
 /// The gap at the time that is given, in the unit of the pair: above what rounding moves, so that the time is never past the impact.

@@ -29,10 +29,9 @@ use boxes::PlacedBox;
 use cast::cast;
 pub(super) use foot::foot;
 pub use point::ClosestPoint;
-pub(super) use point::to_body;
 pub(crate) use point::{closest_to, contains, nearest_on_surface};
 use round::{Cores, PlacedRound};
-pub(super) use similarity::Similarity;
+pub(super) use similarity::{Similarity, to_body, to_world};
 
 /// The least gap or overlap that a closed form decides, relative to the size of the data, which here is that of the balls around
 /// the shapes and of the distance of their origins: no less than GJK's. Beyond GJK's error, by more than the errors of a

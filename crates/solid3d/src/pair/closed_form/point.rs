@@ -5,14 +5,13 @@ use std::hint::select_unpredictable;
 use fearless_simd::{Simd, f64x2, prelude::*};
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::simd::dispatch;
-use solid_convex::similarity::plain_square;
 use solid_convex::{MAGNITUDE_MAX, unit_scale};
 
 use super::GAP_MIN;
 use super::foot::{Foot, extent, is_within, of_body};
+use super::similarity::{stretch, to_body, to_world};
 use crate::error::Result;
 use crate::pair::{Placed, SignedDistance};
-use crate::placement;
 use crate::shape::Body;
 
 /// The point of a shape that is closest to another point.
@@ -70,33 +69,8 @@ impl<'a> Beside<'a> {
     /// A vector in the body's own directions as the world has it.
     #[inline(always)]
     fn turned(&self, v: DVec3) -> DVec3 {
-        let DMat3 { x_axis, y_axis, z_axis } = self.linear;
-        (x_axis * v.x + y_axis * v.y + z_axis * v.z) * self.shrink
+        to_world(self.linear, v) * self.shrink
     }
-}
-
-/// The scale of a placement; `None` of one that is not a rotation with a uniform scale, or not good.
-#[inline(always)]
-pub(super) fn stretch<S: Simd>(simd: S, at: &DAffine3) -> Option<f64> {
-    match plain_square(simd, at) {
-        Some(square) => Some(square.sqrt()),
-        None => stretch_at_length(at),
-    }
-}
-
-/// The scale of a good placement of any size: that of the same one near the size 1, whose digits are the same.
-#[inline(never)]
-fn stretch_at_length(at: &DAffine3) -> Option<f64> {
-    let linear = &placement::checked(at).ok()?.matrix3;
-    let scale = unit_scale(linear.x_axis.abs().max_element());
-    let near = DAffine3 { matrix3: *linear * scale, translation: DVec3::ZERO };
-    Some(dispatch!(simd => plain_square(simd, &near))?.sqrt() / scale)
-}
-
-/// A vector times the matrix, transposed: glam's product is not always inlined, and is then called without vectors.
-#[inline(always)]
-pub(in crate::pair) fn to_body(DMat3 { x_axis, y_axis, z_axis }: &DMat3, v: DVec3) -> DVec3 {
-    DVec3::new(x_axis.dot(v), y_axis.dot(v), z_axis.dot(v))
 }
 
 /// Whether a point is in a body; `None` where it is too near to the surface to tell. The placement need not have been checked: that of an answer is good.

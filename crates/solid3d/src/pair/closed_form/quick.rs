@@ -10,8 +10,8 @@ use solid_convex::{Closest, Penetration, Witness};
 
 use super::GAP_MIN;
 use super::foot::{extent, is_within};
-use super::point::to_body;
 use super::round::Products;
+use super::similarity::to_body;
 use crate::pair::Placed;
 use crate::shape::{Body, Round, Simple};
 

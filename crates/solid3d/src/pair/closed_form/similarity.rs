@@ -1,7 +1,12 @@
 //! Placements that turn and scale alike in all directions.
 
-use glam::{DMat3, DVec3};
-use solid_convex::similarity::SKEW_MAX;
+use fearless_simd::Simd;
+use glam::{DAffine3, DMat3, DVec3};
+use solid_convex::simd::dispatch;
+use solid_convex::similarity::{SKEW_MAX, plain_square};
+use solid_convex::unit_scale;
+
+use crate::placement;
 
 /// The linear part of a placement that is a rotation, or a reflection, with a uniform scale.
 #[derive(Clone, Copy)]
@@ -55,6 +60,37 @@ impl Similarity {
         // Not by the square, which vanishes where a tiny shape is in the unit of a huge one.
         self.linear.mul_transpose_vec3(displacement / self.stretch) / self.stretch
     }
+}
+
+/// The scale of a placement; `None` of one that is not a rotation with a uniform scale, or not good.
+#[inline(always)]
+pub(super) fn stretch<S: Simd>(simd: S, at: &DAffine3) -> Option<f64> {
+    match plain_square(simd, at) {
+        Some(square) => Some(square.sqrt()),
+        None => stretch_at_length(at),
+    }
+}
+
+/// The scale of a good placement of any size: that of the same one near the size 1, whose digits are the same.
+#[inline(never)]
+fn stretch_at_length(at: &DAffine3) -> Option<f64> {
+    let linear = &placement::checked(at).ok()?.matrix3;
+    let scale = unit_scale(linear.x_axis.abs().max_element());
+    let near = DAffine3 { matrix3: *linear * scale, translation: DVec3::ZERO };
+    Some(dispatch!(simd => plain_square(simd, &near))?.sqrt() / scale)
+}
+
+/// A vector of the world in the directions of a body, times the scale: its product with the matrix, transposed. (glam's is not always inlined, and is then
+/// called without vectors.)
+#[inline(always)]
+pub(in crate::pair) fn to_body(DMat3 { x_axis, y_axis, z_axis }: &DMat3, v: DVec3) -> DVec3 {
+    DVec3::new(x_axis.dot(v), y_axis.dot(v), z_axis.dot(v))
+}
+
+/// A vector in the directions of a body as the world has it, times the scale.
+#[inline(always)]
+pub(in crate::pair) fn to_world(DMat3 { x_axis, y_axis, z_axis }: &DMat3, v: DVec3) -> DVec3 {
+    x_axis * v.x + y_axis * v.y + z_axis * v.z
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! A ray against a convex shape.
 
 use fearless_simd::Simd;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 use solid_convex::simd::dispatch;
 use solid_convex::similarity::plain_square;
 use solid_convex::{Chord, Line, Support, gjk};
 
-use super::super::closed_form::to_body;
+use super::super::closed_form::{to_body, to_world};
 use super::super::reach::image_reach;
 use super::super::{POINT, Placed};
 use super::{Faces, FromInside, Hits, Ray, RayHit, RayOptions, SurfaceHit, Wanted, world_normal};
@@ -41,8 +41,7 @@ impl<'a> Similar<'a> {
     /// The world's unit normal, by that in local space.
     #[inline(always)]
     fn normal(&self, local: DVec3) -> DVec3 {
-        let DMat3 { x_axis, y_axis, z_axis } = self.at.matrix3;
-        (x_axis * local.x + y_axis * local.y + z_axis * local.z) * (1.0 / self.square.sqrt())
+        to_world(&self.at.matrix3, local) * (1.0 / self.square.sqrt())
     }
 }
 
