@@ -64,6 +64,12 @@ impl<'a> BallAndBody<'a> {
         self.view.at[1].matrix3 * self.foot.normal / self.view.scales[1]
     }
 
+    /// The same in the directions of the body's own space.
+    #[inline(always)]
+    pub fn own_normal(&self) -> DVec3 {
+        self.foot.normal
+    }
+
     /// Whether they intersect; `None` where GJK has to say.
     #[inline(always)]
     pub fn intersects(&self) -> Option<bool> {

@@ -108,7 +108,7 @@ fn quickly_of_ball<T: Mirror>(a: Placed, b: Placed, what: impl Fn(&BallAndBody) 
 
 /// Of a ball, or a point, and a body, whether it is the first; `None` for other shapes.
 #[inline]
-fn ball_is_first(a: Placed, b: Placed) -> Option<bool> {
+pub(super) fn ball_is_first(a: Placed, b: Placed) -> Option<bool> {
     let is_ball = |of: Placed| of.shape.ball_radius().is_some();
     let is_body = |of: Placed| !matches!(of.shape.kind(), ShapeKind::Mesh | ShapeKind::Complex);
     if is_body(b) && is_ball(a) { Some(true) } else { (is_body(a) && is_ball(b)).then_some(false) }
@@ -129,13 +129,43 @@ pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
 
 /// What [`penetration`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.
 pub(crate) fn quickly_penetration(a: Placed, b: Placed) -> Option<Penetration> {
-    match (a.shape.simple(), b.shape.simple()) {
-        (Some(Simple::Round(of_a)), Some(Simple::Round(of_b))) => {
-            dispatch!(simd => quick::penetration(simd, [a.placement, b.placement], [of_a, of_b]))
-        }
-        _ if is_apart_from_hull(a, b) => None,
-        _ => quickly_of_ball(a, b, |pair| pair.penetration()),
+    if are_round(a, b) {
+        by_depth_of_rounds(a, b, |found| Some(*found))
+    } else if is_apart_from_hull(a, b) {
+        None
+    } else {
+        quickly_of_ball(a, b, |pair| pair.penetration())
     }
+}
+
+/// What `found` makes of how deep two balls or capsules are in each other, in one kernel; `None` of other shapes. The placements as in [`quickly_penetration`].
+#[inline(always)]
+pub(super) fn by_depth_of_rounds<T>(
+    a: Placed,
+    b: Placed,
+    found: impl Fn(&Penetration) -> Option<T>,
+) -> Option<T> {
+    let (Simple::Round(of_a), Simple::Round(of_b)) = (a.shape.simple()?, b.shape.simple()?) else {
+        return None;
+    };
+    dispatch!(simd => found(&quick::penetration(simd, [a.placement, b.placement], [of_a, of_b])?))
+}
+
+/// What `found` makes of how deep a ball and a body are in each other, and of the outward normal of the body in its own directions where that is nearest, in one kernel;
+/// of plain sizes. The placements as in [`quickly_penetration`].
+#[inline(always)]
+pub(super) fn by_depth_of_ball<T>(
+    ball: Placed,
+    body: Placed,
+    found: impl Fn(&Penetration, DVec3) -> Option<T>,
+) -> Option<T> {
+    if is_apart_from_hull(ball, body) {
+        return None;
+    }
+    dispatch!(simd => {
+        let pair = BallAndBody::new(simd, ball, body)?;
+        found(&pair.penetration()?, pair.own_normal())
+    })
 }
 
 /// Whether a ball and a hull clearly are apart: then no search is worth it that would find how far.

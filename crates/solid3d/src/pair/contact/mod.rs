@@ -173,8 +173,9 @@ enum Part<'a> {
 
 /// The contacts of two shapes that have one, known in closed form, and plain sizes; `None` of others. Placements need not have been checked: those of an
 /// answer are good.
+#[inline(always)]
 pub(crate) fn quick_contact(a: Placed, b: Placed) -> Option<Manifold> {
-    one_point::contact(a, b, closed_form::quickly_penetration)
+    one_point::quick_contact(a, b)
 }
 
 /// All contacts of two shapes.
@@ -184,7 +185,7 @@ pub(crate) fn contacts(
     options: &ContactOptions,
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
-    if let Some(contact) = one_point::contact(a, b, closed_form::penetration) {
+    if let Some(contact) = one_point::contact(a, b) {
         return vec![contact];
     }
     let is_convex = |of: Placed| matches!(of.shape.class(), Class::Convex(_));
