@@ -175,7 +175,7 @@ fn is_apart_from_hull(a: Placed, b: Placed) -> bool {
 }
 
 /// Whether both are balls or capsules.
-fn are_round(a: Placed, b: Placed) -> bool {
+pub(super) fn are_round(a: Placed, b: Placed) -> bool {
     [a, b].iter().all(|of| matches!(of.shape.kind(), ShapeKind::Sphere | ShapeKind::Capsule))
 }
 

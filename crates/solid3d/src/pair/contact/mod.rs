@@ -185,7 +185,7 @@ pub(crate) fn contacts(
     options: &ContactOptions,
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
-    if let Some(contact) = one_point::contact(a, b) {
+    if let Some(contact) = one_point::quick_contact(a, b).or_else(|| one_point::contact(a, b)) {
         return vec![contact];
     }
     let is_convex = |of: Placed| matches!(of.shape.class(), Class::Convex(_));
