@@ -204,6 +204,31 @@ fn what_is_turned_is_hit_as_what_is_skewed_a_little() {
     assert!(hits > 3 * cases / 10 && backs > cases / 20);
 }
 
+/// From so far off that rounding leaves few digits of where a ray meets a shape, normals are unit vectors still.
+#[test]
+fn normals_are_unit_vectors_from_any_distance() {
+    let mut rng = seeded(95);
+    let capsule = Shape::capsule(0.4, 1.0).unwrap();
+    let length = |shape: &Shape, at: DVec3, ray: &Ray| {
+        let hit = query::cast_ray(shape, &DAffine3::from_translation(at), ray, &BY_DEFAULT).unwrap();
+        Some(hit?.surface?.normal.length())
+    };
+    let from = DVec3::new(-0.939785283202279, -0.7526486304935327, 0.0);
+    let way = DVec3::new(1e51, 0.6098951083457971, -1.331127453611705);
+    let found = length(&capsule, DVec3::new(1e30, -0.22980058601357012, 1e-8), &Ray::new(from, way));
+    assert!(found.is_none_or(|length| (length - 1.0).abs() < 1e-12), "{found:?}");
+    let mut hits = 0;
+    for case in 0..6000 {
+        let shape = shape_of(&random_shape(&mut rng, 1.0));
+        let away = direction(&mut rng) * 10f64.powi(case % 60);
+        let ray = Ray::new(away + in_cube(&mut rng), in_cube(&mut rng) - away);
+        let Some(length) = length(&shape, DVec3::ZERO, &ray) else { continue };
+        hits += 1;
+        assert!((length - 1.0).abs() < 1e-12, "case {case}: {length}");
+    }
+    assert!(hits > 1000, "{hits}");
+}
+
 /// All triangles one by one, in the world.
 #[test]
 fn meshes_agree_with_brute_force() {

@@ -11,7 +11,7 @@ use super::super::reach::image_reach;
 use super::super::{POINT, Placed};
 use super::{Faces, FromInside, Hits, Ray, RayHit, RayOptions, SurfaceHit, Wanted, world_normal};
 use crate::error::Result;
-use crate::placement::inverse_linear;
+use crate::placement::{direction, inverse_linear};
 use crate::shape::{Class, Shape};
 
 /// Where a ray meets a surface from outside or inside, and a vector that tells the outward normal there.
@@ -38,17 +38,18 @@ impl<'a> Similar<'a> {
         chord(shape, to_local(ray.origin - self.at.translation), to_local(ray.direction))
     }
 
-    /// The world's unit normal, by that in local space.
+    /// The world's unit normal, by that in local space; of one that vanishes the way of the ray. What is seen from so far that its digits are few may tell one that
+    /// is not of length one.
     #[inline(always)]
-    fn normal(&self, local: DVec3) -> DVec3 {
-        to_world(&self.at.matrix3, local) * (1.0 / self.square.sqrt())
+    fn normal(&self, local: DVec3, way: DVec3) -> DVec3 {
+        direction(to_world(&self.at.matrix3, local)).unwrap_or_else(|| way.normalize_or_zero())
     }
 }
 
 /// The part of a ray's line in a convex shape, in whose space the ray is given; `None` where there is no closed form, or where that does not tell.
 #[inline(always)]
-fn chord(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<Option<Chord>> {
-    shape.chord(&Line::new(origin, direction)?)
+fn chord(shape: &Shape, origin: DVec3, way: DVec3) -> Option<Option<Chord>> {
+    shape.chord(&Line::new(origin, way)?)
 }
 
 /// The first hit of a ray on a body that has a closed form, and that its placement leaves what it is, which need not have been checked: that of an answer is good.
@@ -79,7 +80,7 @@ pub(crate) fn first_hit(
         } else {
             return Ok(None);
         };
-        let surface = SurfaceHit { normal: similar.normal(normal), back, primitive: 0, barycentric: None };
+        let surface = SurfaceHit { normal: similar.normal(normal, ray.direction), back, primitive: 0, barycentric: None };
         Ok(Some(RayHit { t, point: ray.at(t), surface: Some(surface) }))
     })
 }
@@ -88,7 +89,7 @@ pub(crate) fn first_hit(
 pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
     let (at, ray) = (placed.placement, hits.ray);
     let told = if let Some(similar) = dispatch!(simd => Similar::new(simd, at)) {
-        chord_hits(similar.chord(placed.shape, ray), hits, |local| similar.normal(local))
+        chord_hits(similar.chord(placed.shape, ray), hits, |local| similar.normal(local, ray.direction))
     } else {
         let to_local = inverse_linear(&at.matrix3);
         let origin = to_local * (ray.origin - at.translation);
