@@ -60,7 +60,7 @@ pub fn contacts(
         return Ok(vec![contact]);
     }
     let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
-    Ok(Scratch::with(|scratch| pair::contacts(a, b, options, scratch)))
+    Ok(Scratch::with(|scratch| pair::contacts_closely(a, b, options, scratch)))
 }
 
 impl ContactOptions {

@@ -3,11 +3,11 @@
 //! A turned body is a turned profile. Cylinders and cones are figures of the half plane of the distance to the axis and the height,
 //! so that each is decided by two edges.
 
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 use solid_convex::gjk::{self, Balls};
 use solid_convex::{FaceTowards, Polytope, Support};
 
-use super::similarity::Similarity;
+use super::similarity::{Similarity, to_body, to_world};
 use crate::pair::POINT;
 use crate::placement::length_and_direction;
 use crate::shape::Body;
@@ -25,9 +25,10 @@ pub(super) struct Foot<V> {
 /// How far a point is from the surface of a ball, box, cone, cylinder or capsule, negative inside, and the outward normal where that is nearest;
 /// at an `offset` from the body's origin. No unit is sought: the size of the data must be near 1.
 pub(in crate::pair) fn foot(body: &Body, at: &Similarity, offset: DVec3) -> Option<(f64, DVec3)> {
-    let [x, y, z] = at.units();
-    let foot = of_body(body, at.stretch, DVec3::new(x.dot(offset), y.dot(offset), z.dot(offset)))?;
-    Some((foot.distance, x * foot.normal.x + y * foot.normal.y + z * foot.normal.z))
+    let [x_axis, y_axis, z_axis] = at.units();
+    let units = DMat3 { x_axis, y_axis, z_axis };
+    let foot = of_body(body, at.stretch, to_body(&units, offset))?;
+    Some((foot.distance, to_world(&units, foot.normal)))
 }
 
 /// A bound on the coordinates of a body; `None` for a primitive of a complex shape.

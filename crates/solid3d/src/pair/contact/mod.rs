@@ -185,7 +185,20 @@ pub(crate) fn contacts(
     options: &ContactOptions,
     scratch: &mut Scratch,
 ) -> Vec<Manifold> {
-    if let Some(contact) = one_point::quick_contact(a, b).or_else(|| one_point::contact(a, b)) {
+    match quick_contact(a, b) {
+        Some(contact) => vec![contact],
+        None => contacts_closely(a, b, options, scratch),
+    }
+}
+
+/// The same, where [`quick_contact`] says nothing.
+pub(crate) fn contacts_closely(
+    a: Placed,
+    b: Placed,
+    options: &ContactOptions,
+    scratch: &mut Scratch,
+) -> Vec<Manifold> {
+    if let Some(contact) = one_point::contact(a, b) {
         return vec![contact];
     }
     let is_convex = |of: Placed| matches!(of.shape.class(), Class::Convex(_));

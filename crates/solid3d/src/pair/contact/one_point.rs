@@ -9,7 +9,6 @@ use super::clip::PARALLEL_SINE;
 use super::own_feature::own_feature;
 use super::{ContactPoint, Feature, Manifold};
 use crate::placement::direction;
-use crate::shape::ShapeKind;
 
 /// What [`contact`] says of plain sizes. Placements need not have been checked: those of an answer are good.
 #[inline(always)]
@@ -48,8 +47,7 @@ fn of_ball_and_body(a: Placed, b: Placed) -> Option<Manifold> {
 /// The contact of a ball and a convex body that are in each other, or of two capsules that are; `None` for other shapes,
 /// and where the general way has to say.
 pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
-    let is_capsule = |of: Placed| of.shape.kind() == ShapeKind::Capsule;
-    if !(a.shape.is_ball() || b.shape.is_ball() || is_capsule(a) && is_capsule(b)) {
+    if !(a.shape.is_ball() || b.shape.is_ball() || closed_form::are_round(a, b)) {
         return None;
     }
     contact_of(a, b, &closed_form::penetration(a, b)?)
