@@ -55,10 +55,15 @@ pub(super) struct Stretch {
 impl Frame {
     #[inline(always)]
     pub fn new(at_a: &DAffine3, reach_a: DVec3, at_b: &DAffine3, reach_b: DVec3) -> Frame {
+        let size = size([at_a, at_b], [reach_a, reach_b]);
+        Frame::scaled(at_a, at_b, size, unit_scale(size))
+    }
+
+    /// Of data of a given size, in a unit of which world lengths times `scale` are lengths: no less than near the size, and no more than some times it.
+    #[inline(always)]
+    pub fn scaled(at_a: &DAffine3, at_b: &DAffine3, size: f64, scale: f64) -> Frame {
         let inverse_a = inverse_linear(&at_a.matrix3);
         let offset = at_a.translation - at_b.translation;
-        let size = size([at_a, at_b], [reach_a, reach_b]);
-        let scale = unit_scale(size);
         let (origin, [from_a, from_b]) = if comes_first(offset) {
             (at_a.translation, [DVec3::ZERO, -offset * scale])
         } else {
@@ -162,7 +167,7 @@ impl Around {
 
 /// The size of the data: how far two placed shapes reach from their local origins, and how far apart these are.
 #[inline(always)]
-fn size([at_a, at_b]: [&DAffine3; 2], [reach_a, reach_b]: [DVec3; 2]) -> f64 {
+pub(super) fn size([at_a, at_b]: [&DAffine3; 2], [reach_a, reach_b]: [DVec3; 2]) -> f64 {
     image_reach(&at_a.matrix3, reach_a).max_element()
         + image_reach(&at_b.matrix3, reach_b).max_element()
         + (at_a.translation - at_b.translation).abs().max_element()
@@ -185,6 +190,13 @@ pub(super) fn slack(linear: &DMat3, inverse: &DMat3, size: f64) -> f64 {
 impl Stretch {
     /// Of what is bounded in the other space, and has no lengths of its own.
     pub const NONE: Stretch = Stretch { facets: DVec3::ZERO, least: 0.0 };
+
+    /// Of a space that is scaled alike in all directions.
+    #[inline(always)]
+    pub fn alike(scale: f64) -> Stretch {
+        let least = scale.min(STRETCH_MAX);
+        Stretch { facets: DVec3::splat(least), least }
+    }
 
     /// What bounds distances of two trees in the common frame.
     pub fn metric(&self, other: &Stretch) -> PairMetric {

@@ -20,14 +20,14 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::Support;
 use solid_convex::gjk::Balls;
 use solid_convex::simd::part;
 
-use super::closed_form::Similarity;
+use super::closed_form::{Similarity, to_world};
 use super::direct::Direct;
-use super::row::Verdict;
+use super::row::{Cube, Verdict};
 use crate::bounds::abs;
 use crate::tree::{HALF_STEP, Image, Normal, STEPS};
 
@@ -54,10 +54,24 @@ pub(super) struct Glance {
 }
 
 /// What meets the body within `inner` is clear, and what is apart from it beyond `outer`.
-struct Body {
+pub(super) struct Body {
     is_ball: bool,
     inner: f64,
     outer: f64,
+}
+
+impl Body {
+    /// All that is within a radius of a point; or what has all within one in it, and nothing beyond another. A gap of `gap` is clear.
+    #[inline(always)]
+    pub fn ball(inner: f64, outer: f64, gap: f64) -> Body {
+        Body { is_ball: true, inner: inner - gap, outer: outer + gap }
+    }
+
+    #[inline(always)]
+    pub fn cube(cube: &Cube) -> Body {
+        let (inner, outer) = cube.clear();
+        Body { is_ball: false, inner, outer }
+    }
 }
 
 /// Three coordinates of eight points.
@@ -84,38 +98,46 @@ impl Glance {
         normal: &Normal,
     ) -> Option<Glance> {
         let (middle, body) = match direct {
-            Direct::Round(round) => {
-                let body = Body { is_ball: true, inner: round.radius - gap, outer: round.radius + gap };
-                (round.center()?, body)
-            }
-            Direct::Cube(cube) => {
-                let (inner, outer) = cube.clear();
-                (DVec3::ZERO, Body { is_ball: false, inner, outer })
-            }
+            Direct::Round(round) => (round.center()?, Body::ball(round.radius, round.radius, gap)),
+            Direct::Cube(cube) => (DVec3::ZERO, Body::cube(cube)),
             Direct::None => {
                 let Balls { inner, outer } = shape.balls()?;
                 let Similarity { stretch, .. } = Similarity::new(&to_common.matrix3)?;
                 let around = outer.radius + outer.center.distance(inner.center);
-                let body = Body {
-                    is_ball: true,
-                    inner: inner.radius * stretch - gap,
-                    outer: around * stretch + gap,
-                };
+                let body = Body::ball(inner.radius * stretch, around * stretch, gap);
                 (to_common.transform_point3(inner.center), body)
             }
         };
-        let linear = map.matrix3 * normal.scale;
-        let offset = map.transform_point3(normal.origin) - middle;
-        let terms = abs(&map.matrix3) * normal.origin.abs()
+        Some(Glance::of(body, middle, map, normal, 0.0))
+    }
+
+    /// For a body with its middle, where triangles are placed by a map and are off by no more than `slack` then.
+    #[inline(always)]
+    pub fn of(body: Body, middle: DVec3, map: &DAffine3, normal: &Normal, slack: f64) -> Glance {
+        let DMat3 { x_axis, y_axis, z_axis } = map.matrix3;
+        let [x, y, z] = [x_axis * normal.scale, y_axis * normal.scale, z_axis * normal.scale];
+        let terms = to_world(&abs(&map.matrix3), normal.origin.abs())
             + map.translation.abs()
             + middle.abs()
-            + abs(&linear) * DVec3::ONE;
-        Some(Glance {
+            + (x.abs() + y.abs() + z.abs());
+        Glance {
             body,
-            rows: linear.transpose().to_cols_array_2d(),
-            offset: offset.to_array(),
-            slack: ROUNDING_F64 * terms.max_element(),
-        })
+            rows: [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]],
+            offset: (to_world(&map.matrix3, normal.origin) + map.translation - middle).to_array(),
+            slack: slack + ROUNDING_F64 * terms.max_element(),
+        }
+    }
+
+    /// The same, where a map but makes all so many times as long.
+    #[inline(always)]
+    pub fn upright(body: Body, middle: DVec3, times: f64, normal: &Normal, slack: f64) -> Glance {
+        let (step, origin) = (times * normal.scale, times * normal.origin);
+        Glance {
+            body,
+            rows: [[step, 0.0, 0.0], [0.0, step, 0.0], [0.0, 0.0, step]],
+            offset: (origin - middle).to_array(),
+            slack: slack + ROUNDING_F64 * ((origin.abs() + middle.abs()).max_element() + step),
+        }
     }
 
     /// What is clear of the triangles of an image, as bits; in lanes beyond those in use it means nothing.

@@ -2,6 +2,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, f64x4};
+use solid_convex::simd::each;
 
 use super::lanes::Weights;
 use super::normal::Normal;
@@ -60,16 +61,21 @@ pub(super) struct Folded {
 }
 
 impl Folded {
+    #[inline(always)]
     pub fn new(metric: &PairMetric, a: &Normal, b: &Normal) -> Self {
         let (axes_a, norm_a) = (metric.facet_a * a.scale, metric.sigma_min_a * a.scale);
         let (axes_b, norm_b) = (metric.facet_b * b.scale, metric.sigma_min_b * b.scale);
         let unit = axes_a.max(axes_b).max_element().max(norm_a).max(norm_b);
         // Without a unit every bound is zero: nothing is skipped, and nothing lost.
         let inverse = if unit.is_normal() { unit.recip() } else { 0.0 };
-        let weight = |w: f64| (w * inverse) as f32;
-        let squared = |w: f64| weight(w) * weight(w);
-        let weights =
-            |axes: DVec3, norm: f64| Weights { axes: axes.to_array().map(squared), norm: squared(norm) };
+        let squared = {
+            #[inline(always)]
+            |w: f64| (w * inverse) as f32 * (w * inverse) as f32
+        };
+        let weights = {
+            #[inline(always)]
+            |axes: DVec3, norm: f64| Weights { axes: each(axes.to_array(), squared), norm: squared(norm) }
+        };
         let unit = if inverse > 0.0 { unit } else { 0.0 };
         Folded { a: weights(axes_a, norm_a), b: weights(axes_b, norm_b), unit }
     }

@@ -91,7 +91,7 @@ pub(crate) use lanes::bits;
 pub(crate) use leaf_images::{HALF_STEP, Image, Leaf, LeafImages, STEPS};
 pub(crate) use leaf_points::LeafPoints;
 pub use metric::PairMetric;
-pub(crate) use nearest::{Around, Boxes, NearLeaves};
+pub(crate) use nearest::{Around, Boxes, NearLeaves, NearQuery};
 pub use nearest_pairs::nearest_pairs;
 pub(crate) use nearest_pairs::{NearLeafPairs, nearest_pairs_on};
 pub use node::{LEAF_SIZE, PRIMITIVES_MAX};

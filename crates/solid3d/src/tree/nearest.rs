@@ -18,6 +18,13 @@ pub(crate) struct Around {
     pub radius: f64,
 }
 
+/// What [`nearest_on`](Tree::nearest_on) is asked, in the coordinates of the tree.
+pub(crate) struct NearQuery {
+    last: (PackedBox, f64),
+    before: Option<(PackedBox, f64)>,
+    metric: Folded,
+}
+
 /// The boxes of a node.
 pub(crate) struct Boxes<'t>(pub(super) &'t Node);
 
@@ -89,29 +96,32 @@ impl Tree {
         dispatch!(simd => self.walk_near(simd, &mut visitor, bounds, best, traversal));
     }
 
-    /// As [`nearest`](Tree::nearest), on a level of instructions, for a query that all of `around` hold, of which there is at
-    /// least one. Of `metric`, the half for `a` counts. Where none but the last tells a distance, it gives the order.
+    /// The query that `last` holds, and `before` too. Of `metric`, the half for `a` counts. Where both tell no distance, the last gives the order.
+    #[inline(always)] // into kernels, where nothing of it need be written before it is read
+    pub(crate) fn near_query(&self, before: Option<Around>, last: Around, metric: &PairMetric) -> NearQuery {
+        let pack = {
+            #[inline(always)]
+            |Around { bounds, radius }: Around| (self.normal.pack_any(&bounds), radius)
+        };
+        let metric = Folded::new(metric, &self.normal, &self.normal);
+        NearQuery { last: pack(last), before: before.map(pack), metric }
+    }
+
+    /// As [`nearest`](Tree::nearest), on a level of instructions.
     pub(crate) fn nearest_on(
         &self,
         level: Level,
-        around: &[Around],
-        metric: &PairMetric,
+        query: &NearQuery,
         best: &mut f64,
         traversal: &mut Traversal,
         visitor: &mut impl NearLeaves,
     ) {
-        let metric = Folded::new(metric, &self.normal, &self.normal);
-        let mut packed = [(PackedBox::EMPTY, 0.0); AROUND_MAX];
-        for (packed, around) in packed.iter_mut().zip(around) {
-            *packed = (self.normal.pack_any(&around.bounds), around.radius);
-        }
-        let around = &packed[..around.len()];
         dispatch!(widest level, simd => {
             self.walk_near(
                 simd,
                 visitor,
                 #[inline(always)]
-                |node, bounds| bound_lanes(simd, node, around, &metric, bounds),
+                |node, bounds| bound_lanes(simd, node, query, bounds),
                 best,
                 traversal,
             );
@@ -200,20 +210,11 @@ impl NearLeaves for Plain<'_> {
     }
 }
 
-/// The most that a query is said to be around.
-const AROUND_MAX: usize = 2;
-
 #[inline(never)] // nor into each walk: on the scalar level, optimising these then takes minutes
-fn bound_lanes<S: Simd>(
-    simd: S,
-    node: &Node,
-    around: &[(PackedBox, f64)],
-    metric: &Folded,
-    bounds: &mut [f64; WIDTH],
-) {
+fn bound_lanes<S: Simd>(simd: S, node: &Node, query: &NearQuery, bounds: &mut [f64; WIDTH]) {
     simd.vectorize(
         #[inline(always)]
-        || bound_lanes_on(simd, node, around, metric, bounds),
+        || bound_lanes_on(simd, node, query, bounds),
     );
 }
 
@@ -221,8 +222,7 @@ fn bound_lanes<S: Simd>(
 fn bound_lanes_on<S: Simd>(
     simd: S,
     node: &Node,
-    around: &[(PackedBox, f64)],
-    metric: &Folded,
+    NearQuery { last, before, metric }: &NearQuery,
     bounds: &mut [f64; WIDTH],
 ) {
     let least = {
@@ -234,9 +234,8 @@ fn bound_lanes_on<S: Simd>(
             [low - radius, high - radius]
         }
     };
-    let Some((last, before)) = around.split_last() else { return };
     let mut all = least(last);
-    for query in before {
+    if let Some(query) = before {
         for (bound, least) in all.iter_mut().zip(least(query)) {
             let counts = least.simd_gt(f64x4::splat(simd, 0.0)) & least.simd_gt(*bound);
             *bound = counts.select(least, *bound);

@@ -73,6 +73,7 @@ impl Normal {
     }
 
     /// The same for a box that may be anywhere: beyond [`FAR`], where nothing is, it is cut off.
+    #[inline(always)]
     pub(super) fn pack_any(&self, bounds: &Aabb) -> PackedBox {
         let far = DVec3::splat(f64::from(FAR)) * self.scale;
         let (least, greatest) = (self.origin - far, self.origin + far);

@@ -294,6 +294,7 @@ impl Support for Polytope {
         self.center
     }
 
+    #[inline]
     fn balls(&self) -> Option<Balls> {
         Some(self.balls)
     }

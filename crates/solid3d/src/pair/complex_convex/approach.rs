@@ -33,7 +33,8 @@ pub(super) fn closest_primitive(
     // Of a box the distance has no closed form here.
     let direct = Direct::round(convex.0, frame);
     let shadow = Shadow::new(convex.0, frame, ROUNDINGS);
-    let around = shadow.around(&direct);
+    let (box_around, around) = shadow.around(&direct, frame);
+    let query = complex.0.tree().near_query(box_around, around, &metric);
     let from = [convex.0.center(); 2];
     let mut gaps = Gaps::new(convex.0, &direct, frame, complex.0.tree().normal());
     let images = complex.0.images();
@@ -50,7 +51,7 @@ pub(super) fn closest_primitive(
         primitive_tests,
         answer: None,
     };
-    complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut best, traversal, &mut approach);
+    complex.0.tree().nearest_on(level(), &query, &mut best, traversal, &mut approach);
     let (primitive, closest) = approach.answer?;
     Some((primitive, closest.or_else(|| approach.in_closed_form(primitive))))
 }

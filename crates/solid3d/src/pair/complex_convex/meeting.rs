@@ -1,23 +1,21 @@
 //! Which primitives meet the convex shape.
 
-use std::cell::OnceCell;
 use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
-use glam::DAffine3;
-use solid_convex::simd::level;
+use solid_convex::simd::{dispatch, level};
 use solid_convex::{Outcome, Witness, gjk};
 
 use super::super::Scratch;
 use super::super::direct::Direct;
-use super::super::frame::{Frame, Stretch};
 use super::super::gaps::Gaps;
 use super::super::glance::Glance;
 use super::super::row::{Row, Verdict};
 use super::super::table::{PlacedComplex, PlacedConvex};
+use super::details::Details;
 use super::interior::Interior;
-use super::shadow::Shadow;
-use super::{CLEARLY_APART, frame};
+use super::sight::Sight;
+use super::{CLEARLY_APART, alike};
 use crate::tree::{Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves, bits};
 
 /// A walk that opens so many nodes is long: better bounds are then worth preparing.
@@ -31,58 +29,55 @@ pub(super) fn primitives(
     scratch: &mut Scratch,
     found: &mut dyn FnMut(u32, Option<Witness>) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    let frame = frame(complex, convex);
+    if wants_any && let Some(sight) = &dispatch!(simd => alike::sight(simd, complex, convex)) {
+        return walk(complex, convex, sight, &mut None, scratch, found);
+    }
+    let mut details = None;
+    let sight = Sight::new(complex, convex, details.insert(Details::new(complex, convex, None)), wants_any);
+    walk(complex, convex, &sight, &mut details, scratch, found)
+}
+
+/// What is there to begin with of the details is of the same frame as the sight.
+pub(super) fn walk<'c>(
+    complex: PlacedComplex,
+    convex: PlacedConvex<'c>,
+    sight: &Sight,
+    details: &mut Option<Details<'c>>,
+    scratch: &mut Scratch,
+    found: &mut dyn FnMut(u32, Option<Witness>) -> ControlFlow<()>,
+) -> ControlFlow<()> {
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
     row.iter_mut().for_each(Row::clear);
-    let direct = Direct::new(convex.0, &frame, CLEARLY_APART);
-    let shadow = Shadow::new(convex.0, &frame, CLEARLY_APART);
-    let map = match &direct {
-        Direct::Cube(cube) => cube.map,
-        _ => frame.common[0],
-    };
-    let around = shadow.around(&direct);
-    let metric = frame.stretch_of_a().metric(&Stretch::NONE);
-    let end = ControlFlow::Continue(());
-    // Where all that meet are wanted, most leaves that are visited hold some.
-    let (to_common, normal) = (&frame.common[1], complex.0.tree().normal());
-    let glance =
-        wants_any.then(|| Glance::new(&direct, convex.0, to_common, &map, CLEARLY_APART, normal)).flatten();
-    let glance = glance.as_ref().zip(complex.0.images());
+    let Sight { scale, query, glance } = sight;
     let mut meeting = Meeting {
         complex,
         convex,
-        frame: &frame,
-        direct: &direct,
-        map,
-        shadow,
-        interior: OnceCell::new(),
-        glance,
+        glance: glance.as_ref().zip(complex.0.images()),
+        details,
+        scale: *scale,
         opened: 0,
         gaps: None,
         row,
         primitive_tests,
         found,
-        end,
+        end: ControlFlow::Continue(()),
     };
     // What is clearly apart does not meet; nothing else is sought.
     let mut limit = CLEARLY_APART;
-    complex.0.tree().nearest_on(level(), around.as_slice(), &metric, &mut limit, traversal, &mut meeting);
+    complex.0.tree().nearest_on(level(), query, &mut limit, traversal, &mut meeting);
     meeting.end
 }
 
 /// Looks for primitives that meet the convex shape.
-struct Meeting<'s> {
+struct Meeting<'s, 'c> {
     complex: PlacedComplex<'s>,
-    convex: PlacedConvex<'s>,
-    frame: &'s Frame,
-    direct: &'s Direct,
-    /// Where primitives are placed: in the common frame, or the space of a box.
-    map: DAffine3,
-    shadow: Shadow<'s>,
-    /// What finds corners in the shape, once a primitive is looked at by itself.
-    interior: OnceCell<Interior<'s>>,
+    convex: PlacedConvex<'c>,
     /// What looks at images of triangles, where any that meets will do.
     glance: Option<(&'s Glance, &'s LeafImages)>,
+    /// What looks at all else, made once it is wanted.
+    details: &'s mut Option<Details<'c>>,
+    /// Of the common frame.
+    scale: f64,
     /// How many nodes were opened, and what bounds the distances of their boxes once they are many.
     opened: usize,
     gaps: Option<Gaps>,
@@ -93,17 +88,21 @@ struct Meeting<'s> {
     end: ControlFlow<()>,
 }
 
-impl NearLeaves for Meeting<'_> {
+impl NearLeaves for Meeting<'_, '_> {
     const NODES_LOOKED_AT: usize = 1;
 
     #[inline(always)]
     fn raise<S: Simd>(&mut self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
         self.opened += 1;
-        // Of what is round, the bounds are as good as they get.
-        if self.opened == LONG && !matches!(self.direct, Direct::Round(_)) {
-            self.gaps = Gaps::new(self.convex.0, self.direct, self.frame, self.complex.0.tree().normal());
+        if self.opened == LONG {
+            let Details { frame, direct, shadow, .. } =
+                Details::of(self.details, self.complex, self.convex, self.scale);
+            // Of what is round, the bounds are as good as they get.
+            let is_round = matches!(direct, Direct::Round(_));
+            let normal = self.complex.0.tree().normal();
+            self.gaps = if is_round { None } else { Gaps::new(self.convex.0, direct, frame, normal) };
             if let Some(gaps) = &mut self.gaps {
-                gaps.look_along(simd, self.shadow.axis());
+                gaps.look_along(simd, shadow.axis());
             }
         }
         if let Some(gaps) = &self.gaps {
@@ -130,7 +129,7 @@ impl NearLeaves for Meeting<'_> {
     }
 }
 
-impl Meeting<'_> {
+impl Meeting<'_, '_> {
     /// Looks at the image of a leaf; `None` when that leaves something open.
     #[inline(always)]
     fn glance<S: Simd>(&mut self, simd: S, leaf: &Leaf) -> Option<ControlFlow<()>> {
@@ -147,21 +146,23 @@ impl Meeting<'_> {
 
     #[inline(always)]
     fn look<S: Simd>(&mut self, simd: S, leaf: &[u32]) -> ControlFlow<()> {
+        let Details { direct, map, shadow, .. } =
+            Details::of(self.details, self.complex, self.convex, self.scale);
         let row = self.row.get_or_insert_default();
-        row.place(simd, self.complex.0, leaf, &self.map);
-        let bounds = match self.direct {
+        row.place(simd, self.complex.0, leaf, map);
+        let bounds = match direct {
             Direct::Cube(cube) => &cube.bounds(),
-            _ => self.shadow.bounds(self.direct),
+            _ => shadow.bounds(direct),
         };
         let mut near = row.overlapping(simd, bounds);
         if near == 0 {
             return ControlFlow::Continue(());
         }
         let triangles = near & row.triangles();
-        let sure = match self.direct {
+        let sure = match direct {
             Direct::Round(round) => round.verdict(simd, row, triangles, CLEARLY_APART),
             Direct::Cube(cube) => cube.verdict(simd, row, triangles),
-            Direct::None => Verdict { meet: 0, apart: self.shadow.beyond(simd, row, CLEARLY_APART) },
+            Direct::None => Verdict { meet: 0, apart: shadow.beyond(simd, row, CLEARLY_APART) },
         };
         near &= !sure.apart;
         *self.primitive_tests += u64::from(near.count_ones());
@@ -178,14 +179,16 @@ impl Meeting<'_> {
             return ControlFlow::Continue(());
         }
         let (complex, at_complex) = self.complex;
+        let Details { frame, direct, shadow, interior, .. } =
+            Details::of(self.details, self.complex, self.convex, self.scale);
         let row = self.row.get_or_insert_default();
         // Of a shape that is known by its support mapping.
-        let interior = matches!(self.direct, Direct::None)
-            .then(|| self.interior.get_or_init(|| Interior::new(self.convex.0, self.frame, CLEARLY_APART)));
+        let interior = matches!(direct, Direct::None)
+            .then(|| interior.get_or_init(|| Interior::new(self.convex.0, frame, CLEARLY_APART)));
         while let Some(lane) = bits(near).next() {
             near &= near - 1;
             let primitive = row.primitive(lane);
-            if !complex.primitive_bounds(primitive).overlaps(self.shadow.in_complex()) {
+            if !complex.primitive_bounds(primitive).overlaps(shadow.in_complex(frame)) {
                 continue;
             }
             let corner = interior.and_then(|interior| interior.corner_of(complex.points_of(primitive)));
@@ -197,11 +200,11 @@ impl Meeting<'_> {
             match gjk::intersection(&points, at_complex, self.convex.0, self.convex.1) {
                 Outcome::Separated { axis } => {
                     if interior.is_some() {
-                        self.shadow.turn(axis);
+                        shadow.turn(axis);
                         if let Some(gaps) = &mut self.gaps {
                             gaps.look_along(simd, axis);
                         }
-                        near &= !self.shadow.beyond(simd, row, CLEARLY_APART);
+                        near &= !shadow.beyond(simd, row, CLEARLY_APART);
                     }
                 }
                 Outcome::Touching(witness) | Outcome::Intersecting(witness) => {

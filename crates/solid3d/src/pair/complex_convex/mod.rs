@@ -6,11 +6,14 @@
 //! at what remains, and has no corner in the shape ([`interior`]). Where the distance is sought, [`gaps`](super::gaps) bounds that of the boxes of a node and of the images of triangles, all
 //! eight at a time, and only what may be nearest is placed and measured.
 
+mod alike;
 mod approach;
 mod ball;
+mod details;
 mod interior;
 mod meeting;
 mod shadow;
+mod sight;
 
 use std::ops::ControlFlow;
 

@@ -17,12 +17,11 @@ use crate::bounds::Aabb;
 use crate::tree::Around;
 
 /// Where a ball in a shape is this part of one around it, or more, the latter alone says how far the shape is: boxes say little more, and take as long.
-const ROUND: f64 = 0.4;
+pub(super) const ROUND: f64 = 0.4;
 
 /// The convex shape in the common frame.
 pub(super) struct Shadow<'s> {
     shape: &'s dyn Support,
-    frame: &'s Frame,
     map: DAffine3,
     /// By which bounds are grown.
     margin: f64,
@@ -38,10 +37,9 @@ pub(super) struct Shadow<'s> {
 
 impl<'s> Shadow<'s> {
     /// With bounds grown by a margin.
-    pub fn new(shape: &'s dyn Support, frame: &'s Frame, margin: f64) -> Self {
+    pub fn new(shape: &'s dyn Support, frame: &Frame, margin: f64) -> Self {
         Shadow {
             shape,
-            frame,
             map: frame.common[1],
             margin,
             bounds: OnceCell::new(),
@@ -67,34 +65,34 @@ impl<'s> Shadow<'s> {
     }
 
     /// A box around the shape in the space of the complex one.
-    pub fn in_complex(&self) -> &Aabb {
-        self.in_complex.get_or_init(|| bounds_in_complex(self.shape, self.frame))
+    pub fn in_complex(&self, frame: &Frame) -> &Aabb {
+        self.in_complex.get_or_init(|| bounds_in_complex(self.shape, frame))
     }
 
-    /// Where the shape is, in the space of the complex one.
-    pub fn around(&self, direct: &Direct) -> Places {
-        let frame = self.frame;
+    /// Where the shape is, in the space of the complex one: in all of these.
+    pub fn around(&self, direct: &Direct, frame: &Frame) -> (Option<Around>, Around) {
         let within = |points: &[DVec3], radius: f64| {
             let points = points.iter().map(|&point| frame.b_to_a.transform_point3(point));
             Around { bounds: Aabb::of_points(points).inflated(frame.slack_in_a), radius }
         };
+        let in_complex = || Around { bounds: *self.in_complex(frame), radius: 0.0 };
         if let Direct::Round(round) = direct {
-            return Places::One([within(&round.local_ends, round.radius)]);
+            return (None, within(&round.local_ends, round.radius));
         }
         if let Some((Balls { inner, outer }, at)) = self.shape.balls().zip(Similarity::new(&self.map.matrix3))
         {
             let radius = outer.radius * at.stretch * (1.0 + 2.0 * SKEW_MAX) + self.margin;
             let ball = within(&[outer.center], radius);
             if inner.radius >= ROUND * outer.radius {
-                return Places::One([ball]);
+                return (None, ball);
             }
-            return Places::Two([Around { bounds: *self.in_complex(), radius: 0.0 }, ball]);
+            return (Some(in_complex()), ball);
         }
         let center = self.shape.center();
         let (placed, bounds) = (self.map.transform_point3(center), self.bounds(direct));
         let furthest = (bounds.max - placed).max(placed - bounds.min);
         let ball = within(&[center], furthest.length());
-        Places::Two([Around { bounds: *self.in_complex(), radius: 0.0 }, ball])
+        (Some(in_complex()), ball)
     }
 
     /// What told the primitives looked at last from the shape.
@@ -124,21 +122,6 @@ impl<'s> Shadow<'s> {
     #[inline(always)]
     pub fn beyond<S: Simd>(&self, simd: S, row: &Row, gap: f64) -> u32 {
         exceed(simd, &row.least_along(simd, self.axis), self.greatest + gap)
-    }
-}
-
-/// Where a convex shape is.
-pub(super) enum Places {
-    One([Around; 1]),
-    Two([Around; 2]),
-}
-
-impl Places {
-    pub fn as_slice(&self) -> &[Around] {
-        match self {
-            Places::One(around) => around,
-            Places::Two(around) => around,
-        }
     }
 }
 

@@ -313,30 +313,14 @@ pub(super) mod scenes;
 
 #[cfg(test)]
 mod tests {
-    use super::scenes::{triangles, turned};
+    use super::scenes::{convex, triangles, turned};
     use super::*;
     use crate::pair::complex_convex::CLEARLY_APART;
     use glam::DAffine3;
     use rand::Rng;
-    use rand::rngs::StdRng;
     use solid_convex::simd::{alike, dispatch};
-    use solid_convex::{Capsule, Cone, Cuboid, Polytope, Sphere, gjk};
+    use solid_convex::{Cuboid, gjk};
     use solid_oracle::generate::{in_cube, seeded};
-
-    fn convex(rng: &mut StdRng, case: usize, size: f64) -> Box<dyn Support> {
-        let mut hull = |count: usize| {
-            let points: Vec<DVec3> = (0..count).map(|_| size * in_cube(rng)).collect();
-            Box::new(Polytope::new(points).expect("there are points"))
-        };
-        match case % 7 {
-            0 => Box::new(Sphere::new(size).expect("it has a size")),
-            1 => Box::new(Capsule::new(0.3 * size, size).expect("it has a size")),
-            2 => Box::new(Cone::new(0.5 * size, size).expect("it has a size")),
-            3 => hull(8),
-            4 => hull(POINTS_MAX + 1),
-            _ => Box::new(Cuboid::new(size * DVec3::new(1.0, 0.5, 0.7)).expect("it has a size")),
-        }
-    }
 
     /// Law: no box is farther than the bound says from what is in it, and what is not among the prospects is no nearer than the distance, or farther than
     /// another triangle of its leaf by more than the margin; for all kinds, under any maps, near and far, at any size, before and after the first

@@ -61,9 +61,9 @@ fn close_by(
     let p = point_to_common.translation;
     let local = frame.b_to_a.translation;
     let bounds = Aabb::new(local, local).inflated(frame.slack_in_a);
-    let query = [Around { bounds, radius: 0.0 }];
     let of_mesh = &frame.stretch_of_a();
-    let metric = of_mesh.metric(&Stretch::NONE);
+    let around = Around { bounds, radius: 0.0 };
+    let query = mesh.tree().near_query(None, around, &of_mesh.metric(&Stretch::NONE));
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let mut nearest = Nearest {
         corners: |primitive| {
@@ -75,7 +75,7 @@ fn close_by(
         found: None,
     };
     let mut best = bound;
-    mesh.tree().nearest_on(level(), &query, &metric, &mut best, traversal, &mut nearest);
+    mesh.tree().nearest_on(level(), &query, &mut best, traversal, &mut nearest);
     let (triangle, foot) = nearest.found.expect("a mesh has a triangle, and every distance is finite");
 
     let from = p - foot.point;
