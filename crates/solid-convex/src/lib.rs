@@ -24,6 +24,8 @@ mod chord;
 #[doc(hidden)]
 pub mod determinant;
 mod difference;
+#[doc(hidden)]
+pub mod direction;
 pub mod epa;
 mod feature;
 pub mod gjk;

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use fearless_simd::{Simd, f64x2, prelude::*};
 use glam::{DAffine3, DMat3, DVec3};
+pub(crate) use solid_convex::direction::{direction, length_and_direction};
 use solid_convex::simd::dispatch;
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, unit_scale};
 
@@ -80,32 +81,6 @@ pub(crate) fn is_plainly_good<S: Simd>(simd: S, DAffine3 { matrix3, translation 
     PLAIN_SQUARES.contains(&squares)
         & (volume * volume > PLAIN_VOLUME_SQUARED * (squares * squares * squares))
         & (translation.length_squared() <= MAGNITUDE_MAX * MAGNITUDE_MAX)
-}
-
-/// The unit vector along a vector of any length; `None` for zero.
-pub(crate) fn direction(v: DVec3) -> Option<DVec3> {
-    length_and_direction(v).map(|(_, direction)| direction)
-}
-
-/// The length of a vector, and the unit vector along it, without overflow or underflow on the way; `None` for zero.
-#[inline(always)]
-pub(crate) fn length_and_direction(v: DVec3) -> Option<(f64, DVec3)> {
-    /// Squares of lengths that lose no digits.
-    const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
-    let square = v.length_squared();
-    if PLAIN.contains(&square) {
-        let length = square.sqrt();
-        return Some((length, v / length));
-    }
-    scaled_length_and_direction(v)
-}
-
-/// The same by the largest coordinate.
-#[cold]
-fn scaled_length_and_direction(v: DVec3) -> Option<(f64, DVec3)> {
-    let largest = v.abs().max_element();
-    let (unit, length) = (largest > 0.0).then(|| (v / largest).normalize_and_length())?;
-    Some((length * largest, unit))
 }
 
 /// The inverse of a checked placement's linear part. Axes of very different length do it no harm.

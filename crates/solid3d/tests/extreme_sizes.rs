@@ -180,3 +180,23 @@ fn casts_and_rays_meet_what_is_in_the_way_at_any_size() {
     println!("{impacts} impacts, {hits} hits");
     assert!(impacts > PAIRS / 16 && hits > PAIRS / 16);
 }
+
+/// Law: the normal of a depth is a unit vector where one shape is so small beside the other that squares of lengths vanish.
+#[test]
+fn normals_are_unit_vectors_beside_what_is_next_to_nothing() {
+    let egg = DAffine3::from_scale(DVec3::new(4.0, 8.0, 4.0));
+    for big in [Shape::sphere(1.0), Shape::cone(1.0, 1.0), Shape::cylinder(1.0, 1.0), Shape::cuboid([1.0; 3])]
+    {
+        for exponent in (40..100).step_by(3) {
+            let inside = DAffine3 {
+                translation: DVec3::new(1e-3, 2e-3, -1e-3),
+                ..DAffine3::from_scale(DVec3::splat(10f64.powi(-exponent)))
+            };
+            for small in [Shape::cuboid([1e-100; 3]), Shape::sphere(1e-50), Shape::cone(1e-100, 1e-100)] {
+                let (big, small) = (big.as_ref().unwrap(), small.unwrap());
+                let found = query::penetration(big, &egg, &small, &inside).unwrap().unwrap();
+                assert!(is_unit(found.normal), "{} at 1e-{exponent}: {found:?}", big.kind());
+            }
+        }
+    }
+}

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::HEIGHT_ERROR;
 use crate::Support;
 use crate::difference::{Difference, SupportPoint};
+use crate::direction::{direction, length_and_direction};
 
 /// The plane of a face of the polytope.
 #[derive(Clone, Copy, Debug)]
@@ -77,14 +78,12 @@ impl Plane {
         let normal = x.cross(y);
         let near = |x: DVec3, y: DVec3| if y.length_squared() < x.length_squared() { y } else { x };
         let nearest = near(near(p.w, q.w), r.w);
-        let length = normal.length();
-        let unit = normal / length;
-        if !unit.is_finite() {
+        let Some((length, unit)) = length_and_direction(normal) else {
             // So thin that its normal is lost: looked across once, along its nearest corner, and of no use as a bound.
-            let normal = nearest.try_normalize().unwrap_or(DVec3::X);
+            let normal = direction(nearest).unwrap_or(DVec3::X);
             let (slack, blur) = (f64::INFINITY, f64::INFINITY);
             return Plane { normal, offset: 0.0, slack, blur };
-        }
+        };
         let tilt = NORMAL_ROUNDINGS * (1.0 + (size_x * y.length() + size_y * x.length()) / length);
         // The vertices are the rounded ones: their plane is turned by that over the width.
         let slack = tilt.min(2.0) * nearest.length() + HEIGHT_ERROR;
