@@ -17,7 +17,7 @@
 //!   each two or three bits of the normal, and says only how much nearer the boundary might be elsewhere.
 //! - Needles side by side are searched once more, in a space that is stretched across them.
 //! - Every direction that was looked along gives an upper bound, the nearest face a lower one. Both are reported, so that an
-//!   answer that had to stop early ([`VERTICES_MAX`]) says how good it is.
+//!   answer that had to stop early ([`VERTICES_MAX`], [`POLYTOPE_VERTICES_MAX`]) says how good it is.
 
 mod face;
 mod plane;
@@ -48,12 +48,16 @@ use stretch::Stretch;
 /// error, for a few vertices more.
 pub const DEPTH_TOLERANCE: f64 = 1e-7;
 
-/// The most vertices of a polytope. Curved shapes that have their least depth in many directions at once, as a cylinder around
+/// The most vertices of the polytope of curved objects. Those that have their least depth in many directions at once, as a cylinder around
 /// another, need one for every few degrees; at this many, of a circle of directions, the bounds are 3e-4 of the depth apart.
 pub const VERTICES_MAX: usize = 256;
 
-/// The most support points that are looked at: each gives a vertex or finishes a face, of which there are at most two a vertex.
-const EXPANSIONS_MAX: usize = 4 * VERTICES_MAX;
+/// The same of polytopes, which end with the exact answer: two hulls of 50,000 points on a sphere, one in the place of the other, need 14,500, for
+/// a tenth of a second; of 1,000 points 400, for 0.2 ms.
+pub const POLYTOPE_VERTICES_MAX: usize = 1 << 14;
+
+/// The most support points that are looked at for each vertex: each gives a vertex or finishes a face, of which there are at most two a vertex.
+const EXPANSIONS_PER_VERTEX: usize = 4;
 
 /// The error of the height of a support point along a unit vector, whose coordinates sum to less than 2.
 const HEIGHT_ERROR: f64 = 2.0 * SUPPORT_ERROR;
@@ -260,7 +264,8 @@ where
     let relative = relative_tolerance(difference);
     let tolerance = |height: f64| tolerance(height, relative);
     let (mut height, mut normal, mut corners) = (f64::INFINITY, DVec3::X, [0; 3]);
-    for _ in 0..EXPANSIONS_MAX {
+    let vertices_max = if relative > 0.0 { VERTICES_MAX } else { POLYTOPE_VERTICES_MAX };
+    for _ in 0..EXPANSIONS_PER_VERTEX * vertices_max {
         let Some(index) = polytope.take_nearest() else { break };
         let Face { plane: Plane { normal: across, offset, .. }, corners: around, .. } = *polytope.face(index);
         if offset >= height - tolerance(height) {
@@ -273,7 +278,7 @@ where
         }
         // A point that is a vertex already is beyond the face by the rounding error only.
         let grows = beyond - offset > tolerance(beyond)
-            && polytope.vertex_count() < VERTICES_MAX
+            && polytope.vertex_count() < vertices_max
             && !polytope.has_vertex(&p);
         if grows {
             polytope.insert_beyond(difference, p, index);

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use glam::DVec3;
 use robust::orient3d;
 
+use super::VERTICES_MAX;
 use super::face::{Face, HalfEdge};
 use super::stretch::Stretch;
 use crate::Support;
@@ -58,7 +59,7 @@ const TETRAHEDRON: [([u32; 3], [HalfEdge; 3]); 4] = {
 };
 
 thread_local! {
-    /// A polytope whose memory the next one on this thread takes over: no more than the [`VERTICES_MAX`](super::VERTICES_MAX) ask for.
+    /// A polytope whose memory the next one on this thread takes over: no more than [`VERTICES_MAX`] ask for.
     static SPARE: Cell<Option<Box<Polytope>>> = const { Cell::new(None) };
 }
 
@@ -125,9 +126,11 @@ impl Polytope {
         self.open.clear();
     }
 
-    /// Leaves the memory to the next one.
+    /// Leaves the memory to the next one, but for one as large as hardly any is.
     pub fn recycle(self: Box<Self>) {
-        SPARE.set(Some(self));
+        if self.vertices.len() <= VERTICES_MAX {
+            SPARE.set(Some(self));
+        }
     }
 
     pub fn vertex_count(&self) -> usize {
