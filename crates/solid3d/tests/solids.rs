@@ -3,11 +3,9 @@
 
 mod common;
 
-use std::collections::HashSet;
-
 use common::{
-    Soup, assert_rate, at, block, cube, direction, in_cube, log_uniform, placement, random_complex, rescaled,
-    stretch, torus,
+    Soup, assert_rate, at, cube, direction, globe, in_cube, joined, log_uniform, placement, random_complex,
+    rescaled, stretch, torus, voxels,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use rand::Rng;
@@ -41,17 +39,6 @@ fn meet(a: &Shape, at_a: &DAffine3, b: &Shape, at_b: &DAffine3) -> bool {
     answer
 }
 
-/// Several meshes as one.
-fn joined(soups: impl IntoIterator<Item = Soup>) -> Soup {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for soup in soups {
-        let first = vertices.len() as u32;
-        triangles.extend(soup.triangles().iter().map(|t| t.map(|i| i + first)));
-        vertices.extend(soup.vertices);
-    }
-    Soup::mesh(vertices, triangles)
-}
-
 fn turned_inside_out(soup: &Soup) -> Soup {
     Soup::mesh(soup.vertices.clone(), soup.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect())
 }
@@ -59,58 +46,6 @@ fn turned_inside_out(soup: &Soup) -> Soup {
 fn moved(mut soup: Soup, by: DVec3) -> Soup {
     soup.vertices.iter_mut().for_each(|v| *v += by);
     soup
-}
-
-/// The topology of a sphere, around the axis y; the vertices are what `map` gives.
-fn globe(rows: u32, columns: u32, mut map: impl FnMut(DVec3) -> DVec3) -> Soup {
-    use std::f64::consts::{PI, TAU};
-    let mut vertices = vec![map(DVec3::Y)];
-    for i in 1..rows {
-        for j in 0..columns {
-            let (polar, round) =
-                (PI * f64::from(i) / f64::from(rows), TAU * f64::from(j) / f64::from(columns));
-            vertices.push(map(dvec3(polar.sin() * round.cos(), polar.cos(), polar.sin() * round.sin())));
-        }
-    }
-    vertices.push(map(-DVec3::Y));
-    let (at, last) = (|i: u32, j: u32| 1 + (i - 1) * columns + j % columns, vertices.len() as u32 - 1);
-    let mut triangles = Vec::new();
-    for j in 0..columns {
-        triangles.push([0, at(1, j + 1), at(1, j)]);
-        triangles.push([last, at(rows - 1, j), at(rows - 1, j + 1)]);
-        for i in 1..rows - 1 {
-            triangles.push([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
-            triangles.push([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
-        }
-    }
-    Soup::mesh(vertices, triangles)
-}
-
-/// The cells of a lattice that are filled, and the faces between filled and empty ones: edges of four triangles, cavities and
-/// several parts included. No two triangles share the index of a vertex.
-fn voxels(rng: &mut StdRng, side: i32) -> (HashSet<[i32; 3]>, Soup) {
-    let fill = rng.random_range(0.2..0.7);
-    let range = || 0..side;
-    let cells = range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z])));
-    let filled: HashSet<[i32; 3]> = cells.filter(|_| rng.random_bool(fill)).collect();
-    let mut sorted: Vec<_> = filled.iter().copied().collect();
-    sorted.sort_unstable();
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for cell in sorted {
-        let min = DVec3::from_array(cell.map(f64::from));
-        let unit = block(min, min + 1.0);
-        for face in unit.triangles().chunks(2) {
-            let corners = face.as_flattened().iter().map(|&i| unit.vertices[i as usize]);
-            let center = solid3d::Aabb::of_points(corners.clone()).center();
-            let neighbour = (min + 2.0 * (center - (min + 0.5))).to_array().map(|x| x as i32);
-            if !filled.contains(&neighbour) {
-                let first = vertices.len() as u32;
-                triangles.extend([[first, first + 1, first + 2], [first + 3, first + 4, first + 5]]);
-                vertices.extend(corners);
-            }
-        }
-    }
-    (filled, Soup::mesh(vertices, triangles))
 }
 
 fn on_lattice(rng: &mut StdRng, end: i32) -> DVec3 {

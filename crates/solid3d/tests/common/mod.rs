@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "every test file uses a part of it")]
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests may panic and print")]
 
+use std::collections::HashSet;
+
 use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -10,7 +12,7 @@ use solid_oracle::generate::{
     Pair, PlacementKind, Regime, random_pair, random_placement, random_shape, seeded,
 };
 pub use solid_oracle::generate::{direction, in_cube, log_uniform};
-use solid3d::{ComplexShapeBuilder, Shape, glam, query};
+use solid3d::{Aabb, ComplexShapeBuilder, Shape, glam, query};
 
 /// A union of hulls of vertices, as the oracle sees it.
 #[derive(Clone, Debug)]
@@ -130,6 +132,69 @@ pub fn torus(rows: u32, columns: u32, tube: f64) -> Soup {
         let radius = 1.0 + tube * (TAU * v).cos();
         DVec3::new(radius * (TAU * u).cos(), tube * (TAU * v).sin(), radius * (TAU * u).sin()) / (1.0 + tube)
     })
+}
+
+/// The topology of a sphere, around the axis y; the vertices are what `map` gives.
+pub fn globe(rows: u32, columns: u32, mut map: impl FnMut(DVec3) -> DVec3) -> Soup {
+    use std::f64::consts::{PI, TAU};
+    let mut vertices = vec![map(DVec3::Y)];
+    for i in 1..rows {
+        for j in 0..columns {
+            let (polar, round) =
+                (PI * f64::from(i) / f64::from(rows), TAU * f64::from(j) / f64::from(columns));
+            vertices.push(map(DVec3::new(polar.sin() * round.cos(), polar.cos(), polar.sin() * round.sin())));
+        }
+    }
+    vertices.push(map(-DVec3::Y));
+    let (at, last) = (|i: u32, j: u32| 1 + (i - 1) * columns + j % columns, vertices.len() as u32 - 1);
+    let mut triangles = Vec::new();
+    for j in 0..columns {
+        triangles.push([0, at(1, j + 1), at(1, j)]);
+        triangles.push([last, at(rows - 1, j), at(rows - 1, j + 1)]);
+        for i in 1..rows - 1 {
+            triangles.push([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+            triangles.push([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
+        }
+    }
+    Soup::mesh(vertices, triangles)
+}
+
+/// The cells of a lattice that are filled, and the faces between filled and empty ones: edges of four triangles, cavities and
+/// several parts included. No two triangles share the index of a vertex.
+pub fn voxels(rng: &mut StdRng, side: i32) -> (HashSet<[i32; 3]>, Soup) {
+    let fill = rng.random_range(0.2..0.7);
+    let range = || 0..side;
+    let cells = range().flat_map(|x| range().flat_map(move |y| range().map(move |z| [x, y, z])));
+    let filled: HashSet<[i32; 3]> = cells.filter(|_| rng.random_bool(fill)).collect();
+    let mut sorted: Vec<_> = filled.iter().copied().collect();
+    sorted.sort_unstable();
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for cell in sorted {
+        let min = DVec3::from_array(cell.map(f64::from));
+        let unit = block(min, min + 1.0);
+        for face in unit.triangles().chunks(2) {
+            let corners = face.as_flattened().iter().map(|&i| unit.vertices[i as usize]);
+            let center = Aabb::of_points(corners.clone()).center();
+            let neighbour = (min + 2.0 * (center - (min + 0.5))).to_array().map(|x| x as i32);
+            if !filled.contains(&neighbour) {
+                let first = vertices.len() as u32;
+                triangles.extend([[first, first + 1, first + 2], [first + 3, first + 4, first + 5]]);
+                vertices.extend(corners);
+            }
+        }
+    }
+    (filled, Soup::mesh(vertices, triangles))
+}
+
+/// Several meshes as one.
+pub fn joined(soups: impl IntoIterator<Item = Soup>) -> Soup {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for soup in soups {
+        let first = vertices.len() as u32;
+        triangles.extend(soup.triangles().iter().map(|t| t.map(|i| i + first)));
+        vertices.extend(soup.vertices);
+    }
+    Soup::mesh(vertices, triangles)
 }
 
 pub fn bumpy_sphere(rng: &mut StdRng, rows: u32, columns: u32) -> Soup {
