@@ -5,7 +5,7 @@
 //! no edge, and of the triangles at an edge or a vertex that the ray would hit, it crosses just those that it must for
 //! counts to be right. The thesis (section 3.1.2) tries other rays until one hits no edge; this is never in doubt.
 
-use glam::{DVec3, Vec3Swizzles};
+use glam::{DVec2, DVec3, Vec3Swizzles};
 use solid_convex::simd::each;
 
 use crate::exact::{orient2d, orient3d};
@@ -20,8 +20,9 @@ pub(super) fn crossing(triangle: &Triangle, p: DVec3) -> Option<i64> {
     if greatest.cmplt(p).any() || least.y > p.y || least.z > p.z {
         return Some(0);
     }
-    let edges = [[a, b], [b, c], [c, a]];
-    let turns = each(edges, |[u, v]| turn(u, v, p));
+    let [u, v, w] = each(*triangle, |corner| corner.yz());
+    let edges = [[u, v], [v, w], [w, u]];
+    let turns = each(edges, |[u, v]| sign(orient2d(u, v, p.yz())));
     if turns.contains(&1) && turns.contains(&-1) {
         return Some(0);
     }
@@ -30,24 +31,25 @@ pub(super) fn crossing(triangle: &Triangle, p: DVec3) -> Option<i64> {
     if side == 0 && intersect(triangle, &[p; 3]) {
         return None;
     }
-    let [x, y, z] = [0, 1, 2].map(|i| if turns[i] == 0 { turn_moved(edges[i]) } else { turns[i] });
-    let winding = if x == y && y == z { x } else { 0 };
+    let winding = winding(turns, edges);
     // Seen from +x a triangle that winds counterclockwise is above `p` when `p` is on its positive side.
     Some(if side == winding { winding } else { 0 })
 }
 
-/// The orientation of `p` and an edge in the plane (y, z).
-fn turn(u: DVec3, v: DVec3, p: DVec3) -> i64 {
-    sign(orient2d(u.yz(), v.yz(), p.yz()))
+/// How a triangle of a plane winds around a point that is moved: 1 counterclockwise, -1 clockwise, 0 not at all. `turns` are the
+/// orientations of the edges and the point before, 0 where that is on the edge's line.
+pub(super) fn winding(turns: [i64; 3], edges: [[DVec2; 2]; 3]) -> i64 {
+    let [x, y, z] = [0, 1, 2].map(|i| if turns[i] == 0 { turn_moved(edges[i]) } else { turns[i] });
+    if x == y && y == z { x } else { 0 }
 }
 
-/// The orientation of a point on the edge's line, once moved: the sign of the derivative by y, else by z. 0 for an edge
-/// that is a point here, of which the triangle has no inside.
-fn turn_moved([u, v]: [DVec3; 2]) -> i64 {
-    let by_y = sign(u.z - v.z);
-    if by_y == 0 { sign(v.y - u.y) } else { by_y }
+/// The orientation of a point on the edge's line, once moved: the sign of the derivative by the first coordinate, else by the second. 0 for an
+/// edge that is a point here, of which the triangle has no inside.
+fn turn_moved([u, v]: [DVec2; 2]) -> i64 {
+    let by_first = sign(u.y - v.y);
+    if by_first == 0 { sign(v.x - u.x) } else { by_first }
 }
 
-fn sign(x: f64) -> i64 {
+pub(super) fn sign(x: f64) -> i64 {
     i64::from(x > 0.0) - i64::from(x < 0.0)
 }
