@@ -8,14 +8,15 @@
 mod common;
 
 use common::{
-    assert_rate, bumpy_sphere, direction, in_cube, placement, random_complex, random_mesh, shape_of, torus,
+    assert_rate, bumpy_sphere, cube, direction, globe, in_cube, joined, placement, random_complex,
+    random_mesh, shape_of, torus, voxels,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid3d::query::{self, Faces, FromInside, Ray, RayHit, RayOptions};
-use solid3d::{Error, Shape, ShapeKind, glam};
+use solid3d::{Aabb, Error, Shape, ShapeKind, glam};
 
 const PASSES: RayOptions = RayOptions { faces: Faces::Both, from_inside: FromInside::Passes };
 const BY_DEFAULT: RayOptions = RayOptions { faces: Faces::Both, from_inside: FromInside::Hits };
@@ -357,6 +358,120 @@ fn a_solid_mesh_is_hit_from_inside() {
     assert!(all[0].surface.is_none() && all[1].surface.is_some());
     let hole = Ray::new(DVec3::ZERO, DVec3::Y);
     assert_eq!(query::cast_ray(&solid, &here, &hole, &BY_DEFAULT).unwrap(), None);
+}
+
+/// Law: a ray that starts on the surface of a solid mesh hits it there when it goes in, and when it goes out nowhere after: from corners, edges and
+/// faces, under all placements and in all sizes.
+#[test]
+fn a_ray_that_starts_on_the_surface_of_a_solid_and_goes_in_hits_there() {
+    /// In units of the solid: how long a ray is that is wholly inside or outside, and how near to its start counts as there.
+    const LENGTH: f64 = 1e-3;
+    const THERE: f64 = 1e-9;
+    let seed = 98;
+    println!("seed {seed}");
+    let (mut rng, here) = (seeded(seed), DAffine3::IDENTITY);
+    let (mut cases, mut inward, mut missed) = ([0; 3], [0; 3], [0; 3]);
+    for round in 0..600 {
+        let soup = match round % 4 {
+            0 => torus(8, 6, rng.random_range(0.2..0.8)),
+            1 => globe(5, 6, |v| v * rng.random_range(0.5..1.0)),
+            2 => cube(0.7),
+            // Some faces of one are inside of the other.
+            _ => joined([cube(0.5), globe(4, 5, |v| v * rng.random_range(0.6..1.0))]),
+        };
+        // The torus is inside out.
+        let outside = if round % 4 == 0 { Faces::Back } else { Faces::Front };
+        let from_outside = RayOptions { faces: outside, ..BY_DEFAULT };
+        let size = 10f64.powi(rng.random_range(-80..80));
+        let mut at = placement(&mut rng, 1.0);
+        at.translation *= 10f64.powi(round % 3);
+        let at = DAffine3::from_scale(DVec3::splat(size)) * at;
+        let solid = soup.shape().into_solid().unwrap();
+        for case in 0..60 {
+            let from = case % 3;
+            let corners = soup.triangles()[rng.random_range(0..soup.primitives.len())];
+            let [a, b, c] = corners.map(|i| soup.vertices[i as usize]);
+            let [along, across] = [(); 2].map(|()| rng.random_range(0.0..1.0));
+            let origin = [a, a.lerp(b, along), a.lerp(b, along).lerp(c, across)][from];
+            // At a corner fewer go in than out; towards the middle more do.
+            let mut way = direction(&mut rng);
+            if way.dot(origin) > 0.0 && rng.random_bool(0.5) {
+                way = -way;
+            }
+            // Clearly in or out, from its start on.
+            let depth =
+                |t: f64| -query::signed_distance(&solid, &here, origin + way * t).unwrap().distance / t;
+            let depths = [1e-6, 1e-5, 1e-4, LENGTH].map(depth);
+            let [goes_in, goes_out] = [1.0, -1.0].map(|sign| depths.iter().all(|depth| sign * depth > 0.1));
+            if !goes_in && !goes_out {
+                continue;
+            }
+            cases[from] += 1;
+            let ray = Ray::new(at.transform_point3(origin), at.transform_vector3(way));
+            let short = ray.until(LENGTH);
+            let first = query::cast_ray(&solid, &at, &short, &BY_DEFAULT).unwrap();
+            let hits_there = first.is_some_and(|hit| hit.t < THERE);
+            let context = || format!("round {round}, case {case}: {at:?} {ray:?} {first:?}");
+            assert_eq!(query::ray_meets(&solid, &at, &short, &BY_DEFAULT).unwrap(), first.is_some());
+            let all = query::cast_ray_all(&solid, &at, &short, &BY_DEFAULT).unwrap();
+            assert_eq!(all.first(), first.as_ref(), "{}", context());
+            if goes_in {
+                inward[from] += 1;
+                let enters = query::cast_ray(&solid, &at, &short, &from_outside).unwrap();
+                missed[from] += usize::from(!hits_there || enters.is_none_or(|hit| hit.t >= THERE));
+                let endless = query::cast_ray(&solid, &at, &ray, &BY_DEFAULT).unwrap();
+                assert!(!hits_there || endless == first, "{}: {endless:?}", context());
+            } else {
+                assert!(first.is_none() || hits_there, "{}", context());
+            }
+        }
+    }
+    for (i, from) in ["a corner", "an edge", "a face"].iter().enumerate() {
+        println!("from {from}: of {} rays that go in {} do not hit there", inward[i], missed[i]);
+        assert_rate("rays", inward[i], cases[i]);
+    }
+    assert_eq!(missed, [0; 3]);
+}
+
+/// On a lattice, where rays meet corners, edges and planes of a solid exactly: a ray starts inside if and only if the solid contains its origin, and
+/// from within the solid's box hits if and only if its segment has a point of it. (From beyond it is moved up to the box, which rounds it.)
+#[test]
+fn a_ray_starts_inside_where_the_solid_contains_its_origin() {
+    let (mut rng, here) = (seeded(99), DAffine3::IDENTITY);
+    let (mut inside, mut outside, mut later) = (0, 0, 0);
+    for _ in 0..60 {
+        let (filled, soup) = voxels(&mut rng, 4);
+        if filled.is_empty() {
+            continue;
+        }
+        let solid = soup.shape().into_solid().unwrap();
+        for _ in 0..200 {
+            // In halves: in a cell, on a face, an edge or a corner. Directions are sheared exactly.
+            let mut lattice = |range: std::ops::RangeInclusive<i32>| {
+                DVec3::from_array(std::array::from_fn(|_| f64::from(rng.random_range(range.clone()))))
+            };
+            let (origin, mut way) = (lattice(-1..=9) / 2.0, lattice(-4..=4));
+            if ![1.0, 2.0, 4.0].contains(&way.abs().max_element()) {
+                way = DVec3::new(1.0, 0.0, -1.0);
+            }
+            let ray = Ray::segment(origin, origin + way);
+            let contains = query::contains_point(&solid, &here, origin).unwrap();
+            let hit = query::cast_ray(&solid, &here, &ray, &BY_DEFAULT).unwrap();
+            let context = || format!("{filled:?} {ray:?} {hit:?}");
+            let starts_inside = hit.is_some_and(|hit| hit.t == 0.0 && hit.surface.is_none());
+            assert_eq!(starts_inside, contains, "{}", context());
+            let segment = Shape::convex_hull(&[origin, origin + way]).unwrap();
+            let meets = query::intersects(&solid, &here, &segment, &here).unwrap();
+            let in_box = query::bounds(&solid, &here).unwrap().contains(&Aabb::new(origin, origin));
+            assert!(hit.is_some() == meets || !in_box, "{}", context());
+            inside += usize::from(contains);
+            outside += usize::from(!contains);
+            later += usize::from(!contains && meets);
+        }
+    }
+    println!("{later} of {outside} that start outside hit");
+    assert_rate("origins", inside, inside + outside);
+    assert!(6 * later > outside && 2 * later < outside);
 }
 
 /// Wild but allowed numbers neither panic nor hang, and what comes back is a number.

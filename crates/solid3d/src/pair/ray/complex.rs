@@ -6,8 +6,6 @@ use solid_convex::simd::level;
 use solid_convex::unit_scale;
 
 use super::super::Scratch;
-use super::super::containment::PlacedSolid;
-use super::super::frame::Frame;
 use super::super::table::PlacedComplex;
 use super::convex::hull_hits;
 use super::glance::Glance;
@@ -31,15 +29,18 @@ struct LocalRay {
 
 pub(super) fn hits((complex, at): PlacedComplex, hits: &mut Hits, scratch: &mut Scratch) {
     let Some(ray) = LocalRay::new(complex, at, hits) else { return };
-    if ray.start == 0.0 && starts_inside((complex, at), hits, scratch) {
-        hits.add_inside();
-    }
+    let asks_for_start =
+        ray.start == 0.0 && complex.is_solid() && hits.options.from_inside == FromInside::Hits;
+    let found = Found { hits, crossed: asks_for_start.then(Crossed::default) };
     let tree_ray = TreeRay { origin: ray.origin, direction: ray.direction, half_extents: DVec3::ZERO };
     let Scratch { traversal, primitive_tests, .. } = scratch;
-    let mut left = hits.until - ray.start;
+    let mut left = found.left(&ray);
     let images = complex.images().map(|images| (Glance::new(&ray.shear, complex.tree().normal()), images));
-    let mut meeting = Meeting { complex, at, ray: &ray, images, hits, primitive_tests };
+    let mut meeting = Meeting { complex, at, ray: &ray, images, found, primitive_tests };
     complex.tree().along_on(level(), &tree_ray, &mut left, traversal, &mut meeting);
+    if meeting.found.crossed.is_some_and(|crossed| crossed.starts_inside()) {
+        hits.add_inside();
+    }
 }
 
 /// Looks for primitives that the ray meets.
@@ -49,8 +50,27 @@ struct Meeting<'s, 'r> {
     ray: &'s LocalRay,
     /// Images of triangles, and what looks at them.
     images: Option<(Glance, &'s LeafImages)>,
-    hits: &'s mut Hits<'r>,
+    found: Found<'s, 'r>,
     primitive_tests: &'s mut u64,
+}
+
+/// What a ray has found on its way.
+struct Found<'s, 'r> {
+    hits: &'s mut Hits<'r>,
+    /// Where a hit is wanted if it starts inside of a solid mesh.
+    crossed: Option<Crossed>,
+}
+
+/// Where a ray starts, as to a solid mesh: told by the triangles that it crosses from there to beyond all.
+///
+/// By the same hits as are reported, rounded as they are. For of a closed mesh the windings around the whole line of the ray sum to 0: so a ray that
+/// starts outside and has no hit up to some point of it is outside there. The exact test of the origin in the common frame, which rounds it
+/// otherwise, took for outside what had the triangle behind it: one in ten of the rays that go into a solid from its surface missed it.
+#[derive(Default)]
+struct Crossed {
+    /// Where it starts, whichever way it goes: that is inside.
+    on_surface: bool,
+    winding: i64,
 }
 
 impl RayLeaves for Meeting<'_, '_> {
@@ -63,24 +83,49 @@ impl RayLeaves for Meeting<'_, '_> {
 
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, left: &mut f64) {
-        let Meeting { complex, at, ray, images, hits, primitive_tests } = self;
+        let Meeting { complex, at, ray, images, found, primitive_tests } = self;
         **primitive_tests += leaf.primitives.len() as u64;
         match (images, complex.triangles()) {
             (Some((glance, images)), _) => {
                 let image = images.of(leaf);
                 for lane in bits(glance.candidates(simd, &image) & leaf.lanes()) {
                     let triangle = image.indices(lane).map(|i| complex.vertices()[i as usize]);
-                    ray.meet(&triangle, leaf.primitives[lane], hits);
+                    ray.meet(&triangle, leaf.primitives[lane], found);
                 }
             }
-            (None, Some(triangles)) => ray.meet_leaf(complex.vertices(), triangles, leaf.primitives, hits),
+            (None, Some(triangles)) => ray.meet_leaf(complex.vertices(), triangles, leaf.primitives, found),
             (None, None) => {
                 for &primitive in leaf.primitives {
-                    ray.meet_primitive((complex, at), primitive, hits);
+                    ray.meet_primitive((complex, at), primitive, found);
                 }
             }
         }
-        *left = if hits.until < 0.0 { -1.0 } else { (hits.until - ray.start).max(0.0) };
+        *left = found.left(ray);
+    }
+}
+
+impl Found<'_, '_> {
+    /// How far a ray has to look on; negative when nothing is of interest.
+    #[inline]
+    fn left(&self, ray: &LocalRay) -> f64 {
+        let until = self.hits.until;
+        match self.crossed {
+            _ if until < 0.0 => -1.0,
+            Some(_) => f64::INFINITY,
+            None => (until - ray.start).max(0.0),
+        }
+    }
+}
+
+impl Crossed {
+    /// Adds a triangle that is hit.
+    fn add(&mut self, t: f64, winding: i64) {
+        self.on_surface |= t == 0.0;
+        self.winding += winding;
+    }
+
+    fn starts_inside(&self) -> bool {
+        self.on_surface || self.winding != 0
     }
 }
 
@@ -93,18 +138,6 @@ fn triangle(complex: &Complex, primitive: u32) -> Option<Triangle> {
         [i] => Some([at(i); 3]),
         _ => None,
     }
-}
-
-/// Whether the origin of the ray is in a solid mesh.
-fn starts_inside((mesh, at): PlacedComplex, hits: &Hits, scratch: &mut Scratch) -> bool {
-    if !mesh.is_solid() || hits.options.from_inside == FromInside::Passes {
-        return false;
-    }
-    let at_origin = DAffine3::from_translation(hits.ray.origin);
-    let frame = Frame::new(at, mesh.reach(), &at_origin, DVec3::ZERO);
-    let [mesh_to_common, point_to_common] = &frame.common;
-    PlacedSolid::new(mesh, mesh_to_common)
-        .is_some_and(|solid| solid.contains(point_to_common.translation, scratch))
 }
 
 impl LocalRay {
@@ -127,7 +160,7 @@ impl LocalRay {
 
     /// Adds where the ray meets the triangles of a leaf: eight at once sort out most of those that it does not.
     #[inline(never)] // into the walk, which has no need of it but for what was deformed
-    fn meet_leaf(&self, vertices: &[DVec3], triangles: &[[u32; 3]], leaf: &[u32], hits: &mut Hits) {
+    fn meet_leaf(&self, vertices: &[DVec3], triangles: &[[u32; 3]], leaf: &[u32], found: &mut Found) {
         let corner = |i: u32| &vertices[i as usize];
         for some in leaf.chunks(LANES) {
             let mut corners = Corners::default();
@@ -136,24 +169,28 @@ impl LocalRay {
             }
             for lane in bits(self.shear.candidates(&corners) & ((1 << some.len()) - 1)) {
                 let triangle = triangles[some[lane] as usize].map(|i| *corner(i));
-                self.meet(&triangle, some[lane], hits);
+                self.meet(&triangle, some[lane], found);
             }
         }
     }
 
     /// Adds where the ray meets a primitive of any kind.
-    fn meet_primitive(&self, (complex, at): PlacedComplex, primitive: u32, hits: &mut Hits) {
+    fn meet_primitive(&self, (complex, at): PlacedComplex, primitive: u32, found: &mut Found) {
         let owner = complex.owner(primitive);
         match triangle(complex, primitive) {
-            Some(triangle) => self.meet(&triangle, owner, hits),
-            None => hull_hits(&complex.primitive_hull(primitive), at, owner, hits),
+            Some(triangle) => self.meet(&triangle, owner, found),
+            None => hull_hits(&complex.primitive_hull(primitive), at, owner, found.hits),
         }
     }
 
     /// Adds where the ray meets a triangle.
     #[inline]
-    fn meet(&self, triangle: &Triangle, primitive: u32, hits: &mut Hits) {
+    fn meet(&self, triangle: &Triangle, primitive: u32, found: &mut Found) {
         let Some(TriangleHit { t, barycentric, back }) = self.shear.hit(triangle) else { return };
+        let Found { hits, crossed } = found;
+        if let Some(crossed) = crossed {
+            crossed.add(t, self.shear.winding(triangle));
+        }
         let t = self.start + t;
         if back.is_some_and(|back| !hits.options.faces.includes(back)) || !hits.wants(t, primitive) {
             return;

@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 use solid_convex::determinant::difference_of_products;
 use solid_convex::simd::{dispatch, each};
 
+use super::super::crossing::{sign, winding};
 use crate::triangle_triangle::Triangle;
 
 /// Space as a ray sees it.
@@ -150,6 +151,14 @@ impl Shear {
         (t >= 0.0).then_some(TriangleHit { t, barycentric, back: Some(left) })
     }
 
+    /// How a triangle winds around the line of the ray, seen along it: the signs are those of [`hit`](Shear::hit), but a line that meets an edge or
+    /// a corner is moved, so that of a closed mesh the sum is 0.
+    pub fn winding(&self, triangle: &Triangle) -> i64 {
+        let [a, b, c] = each(*triangle, |p| self.point(p).truncate());
+        let edges = [[b, c], [c, a], [a, b]];
+        winding(each(edges, |[p, q]| sign(difference_of_products(p.x, q.y, p.y, q.x))), edges)
+    }
+
     /// A triangle in a plane with the ray, of which some edge meets the line of the ray, exactly: from the first point of it
     /// on. Segments and points, as degenerate triangles, are hit like this.
     fn edge_on(&self, corners: [DVec3; 3]) -> Option<TriangleHit> {
@@ -238,6 +247,43 @@ mod tests {
         }
         println!("{hits} of {cases} hit, {edge_on} edge on");
         assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))) && edge_on > 1000);
+    }
+
+    /// Law: around the line of a ray the windings of a closed mesh sum to 0, also where it runs through corners, along edges and in faces; and what winds
+    /// around it is hit.
+    #[test]
+    fn windings_of_a_closed_mesh_sum_to_zero() {
+        let seed = 85;
+        println!("seed {seed}");
+        let mut rng = seeded(seed);
+        let (cases, mut wound) = (40_000u32, 0);
+        for case in 0..cases {
+            let grid = if case % 2 == 0 { 2.0 } else { 1e9 };
+            let mut random = || {
+                let coordinate = |_| f64::round(rng.random_range(-1.0..1.0) * grid) / grid;
+                DVec3::from_array(std::array::from_fn(coordinate))
+            };
+            let [a, b, c, d, target, to] = std::array::from_fn(|_| random());
+            let target = [target, a, a.lerp(b, 0.5), (a + b + c + d) / 4.0][case as usize / 2 % 4];
+            let direction = if case % 3 == 0 { b - a } else { to - target };
+            if direction == DVec3::ZERO {
+                continue;
+            }
+            // Before them all.
+            let shear = Shear::new(target - direction / direction.abs().max_element() * 8.0, direction, 1.0);
+            let faces = [[a, b, c], [a, d, b], [b, d, c], [c, d, a]];
+            let windings = faces.map(|face| shear.winding(&face));
+            assert_eq!(windings.iter().sum::<i64>(), 0, "case {case}: {faces:?} {target} {direction}");
+            for (face, winding) in faces.iter().zip(windings) {
+                assert!(
+                    winding == 0 || shear.hit(face).is_some(),
+                    "case {case}: {face:?} {target} {direction}"
+                );
+            }
+            wound += u32::from(windings != [0; 4]);
+        }
+        println!("{wound} of {cases} lines are wound around");
+        assert!((0.3..=0.7).contains(&(f64::from(wound) / f64::from(cases))));
     }
 
     /// A third of an edge has no exact weights, but the ray starts there all the same; both ways.
