@@ -390,6 +390,45 @@ fn gaps_within_the_margin_are_contacts() {
     }
 }
 
+/// Law: what is nearer than a margin has a contact there, as deep as the gap is wide, however small that is: down to 1e-11 of the size, also of
+/// shapes of which one is small.
+#[test]
+fn what_is_nearer_than_the_margin_has_a_contact() {
+    let mut rng = seeded(SEED + 10);
+    let (mut apart, cases) = (0, 6_000);
+    for case in 0..cases {
+        let soup = match case % 4 {
+            0 => random_mesh(&mut rng, 12),
+            1 => random_complex(&mut rng, 6),
+            _ => common::grid(&mut rng, 4, 4),
+        };
+        let (a, b) = (soup.shape(), common::some_shape(&mut rng, case / 4));
+        let [pa, mut pb] = [0, 1].map(|_| placement(&mut rng, 1.0));
+        if case % 3 == 0 {
+            pb.matrix3 *= 10f64.powf(rng.random_range(-3.0..0.0));
+        }
+        let size = size_of(&a, &pa, &b, &pb);
+        pb.translation = pa.translation + direction(&mut rng) * size;
+        let between = query::distance(&a, &pa, &b, &pb).unwrap();
+        let Some(way) = (between.point_on_b - between.point_on_a).try_normalize() else { continue };
+        let gap = size * 10f64.powf(rng.random_range(-11.0..-6.0));
+        pb.translation -= way * (between.distance - gap);
+        let distance = query::distance(&a, &pa, &b, &pb).unwrap().distance;
+        if distance == 0.0 {
+            continue;
+        }
+        apart += 1;
+        let found = query::contacts(&a, &pa, &b, &pb, &within(0.05 * size)).unwrap();
+        let context =
+            format!("case {case}: {} {pa:?} {} {pb:?}, {distance:e} apart of {size}", a.kind(), b.kind());
+        assert_laws(&found, 0.05 * size, size, &context);
+        let deepest = deepest(&found);
+        assert!((deepest + distance).abs() <= 1e-8 * size, "{context}: {deepest}, {found:?}");
+    }
+    println!("{apart} of {cases} are apart");
+    assert!(apart * 10 > cases * 9, "{apart} of {cases}");
+}
+
 /// Two unit cubes of triangles, 0.30 in each other: that deep, everywhere.
 #[test]
 fn cubes_of_triangles_are_as_deep_as_cubes() {

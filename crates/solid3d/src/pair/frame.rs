@@ -141,6 +141,8 @@ pub(super) struct Around {
     origin: DVec3,
     /// World lengths times this are lengths of that space; a power of two.
     pub scale: f64,
+    /// How far a placed point may be from where it truly lies, in that space.
+    pub rounding: f64,
 }
 
 impl Around {
@@ -150,13 +152,14 @@ impl Around {
         let [half_a, half_b] = bounds.map(|bounds| bounds.half_extents().max_element());
         let between = center_a - center_b;
         let near = half_a + half_b + between.abs().max_element();
-        let scale = unit_scale(near.max(UNIT_MIN * size(at, reach)));
+        let size = size(at, reach);
+        let scale = unit_scale(near.max(UNIT_MIN * size));
         let origin = if comes_first(between) { center_a } else { center_b };
         let common = at.map(|at| DAffine3 {
             matrix3: at.matrix3 * scale,
             translation: (at.translation - origin) * scale,
         });
-        Around { common, origin, scale }
+        Around { common, origin, scale, rounding: ROUNDINGS * size * scale }
     }
 
     /// Takes a point to the world.

@@ -30,8 +30,8 @@ impl Way {
         let Way { out, depth, foot } = *self;
         let on_body = foot - out * depth;
         match mirrored {
-            true => Meeting { normal: out, depth, on_a: on_body, on_b: foot },
-            false => Meeting { normal: -out, depth, on_a: foot, on_b: on_body },
+            true => Meeting { normal: out, tilt: 0.0, depth, on_a: on_body, on_b: foot },
+            false => Meeting { normal: -out, tilt: 0.0, depth, on_a: foot, on_b: on_body },
         }
     }
 }

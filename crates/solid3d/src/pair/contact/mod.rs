@@ -107,8 +107,8 @@ const SAME_DEPTH: f64 = 1e-10;
 /// The error of the depth of a curved body, relative to it.
 const DEPTH_ERROR: f64 = 4.0 * epa::DEPTH_TOLERANCE;
 
-/// Closest points nearer to each other than this, in the unit of the pair, give a direction of few digits; a separating axis, which then
-/// can only be off by their distance over the extent, is better.
+/// Closest points nearer to each other than this, in the unit of the pair, give a direction of few digits. A separating axis is better where it is that
+/// direction up to those: across what is flat or straight it can only be off by their distance over the extent. At corners it may be any.
 const NEAR: f64 = 1e-9;
 
 /// A contact in the common frame.
@@ -134,6 +134,8 @@ struct Patch {
 struct Meeting {
     /// From `b` to `a`, unit.
     normal: DVec3,
+    /// How far the normal may be off by the rounding of closest points; 0 of any other.
+    tilt: f64,
     /// Negative for a gap. Space: common.
     depth: f64,
     /// The deepest point of each, or the closest. Space: common.
@@ -362,7 +364,7 @@ impl<'a> Pair<'a> {
         if let Some(found) = found {
             let (on_a, on_b) = (from_a.point(found.points.on_a), from_b.point(found.points.on_b));
             let depth = found.depth * self.frame.scale;
-            return Some(Meeting { normal: found.direction, depth, on_a, on_b });
+            return Some(Meeting { normal: found.direction, tilt: 0.0, depth, on_a, on_b });
         }
         if self.margin == 0.0 {
             return None;
@@ -373,18 +375,25 @@ impl<'a> Pair<'a> {
             return None;
         }
         let (on_a, on_b) = (from_a.point(closest.points.on_a), from_b.point(closest.points.on_b));
-        let between = || (on_a - on_b).try_normalize();
+        let between = (on_a - on_b).try_normalize();
+        // Each end of the way is off by that; unit vectors never by more than 2.
+        let tilt = (2.0 * self.frame.rounding / distance).min(2.0);
+        let is_between = |axis: &DVec3| between.is_none_or(|between| between.distance(*axis) <= tilt);
         let axis = || match gjk::intersection(a, at_a, b, at_b) {
-            gjk::Outcome::Separated { axis } => Some(axis),
+            gjk::Outcome::Separated { axis } => Some(axis).filter(is_between),
             _ => None,
         };
-        let normal = if distance < NEAR { axis().or_else(between) } else { between() }?;
-        Some(Meeting { normal, depth: -distance, on_a, on_b })
+        let axis = if distance < NEAR { axis() } else { None };
+        let (normal, tilt) = match axis {
+            Some(axis) => (axis, 2.0 * tilt),
+            None => (between?, tilt),
+        };
+        Some(Meeting { normal, tilt, depth: -distance, on_a, on_b })
     }
 
     /// The contacts of two bodies along their normal, the deepest point among them.
     fn touches(&self, a: &face::Placed, b: &face::Placed, meeting: &Meeting) -> Vec<Touch> {
-        let Meeting { normal, depth, on_a, on_b } = *meeting;
+        let Meeting { normal, depth, on_a, on_b, .. } = *meeting;
         let primitives = [a.primitive, b.primitive];
         let deepest = |features| Touch { on_a, on_b, depth, primitives, features };
         if a.is_ball() || b.is_ball() {

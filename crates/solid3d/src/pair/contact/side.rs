@@ -130,15 +130,15 @@ impl<'a> Side<'a> {
         orientation != 0.0 && self.body.plane.is_some_and(points_in)
     }
 
-    /// The normal, if the surface has it where it is touched; else that of the triangle, or of a face next to it. `None` where there is no contact
-    /// along any of these: a ball that is not over the triangle.
-    pub fn corrected(&self, out: DVec3) -> Option<Corrected> {
+    /// The normal, which may be off by a tilt, if the surface has it where it is touched; else that of the triangle, or of a face next to it.
+    /// `None` where there is no contact along any of these: a ball that is not over the triangle.
+    pub fn corrected(&self, out: DVec3, tilt: f64) -> Option<Corrected> {
         let Some(normal) = self.body.plane else { return Some(Corrected::Kept(out)) };
         let cosine = normal.dot(out);
         if is_parallel(normal, out) {
             return Some(Corrected::Kept(normal * cosine.signum()));
         }
-        if self.stars.have(out, &self.stars.welded(self.body.primitive)) {
+        if self.stars.have(out, tilt, &self.stars.welded(self.body.primitive)) {
             return Some(Corrected::Kept(out));
         }
         if self.has_ball_beside(normal) {
@@ -236,7 +236,7 @@ mod tests {
                 let out = in_cube(&mut rng).normalize();
                 let [found, expected] = [&with_hubs, &without].map(|stars| {
                     let placed = face::Placed::of_primitive(&body, triangle, &here, &corners);
-                    Side::new(stars, placed, &corners, other).corrected(out)
+                    Side::new(stars, placed, &corners, other).corrected(out, 0.0)
                 });
                 let (Some(found), Some(expected)) = (found, expected) else {
                     assert!(found.is_none() && expected.is_none(), "case {case}, triangle {triangle}");

@@ -111,9 +111,9 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let of_a = Side::new(&stars_a, placed_a, &corners_a, other_b);
         let of_b = Side::new(&stars_b, placed_b, &corners_b, other_a);
         let (in_a, in_b) = (&of_a.body, &of_b.body);
-        let (normal, touches) = match of_b.corrected(meeting.normal)? {
+        let (normal, touches) = match of_b.corrected(meeting.normal, meeting.tilt)? {
             Corrected::Replaced(normal) => (normal, pair.over(in_a, in_b, normal, false)),
-            on_b => match (of_a.corrected(-meeting.normal)?, on_b) {
+            on_b => match (of_a.corrected(-meeting.normal, meeting.tilt)?, on_b) {
                 (Corrected::Replaced(normal), _) => (-normal, pair.over(in_a, in_b, -normal, true)),
                 (_, Corrected::Adopted(normal)) => (normal, pair.across(in_a, in_b, normal)),
                 (Corrected::Adopted(normal), _) => (-normal, pair.across(in_a, in_b, -normal)),

@@ -147,7 +147,7 @@ impl Encounter<'_> {
             Some(normal) => (normal, self.over(side, normal), self.pair.margin == 0.0),
             None => {
                 let meeting = self.meeting(side)?;
-                let corrected = match side.corrected(meeting.normal * self.sign())? {
+                let corrected = match side.corrected(meeting.normal * self.sign(), meeting.tilt)? {
                     Corrected::Kept(out) | Corrected::Replaced(out) if side.is_cut_short(out, self.found) => {
                         Corrected::Replaced(-out)
                     }

@@ -113,22 +113,31 @@ impl<'a> Stars<'a> {
         is_parallel(self.plane(triangle, other).normal, normal)
     }
 
-    /// Whether the surface has a normal at what of some vertices is highest along it: nothing around that is higher.
-    pub fn have(&self, normal: DVec3, vertices: &[u32]) -> bool {
+    /// Whether the surface has a normal at what of some vertices is highest along it: nothing around that is higher. A normal that is off by a tilt
+    /// raises what is as far off as these vertices are from each other by that part of it; larger primitives around may be raised by more, but they
+    /// ask for themselves.
+    pub fn have(&self, normal: DVec3, tilt: f64, vertices: &[u32]) -> bool {
         let local = self.map.linear().transpose() * normal;
         let height = |vertex: u32| local.dot(self.complex.vertices()[vertex as usize]);
         let highest = vertices.iter().map(|&i| height(i)).fold(f64::NEG_INFINITY, f64::max);
-        let is_touched = |vertex: &u32| height(*vertex) >= highest - LEVEL;
+        let level = LEVEL + if tilt > 0.0 { tilt * self.extent(vertices) } else { 0.0 };
+        let is_touched = |vertex: &u32| height(*vertex) >= highest - level;
         let touched: SmallVec<[u32; 4]> = vertices.iter().copied().filter(is_touched).collect();
         let star = (touched.len() == 1).then(|| (touched[0], local));
         if star.is_some() && star == self.last.get() {
             return true;
         }
-        let has = self.are_below(&touched, local, highest + LEVEL);
+        let has = self.are_below(&touched, local, highest + level);
         if has {
             self.last.set(star);
         }
         has
+    }
+
+    /// How far some vertices are from the first of them, at most.
+    fn extent(&self, vertices: &[u32]) -> f64 {
+        let first = self.place(vertices[0]);
+        vertices.iter().map(|&vertex| first.distance(self.place(vertex))).fold(0.0, f64::max)
     }
 
     /// Whether all primitives that have some vertices are below a height along a direction. Space: local.
@@ -272,7 +281,7 @@ impl<'a> Stars<'a> {
         let is_above = |corner: &DVec3| sign * (plane.normal.dot(*corner) - plane.height) > LEVEL;
         is_outward && !corners.iter().any(is_above) && {
             let shared = vertices.iter().copied().filter(|&vertex| self.has(triangle, vertex));
-            self.have(plane.normal * sign, &shared.collect::<SmallVec<[u32; 4]>>())
+            self.have(plane.normal * sign, 0.0, &shared.collect::<SmallVec<[u32; 4]>>())
         }
     }
 
