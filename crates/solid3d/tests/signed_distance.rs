@@ -8,7 +8,7 @@
 
 mod common;
 
-use common::{in_cube, log_uniform, placement, random_complex, random_mesh, rescaled, torus};
+use common::{direction, in_cube, log_uniform, placement, random_complex, random_mesh, rescaled, torus};
 use glam::{DAffine3, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -246,6 +246,44 @@ fn solids_are_their_surface_with_a_side() {
         assert!(!beside(1e-6) && beside(-1e-6), "case {case}: {found:?} leads in");
     }
     common::assert_rate("points in solids", inside, cases);
+}
+
+/// Law: normals lead out of a solid that is far from its local origin, by up to 3 * 10^10 times its extent, and to the point that was asked about, or from
+/// it, where that is further off than the error of normals at edges; on a triangle too.
+#[test]
+fn far_from_the_local_origin_normals_lead_out() {
+    let mut rng = seeded(SEED + 10);
+    let (mut inside, mut judged, cases) = (0, 0, 4000);
+    for case in 0..cases {
+        let size = log_uniform(&mut rng, 1e-6, 1e6);
+        let far = direction(&mut rng) * size * log_uniform(&mut rng, 1e8, 3e10);
+        let mut soup = torus(5, 6, rng.random_range(0.3..0.8)).scaled(size);
+        soup.vertices.iter_mut().for_each(|vertex| *vertex += far + 0.05 * size * in_cube(&mut rng));
+        let shape = soup.shape().into_solid().unwrap();
+        let at = scattered(&mut rng, size, 1.0);
+        let (placed, triangles) = (soup.placed(&at), soup.triangles());
+        let corners = triangles[rng.random_range(0..triangles.len())].map(|i| placed[i as usize]);
+        let on = corners.into_iter().sum::<DVec3>() / 3.0;
+        let data = size_of(&shape, &at, on);
+        let error = 1e-11 * data;
+        let p = on + direction(&mut rng) * log_uniform(&mut rng, error, (0.3 * size).max(4.0 * error));
+        let found = of(&shape, &at, p);
+        let context = format!("case {case}, size {size}: {p} at {at:?}: {found:?}");
+        if found.distance.abs() > error {
+            judged += 1;
+            inside += usize::from(found.distance < 0.0);
+            let missed = (found.point + found.normal * found.distance).distance(p);
+            assert!(missed <= error, "{context}, off by {missed:e}");
+        }
+        let found = of(&shape, &at, on);
+        let front = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+        let beside = |way: f64| query::contains_point(&shape, &at, on + front * way * size).unwrap();
+        let is_clear = beside(1e-4) != beside(-1e-4);
+        let out = if beside(-1e-4) { front } else { -front };
+        assert!(!is_clear || found.normal.dot(out) > 0.99, "{context}: {found:?} leads in");
+    }
+    assert!(judged * 4 > cases, "{judged} of {cases}");
+    common::assert_rate("points in far solids", inside, judged);
 }
 
 /// Of a surface or a union of parts it is the least of all parts, each as a hull of its own.

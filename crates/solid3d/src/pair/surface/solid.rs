@@ -20,7 +20,7 @@ use crate::triangle_triangle::Triangle;
 /// frame, where the size of the data is from 1 to 2.
 const NEAR_FACE: f64 = 1.0 / (1u64 << 26) as f64;
 
-/// How far beside a triangle it is tested which side of it is outside, in parts of its size.
+/// How far beside a triangle it is tested which side of it is outside, in parts of its size; no less than rounding moves what is there.
 const BESIDE: f64 = 1e-6;
 
 /// For a point, which is given as a convex shape.
@@ -84,13 +84,14 @@ fn close_by(
     let normal = match across {
         // The way there is no direction.
         Some(front) if foot.distance <= if foot.is_inner { NEAR_FACE } else { NEAR } => {
-            let size = (triangle[1] - triangle[0]).abs().max((triangle[2] - triangle[0]).abs()).max_element();
-            let middle = triangle.into_iter().sum::<DVec3>() / 3.0;
-            let outside = |normal: DVec3, scratch: &mut Scratch| {
-                !solid.contains(middle + normal * (BESIDE * size), scratch)
-            };
-            // Where both sides are inside, as where parts overlap, the front.
-            if !outside(front, scratch) && outside(-front, scratch) { -front } else { front }
+            let rounding = frame.rounding() * frame.scale;
+            let height = front.dot(from);
+            // Off the edges, a point that is clear of the face tells by its side which way is out.
+            if foot.is_inner && height.abs() > 2.0 * rounding {
+                front * (side * height.signum())
+            } else {
+                outward(solid, &triangle, front, rounding, scratch)
+            }
         }
         _ => away(from) * side,
     };
@@ -99,6 +100,23 @@ fn close_by(
         point: frame.to_world(foot.point),
         normal,
     }
+}
+
+/// The front of a triangle, or its opposite, whichever leads out of the solid. Positions are off by a rounding.
+fn outward(
+    solid: &PlacedSolid,
+    triangle: &Triangle,
+    front: DVec3,
+    rounding: f64,
+    scratch: &mut Scratch,
+) -> DVec3 {
+    let [a, b, c] = *triangle;
+    let size = (b - a).abs().max((c - a).abs()).max_element();
+    let middle = (a + b + c) / 3.0;
+    let way = (BESIDE * size).max(rounding);
+    let mut outside = |normal: DVec3| !solid.contains(middle + normal * way, scratch);
+    // Where both sides are inside, as where parts overlap, the front.
+    if !outside(front) && outside(-front) { -front } else { front }
 }
 
 /// The front of a triangle; `None` for one without.
