@@ -153,7 +153,8 @@ pub struct CheckArgs {
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub from: Option<f64>,
 
-    /// Time of the last frame, in seconds [default: the end of the animation]
+    /// Time of the last frame, in seconds; where it is none of the regular times, the last step is shorter
+    /// [default: the end of the animation]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub to: Option<f64>,
 

@@ -48,6 +48,36 @@ fn the_animation_plays_from_start_to_end() {
     assert!(info.contains("animation of 2.000 s") && info.contains("solid"), "{info}");
 }
 
+/// Where the end is between two frames, the last step is shorter, and all that is told is of the frames as they are.
+#[test]
+fn the_end_is_a_frame_at_any_rate() {
+    let desk = Desk::new().file("s.wrl", approach());
+    for (options, times) in [
+        ("--fps 0.75", [0.0, 4.0 / 3.0, 2.0].as_slice()),
+        ("--fps 0.75 --continuous", &[0.0, 4.0 / 3.0, 2.0]),
+        ("--fps 1 --from 0.5", &[0.5, 1.5, 2.0]),
+        ("--fps 0.4 --to 2", &[0.0, 2.0]),
+    ] {
+        let run = desk.run(&format!("check s.wrl {options} --json -"));
+        let told: Vec<f64> = run.assert_status(1).json()["frames"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|frame| frame["time"].as_f64().unwrap())
+            .collect();
+        assert_eq!((colliding(&run), told.as_slice()), (vec![times.len() - 1], times), "{options}");
+        assert_eq!(run.json()["summary"]["frames"], times.len());
+        let csv = desk.run(&format!("check s.wrl {options} --csv -")).stdout;
+        let row = csv.lines().nth(1).unwrap();
+        assert!(row.starts_with(&format!("{},2.0,mover,goal,", times.len() - 1)), "{row}");
+        let table = desk.run(&format!("check s.wrl {options}")).stdout;
+        assert!(table.contains(&format!("in 1 of {} frames", times.len())), "{table}");
+    }
+    // Before they touch.
+    let run = desk.run("check s.wrl --fps 1 --to 1.9 --json -");
+    assert_eq!(run.assert_status(0).json()["frames"][2]["time"], 1.9);
+}
+
 #[test]
 fn smart_response_sees_the_previous_frame() {
     let run = Desk::new().file("s.wrl", approach()).run("check s.wrl --fps 4 --response smart --json -");
