@@ -10,6 +10,9 @@ use tempfile::NamedTempFile;
 /// A buffered output, whose errors name it. To be flushed in the end, for the last of them.
 pub type Output = BufWriter<Named<Box<dyn Write>>>;
 
+/// How many links lead from one to the next: as many as Linux follows.
+const LINKS_MAX: usize = 40;
+
 /// Whether a path stands for standard output.
 pub fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
@@ -26,16 +29,32 @@ pub fn open(path: &Path) -> Result<Output> {
     Ok(output(name, inner))
 }
 
+/// Where what is written to a path comes to be: the file that it names, by way of links, also while it is not there.
+pub fn destination(path: &Path) -> PathBuf {
+    let mut path = path.to_owned();
+    for _ in 0..LINKS_MAX {
+        let Ok(target) = path.read_link() else { break };
+        path = folder(&path).join(target);
+    }
+    let new = || Some(folder(&path).canonicalize().ok()?.join(path.file_name()?));
+    path.canonicalize().ok().or_else(new).unwrap_or_else(|| path.clone())
+}
+
+/// The folder that a path is in.
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Devices and pipes are written directly; anything else through a file beside it.
 fn create(path: &Path) -> io::Result<Box<dyn Write>> {
     // Also finds out whether an existing file may be written.
-    let there = match OpenOptions::new().write(true).open(path) {
+    match OpenOptions::new().write(true).open(path) {
         Ok(file) if !file.metadata()?.is_file() => return Ok(Box::new(file)),
-        Ok(_) => path.canonicalize()?,
-        Err(error) if error.kind() == ErrorKind::NotFound => path.to_owned(),
-        Err(error) => return Err(error),
-    };
-    let folder = there.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    let path = destination(path);
+    let folder = folder(&path);
     let mut builder = tempfile::Builder::new();
     builder.prefix(".solid-");
     #[cfg(unix)]
@@ -45,7 +64,7 @@ fn create(path: &Path) -> io::Result<Box<dyn Write>> {
     }
     // Its errors name the file beside it, which is no concern of the user.
     let file = builder.tempfile_in(folder).map_err(|error| error.kind())?;
-    Ok(Box::new(Staged { file: Some(file), path: there }))
+    Ok(Box::new(Staged { file: Some(file), path }))
 }
 
 /// A file that takes its name when it is flushed, once.

@@ -284,7 +284,67 @@ fn what_is_read_is_not_overwritten() {
     desk.run("check a.obj b.obj --json b.obj").assert_fails(&["b.obj", "overwritten"]);
     desk.run("check a.obj b.obj --csv ./a.obj").assert_fails(&["a.obj", "overwritten"]);
     desk.run("check a.obj --json same --csv same").assert_fails(&["same", "different"]);
+    desk.run("check a.obj --json same --csv ./same").assert_fails(&["both write to same", "different"]);
     desk.run("check a.obj b.obj").assert_status(1);
+}
+
+/// What a file of the scene names is read, too.
+#[test]
+fn what_the_scene_brings_with_it_is_not_overwritten() {
+    let triangle: Vec<u8> =
+        [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let gltf = json!({
+        "asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "my%20buffer.bin"}],
+    });
+    let ball = "#VRML V2.0 utf8\nShape { geometry Sphere {} }\n";
+    let proto = "#VRML V2.0 utf8\nPROTO P [] { Shape { geometry Sphere {} } }\n";
+    let whole = "#VRML V2.0 utf8\nEXTERNPROTO P [] \"proto.wrl\"\nP {}\nInline { url \"part.wrl\" }\n";
+    let desk = Desk::new().file("s.gltf", gltf.to_string()).file("my buffer.bin", &triangle);
+    let desk = desk.file("whole.wrl", whole).file("part.wrl", ball).file("proto.wrl", proto);
+    for (scene, part) in
+        [("s.gltf", "my buffer.bin"), ("whole.wrl", "part.wrl"), ("whole.wrl", "./proto.wrl")]
+    {
+        for option in ["--json", "--csv"] {
+            let mut command = desk.command("check");
+            let run = harness::Run::of(command.args([scene, option, part]).output().unwrap());
+            run.assert_fails(&[&format!("{part}: would be overwritten, but is read")]);
+        }
+    }
+    assert_eq!(std::fs::read(desk.path("my buffer.bin")).unwrap(), triangle);
+    assert_eq!((desk.read("part.wrl"), desk.read("proto.wrl")), (ball.to_owned(), proto.to_owned()));
+}
+
+/// A file is what a link leads to, also while that is not there. Another name of the same file is another file: it is left as it is.
+#[cfg(unix)]
+#[test]
+fn links_lead_to_what_is_read_and_written() {
+    use std::os::unix::fs::symlink;
+    let desk = Desk::with_boxes();
+    symlink("a.obj", desk.path("to_a")).unwrap();
+    symlink("to_new", desk.path("to_to_new")).unwrap();
+    symlink("new", desk.path("to_new")).unwrap();
+    symlink(".", desk.path("here")).unwrap();
+    symlink("loop", desk.path("loop")).unwrap();
+    desk.run("check a.obj b.obj --json to_a").assert_fails(&["to_a: would be overwritten"]);
+    for [json, csv] in
+        [["to_new", "new"], ["new", "to_to_new"], ["new", "here/new"], ["here/to_new", "to_to_new"]]
+    {
+        desk.run(&format!("check a.obj b.obj --json {json} --csv {csv}")).assert_fails(&["both write to"]);
+    }
+    desk.run("check a.obj b.obj --json loop").assert_fails(&["loop: can't be written"]);
+    desk.run("check a.obj b.obj --csv to_to_new").assert_status(1);
+    assert!(desk.path("to_to_new").is_symlink() && desk.path("to_new").is_symlink());
+    assert!(desk.read("new").starts_with("frame,"));
+    std::fs::hard_link(desk.path("a.obj"), desk.path("same")).unwrap();
+    desk.run("check a.obj b.obj --csv same").assert_status(1);
+    assert_eq!(desk.read("a.obj"), BOX);
+    // Devices may be named twice.
+    desk.run("check a.obj b.obj --csv /dev/null --json here/../../../../dev/null");
+    desk.run("check a.obj b.obj --json - --csv ./-").assert_status(1);
+    assert!(desk.read("-").starts_with("frame,"));
 }
 
 #[cfg(target_os = "linux")]

@@ -1,5 +1,7 @@
 //! What a reader makes of a file.
 
+use std::path::PathBuf;
+
 use solid3d::Shape;
 
 use crate::pose::ObjectPose;
@@ -16,6 +18,8 @@ pub(crate) struct Part {
     pub unit: &'static str,
     /// What was passed over or guessed, in words for the user.
     pub warnings: Vec<String>,
+    /// The files that were read beside the one that is loaded; it may be among them.
+    pub files: Vec<PathBuf>,
 }
 
 /// A node with geometry.

@@ -82,6 +82,11 @@ impl Scene {
         &self.files
     }
 
+    /// All files that were read: those that were loaded, and what they name: buffers, inlined files, PROTOs in files.
+    pub fn files_read(&self) -> impl Iterator<Item = &PathBuf> + Clone {
+        self.files.iter().chain(self.parts.iter().flat_map(|part| &part.files))
+    }
+
     /// The objects, file by file, in the order in which the nodes stand there.
     pub fn objects(&self) -> &[SceneObject] {
         &self.objects

@@ -59,7 +59,7 @@ impl Soup {
 /// A file of meshes that stay where they are, in no unit that the format tells.
 pub(crate) fn still_part(objects: Vec<PartObject>, warnings: Vec<String>) -> Part {
     let motion = Box::new(Still(vec![DAffine3::IDENTITY; objects.len()]));
-    Part { objects, motion, duration: 0.0, unit: "unspecified", warnings }
+    Part { objects, motion, duration: 0.0, unit: "unspecified", warnings, files: Vec::new() }
 }
 
 #[cfg(test)]

@@ -42,6 +42,7 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     rules.declare_decomposed(&args.decompose);
     let rays = rays::all(&args.ray, rules.rays())?;
     let scene = scene::load(&args.scene)?;
+    files::refuse_overwriting_parts(args, &scene)?;
     scene::warnings(&scene).for_each(|warning| complain("warning", warning));
     let placements = placements(args, &scene)?;
     let timeline = timeline(args, &scene, placements.as_ref())?;

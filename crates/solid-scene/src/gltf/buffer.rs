@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use gltf::json::Buffer;
 
@@ -11,12 +11,13 @@ use crate::fault::Result;
 use crate::text::quoted;
 
 /// The bytes of a buffer, `byteLength` of them. `binary` is the binary part of a `.glb`, which buffer 0 is when it has
-/// no URI.
+/// no URI. A file that it is in is added to `files`.
 pub(super) fn load(
     index: usize,
     buffer: &Buffer,
     binary: &mut Option<Vec<u8>>,
     folder: &Path,
+    files: &mut Vec<PathBuf>,
 ) -> Result<Vec<u8>> {
     let name = name(index, buffer);
     let needed = buffer.byte_length.0;
@@ -29,7 +30,10 @@ pub(super) fn load(
                 // A data URI without its first letters is long.
                 let wrong =
                     |error| format!("{name}: `{}` can't be read: {error}", quoted(&path.to_string_lossy()));
-                read(&folder.join(&path), needed).map_err(wrong)?
+                let file = folder.join(&path);
+                let bytes = read(&file, needed).map_err(wrong)?;
+                files.push(file);
+                bytes
             }
         },
     };

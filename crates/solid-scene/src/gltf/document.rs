@@ -1,7 +1,7 @@
 //! A file and its buffers.
 
 use std::cell::Cell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use gltf::Gltf;
 use gltf::json::{Accessor, Mesh, Node, Root, Skin, buffer};
@@ -39,6 +39,8 @@ const COMPRESSIONS: [&str; 3] =
 pub(super) struct Document {
     pub root: Root,
     buffers: Vec<Vec<u8>>,
+    /// The files of buffers.
+    pub files: Vec<PathBuf>,
     /// How many more numbers may be read.
     budget: Cell<usize>,
 }
@@ -53,13 +55,13 @@ impl Document {
         let root = document.into_json();
         check_version(&root)?;
         check_extensions(&root)?;
-        let mut buffers = Vec::new();
+        let (mut buffers, mut files) = (Vec::new(), Vec::new());
         for (index, buffer) in root.buffers.iter().enumerate() {
-            buffers.push(load(index, buffer, &mut binary, folder)?);
+            buffers.push(load(index, buffer, &mut binary, folder, &mut files)?);
         }
         let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
         let budget = Cell::new(size.saturating_mul(NUMBERS_PER_BYTE).max(NUMBERS_ALWAYS));
-        Ok(Document { root, buffers, budget })
+        Ok(Document { root, buffers, files, budget })
     }
 
     pub fn accessor(&self, index: usize) -> Result<&Accessor> {

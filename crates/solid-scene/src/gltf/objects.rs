@@ -36,7 +36,8 @@ pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part>
     }
     let Reader { objects, motion, warnings, .. } = reader;
     let duration = motion.animation.duration;
-    Ok(Part { objects, motion: Box::new(motion), duration, unit: "metre", warnings })
+    let files = document.files.clone();
+    Ok(Part { objects, motion: Box::new(motion), duration, unit: "metre", warnings, files })
 }
 
 struct Reader<'a> {

@@ -15,8 +15,8 @@ use crate::text::quoted;
 /// The fields through which nodes hold others that matter to collisions.
 const CHILD_FIELDS: [&str; 6] = ["children", "choice", "level", "proxy", "geometry", "coord"];
 
-/// All nodes of a file and of what it inlines. The first scope is the file.
-pub(super) fn expand(file: &Path, warnings: &mut Warnings) -> Result<Graph, SceneError> {
+/// All nodes of a file and of what it inlines, and the files that these are in. The first scope is the file.
+pub(super) fn expand(file: &Path, warnings: &mut Warnings) -> Result<(Graph, Vec<PathBuf>), SceneError> {
     let mut library = Library::default();
     let document = library.open(file, warnings)?;
     let mut expansion = Expansion {
@@ -30,7 +30,7 @@ pub(super) fn expand(file: &Path, warnings: &mut Warnings) -> Result<Graph, Scen
     };
     let scope = expansion.graph.add(Scope { document, context: FILE, call: None });
     expansion.scope(scope)?;
-    Ok(expansion.graph)
+    Ok((expansion.graph, expansion.library.into_files()))
 }
 
 /// A file that a node names, and what follows the `#`.

@@ -24,6 +24,13 @@ pub(super) struct Target {
 }
 
 impl Library {
+    /// The files, in the order of their paths.
+    pub fn into_files(self) -> Vec<PathBuf> {
+        let mut files: Vec<PathBuf> = self.documents.into_keys().collect();
+        files.sort_unstable();
+        files
+    }
+
     /// A file, parsed.
     pub fn open(&mut self, file: &Path, warnings: &mut Warnings) -> Result<Rc<Document>, SceneError> {
         let key = file.canonicalize().unwrap_or_else(|_| file.to_owned());

@@ -53,14 +53,15 @@ pub(crate) fn load(file: &Path) -> Result<Part, SceneError> {
 
 fn read(file: &Path) -> Result<Part, SceneError> {
     let mut warnings = Warnings::default();
-    let graph = expand::expand(file, &mut warnings)?;
+    let (graph, files) = expand::expand(file, &mut warnings)?;
     let routes = Routes::collect(&graph)?;
     warn_of_routes(&graph, &routes, &mut warnings);
     let duration = duration(&graph)?;
     let signals = SignalBuilder::new(&graph, &routes);
     let builder = Builder::new(&graph, signals, &mut warnings);
     let (objects, animation) = Walk::new(&graph, builder).run()?;
-    Ok(Part { objects, motion: Box::new(animation), duration, unit: "metre", warnings: warnings.into_vec() })
+    let warnings = warnings.into_vec();
+    Ok(Part { objects, motion: Box::new(animation), duration, unit: "metre", warnings, files })
 }
 
 /// The end of the last first cycle.
