@@ -125,7 +125,11 @@ impl<'a> Reader<'a> {
             None => None,
             Some(skin) if geometry.influences.is_empty() => {
                 let name = mesh::name(self.document, mesh)?;
-                self.warnings.push(format!("{name} has no JOINTS_0, so skin {skin} has no effect on it"));
+                let reason = match geometry.influences.has_joints() {
+                    true => format!("all weights of {name} are 0"),
+                    false => format!("{name} has no JOINTS_0"),
+                };
+                self.warnings.push(format!("{reason}, so skin {skin} has no effect on it"));
                 None
             }
             Some(skin) => Some(self.skin(skin)?),

@@ -21,6 +21,8 @@ pub(super) struct Influences {
     ends: Vec<usize>,
     /// Joints of the skin and weights, which have the sum 1 where a vertex has any.
     influences: Vec<(u32, f64)>,
+    /// Whether joints are given, if only with weights of 0.
+    has_joints: bool,
 }
 
 impl Skin {
@@ -76,6 +78,10 @@ impl Influences {
         self.influences.is_empty()
     }
 
+    pub fn has_joints(&self) -> bool {
+        self.has_joints
+    }
+
     fn of(&self, vertex: usize) -> &[(u32, f64)] {
         let start = vertex.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.influences[start..self.ends[vertex]]
@@ -91,6 +97,7 @@ impl Influences {
         what: &str,
     ) -> Result<()> {
         self.grow(first);
+        self.has_joints |= !sets.is_empty();
         for vertex in 0..count {
             let range = 4 * vertex..4 * vertex + 4;
             let all = sets.iter().flat_map(|(j, w)| j[range.clone()].iter().zip(&w[range.clone()]));

@@ -430,6 +430,20 @@ fn extensions_and_versions_are_checked() {
     assert_eq!(file.refused(), "the file is of glTF 1.0; expected 2.0");
 }
 
+/// A skin has no effect where no vertex follows a joint, and why is said.
+#[test]
+fn a_mesh_that_follows_no_joint_is_warned_of() {
+    let mut file = everything();
+    let weights = file.floats("VEC4", 4, &[0.0; 16]);
+    set(&mut file, "/meshes/0/primitives/0/attributes/WEIGHTS_0", json!(weights));
+    let warnings = file.parse().unwrap().warnings;
+    assert_eq!(warnings[1..], ["all weights of mesh 0 are 0, so skin 0 has no effect on it"]);
+    let attributes = file.0["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap();
+    attributes.retain(|name, _| name == "POSITION");
+    let warnings = file.parse().unwrap().warnings;
+    assert_eq!(warnings[1..], ["mesh 0 has no JOINTS_0, so skin 0 has no effect on it"]);
+}
+
 #[test]
 fn skins_and_animations_are_checked() {
     let changes = [
