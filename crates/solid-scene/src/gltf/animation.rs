@@ -45,10 +45,14 @@ impl Animation {
                 0
             }
         };
-        let mut animation = Animation::default();
+        let (mut animation, mut untargeted) = (Animation::default(), 0);
         let source = find("animation", &document.root.animations, index)?;
         for (number, channel) in source.channels.iter().enumerate() {
             let what = format!("animation {}, channel {number}", names[index]);
+            if !document.rest.has_target(index, number) {
+                untargeted += 1;
+                continue;
+            }
             let node = channel.target.node.value();
             document.node(node).map_err(|fault| fault.of(&what))?;
             let Checked::Valid(property) = channel.target.path else {
@@ -64,6 +68,7 @@ impl Animation {
                 _ => animation.channels.push(Channel { node, property, sampler }),
             }
         }
+        warnings.extend(untargeted_warning(&names[index], untargeted));
         Ok(animation)
     }
 
@@ -108,6 +113,15 @@ fn names(document: &Document) -> Vec<String> {
         None => number.to_string(),
     };
     animations.map(name).collect()
+}
+
+/// What to tell the user of channels, where there were some, of which nothing is known but that they change no node.
+fn untargeted_warning(animation: &str, count: usize) -> Option<String> {
+    match count {
+        0 => None,
+        1 => Some(format!("animation {animation}: 1 channel that names no node is passed over")),
+        n => Some(format!("animation {animation}: {n} channels that name no node are passed over")),
+    }
 }
 
 /// Names, as far as anybody would read them.

@@ -1,12 +1,14 @@
 //! A file and its buffers.
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
-use gltf::Gltf;
+use gltf::binary::Glb;
 use gltf::json::{Accessor, Mesh, Node, Root, Skin, buffer};
 
 use super::buffer::load;
+use super::text::{self, Rest};
 use crate::fault::Result;
 use crate::text::{quoted, without_mark};
 
@@ -38,6 +40,8 @@ const COMPRESSIONS: [&str; 3] =
 /// A parsed file and the bytes of its buffers. What the text names is looked up here.
 pub(super) struct Document {
     pub root: Root,
+    /// What of the text is not in `root`.
+    pub rest: Rest,
     buffers: Vec<Vec<u8>>,
     /// The files of buffers.
     pub files: Vec<PathBuf>,
@@ -50,9 +54,8 @@ impl Document {
     pub fn parse(bytes: &[u8], folder: &Path) -> Result<Document> {
         let bytes = without_mark(bytes);
         check_container(bytes)?;
-        let Gltf { document, blob: mut binary } =
-            Gltf::from_slice_without_validation(bytes).map_err(|error| format!("not glTF 2.0: {error}"))?;
-        let root = document.into_json();
+        let (text, mut binary) = chunks(bytes)?;
+        let (root, rest) = text::parse(&text).map_err(|error| format!("not glTF 2.0: {error}"))?;
         check_version(&root)?;
         check_extensions(&root)?;
         let (mut buffers, mut files) = (Vec::new(), Vec::new());
@@ -61,7 +64,7 @@ impl Document {
         }
         let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
         let budget = Cell::new(size.saturating_mul(NUMBERS_PER_BYTE).max(NUMBERS_ALWAYS));
-        Ok(Document { root, buffers, files, budget })
+        Ok(Document { root, rest, buffers, files, budget })
     }
 
     pub fn accessor(&self, index: usize) -> Result<&Accessor> {
@@ -111,6 +114,17 @@ impl Document {
 /// The element that an index names.
 pub(super) fn find<'a, T>(kind: &str, all: &'a [T], index: usize) -> Result<&'a T> {
     all.get(index).ok_or_else(|| format!("{kind} {index} is named, but there are {}", all.len()).into())
+}
+
+/// The text, and the binary part of a `.glb`.
+type Chunks<'a> = (Cow<'a, [u8]>, Option<Vec<u8>>);
+
+fn chunks(bytes: &[u8]) -> Result<Chunks<'_>> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok((bytes.into(), None));
+    }
+    let glb = Glb::from_slice(bytes).map_err(|error| format!("not glTF 2.0: {error}"))?;
+    Ok((glb.json, glb.bin.map(Cow::into_owned)))
 }
 
 /// What the crate takes for granted of a `.glb`: that its length is not less than its header's.

@@ -1,6 +1,6 @@
 //! glTF 2.0: `.gltf` with buffers in files or in the text, and `.glb`.
 //!
-//! The crate `gltf` parses the text into its types; its validation is left out, since it refuses good files. Nothing in
+//! The crate `gltf` has the types that the text is parsed into; its validation is left out, since it refuses good files. Nothing in
 //! the types is trusted: whatever the text names is looked up by [`Document`], which answers with an error where there
 //! is nothing, and never by the crate, which panics.
 //!
@@ -21,6 +21,7 @@ mod objects;
 mod primitive;
 mod sampler;
 mod skin;
+mod text;
 mod uri;
 
 #[cfg(test)]

@@ -430,6 +430,29 @@ fn extensions_and_versions_are_checked() {
     assert_eq!(file.refused(), "the file is of glTF 1.0; expected 2.0");
 }
 
+/// A channel may leave it to an extension to say what it changes (glTF 2.0, section 5.8).
+#[test]
+fn a_channel_without_a_node_is_passed_over() {
+    let mut file = everything();
+    let without =
+        json!({"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {}}}});
+    file.0["animations"][0]["channels"].as_array_mut().unwrap().insert(1, without.clone());
+    let expected = pose(&everything().parse().unwrap(), 2.0);
+    for (text, bytes) in [(true, file.0.to_string().into_bytes()), (false, binary(&file))] {
+        let part = parse(&bytes, Path::new(""), None).unwrap();
+        assert_eq!(
+            part.warnings[1..],
+            ["animation `all`: 1 channel that names no node is passed over"],
+            "{text}"
+        );
+        assert_eq!(pose(&part, 2.0), expected);
+    }
+    file.0["animations"][0]["channels"].as_array_mut().unwrap().push(without);
+    let warnings = file.parse().unwrap().warnings;
+    assert_eq!(warnings[1..], ["animation `all`: 2 channels that name no node are passed over"]);
+    assert_eq!(file.parse_animation(Some("1")).unwrap().warnings, [""; 0]);
+}
+
 /// A skin has no effect where no vertex follows a joint, and why is said.
 #[test]
 fn a_mesh_that_follows_no_joint_is_warned_of() {

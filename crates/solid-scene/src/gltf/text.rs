@@ -1,0 +1,66 @@
+//! The text of a file: as the crate's types, and what these leave out.
+
+use gltf::json::Root;
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use serde_json::{Result, Value, from_slice, from_value, json};
+
+/// What the crate's types leave out.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Rest {
+    animations: Vec<Animation>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Animation {
+    channels: Vec<Channel>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Channel {
+    target: Target,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Target {
+    node: Option<IgnoredAny>,
+}
+
+impl Rest {
+    /// Whether a channel of an animation names a node, which it need not.
+    pub fn has_target(&self, animation: usize, channel: usize) -> bool {
+        let channels = self.animations.get(animation).map(|animation| animation.channels.as_slice());
+        channels
+            .and_then(|channels| channels.get(channel))
+            .is_some_and(|channel| channel.target.node.is_some())
+    }
+
+    /// The channels that name no node: animation and number.
+    fn without_target(&self) -> impl Iterator<Item = (usize, usize)> {
+        let animations = self.animations.iter().enumerate();
+        let channels =
+            animations.flat_map(|(i, animation)| (0..animation.channels.len()).map(move |j| (i, j)));
+        channels.filter(|&(animation, channel)| !self.has_target(animation, channel))
+    }
+}
+
+/// Parses a text. In the crate's types a channel that names no node names node 0: ask [`Rest::has_target`].
+pub(super) fn parse(text: &[u8]) -> Result<(Root, Rest)> {
+    let rest: Rest = from_slice(text)?;
+    if rest.without_target().next().is_none() {
+        return Ok((from_slice(text)?, rest));
+    }
+    let mut value: Value = from_slice(text)?;
+    for (animation, channel) in rest.without_target() {
+        if let Some(Value::Object(target)) =
+            value.pointer_mut(&format!("/animations/{animation}/channels/{channel}/target"))
+        {
+            target.insert("node".to_owned(), json!(0));
+        }
+    }
+    Ok((from_value(value)?, rest))
+}
