@@ -23,9 +23,9 @@ Exit status:
 
 const CHECK_NOTES: &str = "\
 Objects:
-  Every node with geometry is an object. Nodes on one root path (one holds the other) are not tested against each
-  other. Shapes are closed sets, so touching collides; a mesh is a surface, so a body wholly inside one does not,
-  unless --solid declares the mesh solid.
+  Every node with geometry is an object, and so is every instance of its mesh where a glTF file has several. Nodes on one
+  root path (one holds the other) are not tested against each other. Shapes are closed sets, so touching collides; a
+  mesh is a surface, so a body wholly inside one does not, unless --solid declares the mesh solid.
 
 Convex pieces (--decompose PATTERN):
   In the place of the mesh are at most 32 convex pieces, found on a grid of 64 voxels along its longest side: they cover all

@@ -23,7 +23,7 @@ pub(crate) struct Part {
 }
 
 /// A node with geometry.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct PartObject {
     /// The node's name, not yet unique; empty for none.
     pub name: String,

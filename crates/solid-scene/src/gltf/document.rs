@@ -19,10 +19,11 @@ const NUMBERS_PER_BYTE: usize = 64;
 /// How many numbers may be read out of any file.
 const NUMBERS_ALWAYS: usize = 1 << 20;
 
-/// The extensions that a file may require: they have no part in geometry, except for `KHR_mesh_quantization`, which only
-/// widens the types of accessors.
-const UNDERSTOOD: [&str; 9] = [
+/// The beginnings of the names of extensions that a file may require: they have no part in geometry, except for
+/// `KHR_mesh_quantization`, which only widens the types of accessors, and instances, which are read.
+const UNDERSTOOD: [&str; 10] = [
     "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",
     "KHR_materials_",
     "KHR_texture_",
     "KHR_lights_",

@@ -25,11 +25,16 @@ impl Local {
         let translation = DVec3::from_array(node.translation.unwrap_or([0.0; 3]).map(f64::from));
         let rotation = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
         let scale = DVec3::from_array(node.scale.unwrap_or([1.0; 3]).map(f64::from));
+        Ok(Local { matrix, ..Local::new(translation, rotation, scale, &format!("node {index}"))? })
+    }
+
+    /// The transformation of three values; a rotation of any length but 0. `what` names what has it.
+    pub fn new(translation: DVec3, rotation: DQuat, scale: DVec3, what: &str) -> Result<Local> {
         if !(translation.is_finite() && scale.is_finite() && rotation.is_finite()) {
-            return Err(format!("node {index} has a transformation that is not finite").into());
+            return Err(format!("{what} has a transformation that is not finite").into());
         }
-        let rotation = unit(rotation).ok_or_else(|| format!("node {index} has a rotation of length 0"))?;
-        Ok(Local { translation, rotation, scale, matrix })
+        let rotation = unit(rotation).ok_or_else(|| format!("{what} has a rotation of length 0"))?;
+        Ok(Local { translation, rotation, scale, matrix: None })
     }
 
     pub fn affine(&self) -> DAffine3 {

@@ -4,15 +4,16 @@
 //! the types is trusted: whatever the text names is looked up by [`Document`], which answers with an error where there
 //! is nothing, and never by the crate, which panics.
 //!
-//! What lives where: [`document`] the file and its buffers, [`accessor`] numbers out of buffers, [`graph`] the nodes'
-//! hierarchy, [`mesh`] geometry, [`skin`] and [`morph`] deformation, [`animation`] and [`sampler`] change over time, and
-//! [`motion`] all of it at a time.
+//! What lives where: [`text`] the text as types, [`document`] the file and its buffers, [`accessor`] numbers out of
+//! buffers, [`graph`] the nodes' hierarchy, [`instances`] where a node has its mesh several times, [`mesh`] geometry,
+//! [`skin`] and [`morph`] deformation, [`animation`] and [`sampler`] change over time, and [`motion`] all of it at a time.
 
 mod accessor;
 mod animation;
 mod buffer;
 mod document;
 mod graph;
+mod instances;
 mod local;
 mod mesh;
 mod morph;
@@ -37,7 +38,8 @@ use crate::part::Part;
 use document::Document;
 
 /// Reads a glTF file: an object for each node of the scene that has a mesh, named by the node, else by its mesh, else
-/// `node<i>`; its path are the nodes from the scene's root to it.
+/// `node<i>`; its path are the nodes from the scene's root to it. Of a node with instances of its mesh each is an object,
+/// as one on a child of the node.
 ///
 /// The scene is the file's default one, else its first, else all nodes. Of several animations
 /// [`LoadOptions::animation`] is played, else the first, with a warning that lists the others; before its first key and

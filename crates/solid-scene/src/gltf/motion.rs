@@ -21,10 +21,12 @@ pub(super) struct GltfMotion {
     pub objects: Vec<Moved>,
 }
 
-/// A node with a mesh.
-#[derive(Debug)]
+/// A node with a mesh, or an instance of it.
+#[derive(Clone, Debug)]
 pub(super) struct Moved {
     pub node: usize,
+    /// The map from the space of the instance to that of the node, where it is one of several.
+    pub instance: Option<DAffine3>,
     /// Whether the node's own placement has no effect: its skin takes the vertices to the world.
     pub in_world: bool,
     /// What changes its form over time, if anything does.
@@ -77,11 +79,22 @@ impl GltfMotion {
     }
 }
 
+impl Moved {
+    /// Where it is, by the nodes' maps to the world.
+    pub fn placement(&self, worlds: &[DAffine3]) -> DAffine3 {
+        match self.instance {
+            _ if self.in_world => DAffine3::IDENTITY,
+            Some(instance) => worlds[self.node] * instance,
+            None => worlds[self.node],
+        }
+    }
+}
+
 impl Motion for GltfMotion {
     fn sample(&self, time: f64, poses: &mut [ObjectPose]) {
         let worlds = self.worlds(time);
         for (moved, pose) in self.objects.iter().zip(poses) {
-            pose.placement = if moved.in_world { DAffine3::IDENTITY } else { worlds[moved.node] };
+            pose.placement = moved.placement(&worlds);
             match &moved.deformation {
                 Some(deformation) => self.deform(deformation, moved.node, time, &worlds, &mut pose.positions),
                 None => pose.positions.clear(),

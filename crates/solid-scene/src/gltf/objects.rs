@@ -10,6 +10,7 @@ use solid3d::Shape;
 use super::animation::Animation;
 use super::document::Document;
 use super::graph::{Graph, PATHS_MAX};
+use super::instances;
 use super::local::Local;
 use super::mesh::{self, Geometry};
 use super::motion::{Deformation, GltfMotion, Moved};
@@ -86,21 +87,48 @@ impl<'a> Reader<'a> {
         let skinned = deformation.skin.is_some();
         let animation = &self.motion.animation;
         let changes = animation.morphs(index) && !geometry.targets.is_empty() || skinned && animation.moves();
-        let name = self.object_name(index, node, mesh)?;
-        if !skinned && self.worlds[index].matrix3.determinant() == 0.0 {
-            let warning = format!("`{}` is flat at time 0: its placement is singular", quoted(&name));
-            self.warnings.push(warning);
+        let object = PartObject {
+            name: self.object_name(index, node, mesh)?,
+            shape,
+            path: self.motion.graph.path(index),
+            degenerate,
+        };
+        let deformation = changes.then_some(deformation);
+        let moved = Moved { node: index, instance: None, in_world: skinned, deformation };
+        match instances::read(self.document, index)? {
+            None => self.add(object, moved),
+            Some(_) if skinned => {
+                let name = quoted(&object.name);
+                self.warnings.push(format!("`{name}` has a skin, so that its instances are passed over"));
+                self.add(object, moved)
+            }
+            Some(instances) => self.add_instances(&object, &moved, &instances),
         }
-        let path = self.motion.graph.path(index);
-        self.in_paths += path.len();
+    }
+
+    /// Adds the instances of an object, as on children of its node, with numbers after those of the file's nodes.
+    fn add_instances(&mut self, object: &PartObject, moved: &Moved, instances: &[DAffine3]) -> Result<()> {
+        for (number, &instance) in (self.worlds.len() as u32..).zip(instances) {
+            let path = [object.path.as_slice(), &[number]].concat();
+            let object = PartObject { path, ..object.clone() };
+            self.add(object, Moved { instance: Some(instance), ..moved.clone() })?;
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, object: PartObject, moved: Moved) -> Result<()> {
+        if moved.placement(&self.worlds).matrix3.determinant() == 0.0 {
+            let name = quoted(&object.name);
+            self.warnings.push(format!("`{name}` is flat at time 0: its placement is singular"));
+        }
+        self.in_paths += object.path.len();
         if self.in_paths > PATHS_MAX {
             return Err(
                 format!("the paths from the roots to the objects have more than {PATHS_MAX} nodes").into()
             );
         }
-        self.objects.push(PartObject { name, shape, path, degenerate });
-        let deformation = changes.then_some(deformation);
-        self.motion.objects.push(Moved { node: index, in_world: skinned, deformation });
+        self.objects.push(object);
+        self.motion.objects.push(moved);
         Ok(())
     }
 

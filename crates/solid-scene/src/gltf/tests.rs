@@ -421,13 +421,117 @@ fn extensions_and_versions_are_checked() {
     assert!(
         file.refused().starts_with("the file is compressed (EXT_meshopt_compression); decompress it first")
     );
-    file.0["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+    file.0["extensionsRequired"] = json!(["KHR_implicit_shapes"]);
     assert_eq!(
         file.refused(),
-        "the file requires the extension `EXT_mesh_gpu_instancing`, which is not supported"
+        "the file requires the extension `KHR_implicit_shapes`, which is not supported"
     );
     file.0["asset"] = json!({"version": "1.0"});
     assert_eq!(file.refused(), "the file is of glTF 1.0; expected 2.0");
+}
+
+/// A file with a node that moves to the right in a second and has three instances of a triangle, and a child.
+fn instances() -> File {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    let half = FRAC_1_SQRT_2 as f32;
+    let translations = file.floats("VEC3", 3, &[0.0, 0.0, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 7.0]);
+    let rotations = file.floats("VEC4", 3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, half, half, 0.0, 0.0, 0.0, 2.0]);
+    let scales = file.floats("VEC3", 3, &[1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 3.0, 1.0, 1.0]);
+    let ids = file.accessor("SCALAR", UNSIGNED_BYTE, 3, &[7, 8, 9]);
+    let attributes = json!({"TRANSLATION": translations, "ROTATION": rotations, "SCALE": scales, "_ID": ids});
+    let extensions = json!({"EXT_mesh_gpu_instancing": {"attributes": attributes}});
+    file.0["nodes"] = json!([
+        {"mesh": mesh, "name": "tree", "extensions": extensions, "children": [1]},
+        {"mesh": mesh, "name": "bird"},
+    ]);
+    let times = file.floats("SCALAR", 2, &[0.0, 1.0]);
+    let path = file.floats("VEC3", 2, &[0.0, 0.0, 0.0, 10.0, 0.0, 0.0]);
+    file.0["animations"] = json!([{
+        "samplers": [{"input": times, "output": path}],
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+    }]);
+    file.0["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+    file
+}
+
+#[test]
+fn each_instance_of_a_mesh_is_an_object() {
+    let part = instances().parse().unwrap();
+    let seen: Vec<_> = part.objects.iter().map(|o| (&o.name[..], &o.path[..])).collect();
+    assert_eq!(seen, [("tree", &[0, 2][..]), ("tree", &[0, 3]), ("tree", &[0, 4]), ("bird", &[0, 1])]);
+    assert_eq!(part.warnings, [""; 0]);
+    let poses = pose(&part, 1.0);
+    let at = |object: usize, point: DVec3| poses[object].placement.transform_point3(point);
+    assert!(at(0, DVec3::X).abs_diff_eq(DVec3::new(11.0, 0.0, 0.0), 1e-6));
+    assert!(at(1, DVec3::X).abs_diff_eq(DVec3::new(10.0, 7.0, 0.0), 1e-6));
+    assert!(at(2, DVec3::X).abs_diff_eq(DVec3::new(13.0, 0.0, 7.0), 1e-6));
+    assert!(at(3, DVec3::X).abs_diff_eq(DVec3::new(11.0, 0.0, 0.0), 1e-6));
+    // What is not told is as in a node.
+    let mut file = instances();
+    let attributes = "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes";
+    set(&mut file, attributes, json!({"_ID": 4}));
+    let part = file.parse().unwrap();
+    assert_eq!((part.objects.len(), pose(&part, 0.0)[2].placement), (4, DAffine3::IDENTITY));
+    set(&mut file, attributes, json!({}));
+    assert_eq!(file.parse().unwrap().objects.len(), 2);
+}
+
+#[test]
+fn instances_are_checked() {
+    let attributes = "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes";
+    let changes = [
+        (
+            format!("{attributes}/SCALE"),
+            json!(0),
+            "node 0: instances, TRANSLATION has 3 elements, but ROTATION 4",
+        ),
+        (
+            format!("{attributes}/SCALE"),
+            json!(9),
+            "node 0: instances, SCALE: accessor 9 is named, but there are 7",
+        ),
+        (
+            format!("{attributes}/ROTATION"),
+            json!(1),
+            "node 0: instances, ROTATION: accessor 1 is of type Vec3; expected Vec4",
+        ),
+        (
+            format!("{attributes}/TRANSLATION"),
+            json!("x"),
+            "not glTF 2.0: invalid type: string \"x\", expected usize",
+        ),
+        (
+            "/accessors/4/count".to_owned(),
+            json!(1_000_000_000),
+            "numbers are more than a file of this size may hold",
+        ),
+    ];
+    for (path, value, message) in changes {
+        let mut file = instances();
+        if message.ends_with("ROTATION 4") {
+            let rotations = file.floats("VEC4", 4, &[0.0, 0.0, 0.0, 1.0].repeat(4));
+            set(&mut file, &format!("{attributes}/ROTATION"), json!(rotations));
+        }
+        if message.ends_with("may hold") {
+            set(&mut file, attributes, json!({"_ID": 4}));
+        }
+        set(&mut file, &path, value);
+        let refused = file.refused();
+        assert!(refused.contains(message), "{path}: {refused}");
+    }
+    let mut file = instances();
+    let zero = file.floats("VEC4", 3, &[0.0; 12]);
+    set(&mut file, &format!("{attributes}/ROTATION"), json!(zero));
+    assert_eq!(file.refused(), "node 0: instance 0 has a rotation of length 0");
+    // A skin places the vertices in the world.
+    let mut file = everything();
+    file.0["nodes"][3]["extensions"] = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}});
+    let part = file.parse_animation(Some("1")).unwrap();
+    assert_eq!(
+        (part.objects.len(), &part.warnings[..]),
+        (2, &["`node3` has a skin, so that its instances are passed over".to_owned()][..])
+    );
 }
 
 /// A channel may leave it to an extension to say what it changes (glTF 2.0, section 5.8).
@@ -545,6 +649,16 @@ fn sample_all(part: Result<Part, String>) {
 }
 
 proptest! {
+    #[test]
+    fn changed_instances_never_panic(at in any::<prop::sample::Index>(), value in 0u32..12) {
+        let mut file = instances();
+        let mut found = Vec::new();
+        numbers(&mut file.0, &mut found);
+        let at = at.index(found.len());
+        *found[at] = json!(value);
+        sample_all(file.parse());
+    }
+
     #[test]
     fn changed_numbers_never_panic(changes in prop::collection::vec((any::<prop::sample::Index>(), 0usize..10), 1..4)) {
         let values = [json!(0), json!(1), json!(2), json!(3), json!(5), json!(30), json!(-1), json!(u32::MAX),

@@ -1,5 +1,7 @@
 //! The text of a file: as the crate's types, and what these leave out.
 
+use std::collections::BTreeMap;
+
 use gltf::json::Root;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -9,7 +11,27 @@ use serde_json::{Result, Value, from_slice, from_value, json};
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Rest {
+    nodes: Vec<Node>,
     animations: Vec<Animation>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Node {
+    extensions: Option<NodeExtensions>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct NodeExtensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    instancing: Option<Instancing>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Instancing {
+    attributes: BTreeMap<String, usize>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -31,6 +53,11 @@ struct Target {
 }
 
 impl Rest {
+    /// The accessors of the instances of a node's mesh, by what they tell; `None` where there is but the mesh.
+    pub fn instancing(&self, node: usize) -> Option<&BTreeMap<String, usize>> {
+        Some(&self.nodes.get(node)?.extensions.as_ref()?.instancing.as_ref()?.attributes)
+    }
+
     /// Whether a channel of an animation names a node, which it need not.
     pub fn has_target(&self, animation: usize, channel: usize) -> bool {
         let channels = self.animations.get(animation).map(|animation| animation.channels.as_slice());
