@@ -1,6 +1,6 @@
 //! Animations: which one is played, and what it changes.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use glam::{DQuat, DVec3};
 use gltf::json::animation::Property;
@@ -72,6 +72,11 @@ impl Animation {
         Ok(animation)
     }
 
+    /// The nodes that it moves, in order, each once.
+    pub fn moved(&self) -> impl Iterator<Item = usize> + use<> {
+        self.channels.iter().map(|channel| channel.node).collect::<BTreeSet<_>>().into_iter()
+    }
+
     /// Whether it moves nodes, rather than only changing weights.
     pub fn moves(&self) -> bool {
         !self.channels.is_empty()
@@ -125,7 +130,7 @@ fn untargeted_warning(animation: &str, count: usize) -> Option<String> {
 }
 
 /// Names, as far as anybody would read them.
-fn list(names: &[String]) -> String {
+pub(super) fn list(names: &[String]) -> String {
     const NAMES_MAX: usize = 20;
     let (told, more) = names.split_at(names.len().min(NAMES_MAX));
     match more.len() {

@@ -34,6 +34,21 @@ const UNDERSTOOD: [&str; 10] = [
     "MSFT_",
 ];
 
+/// The beginnings of the names of others that a file may use, without requiring them, and that change no geometry;
+/// an animation of anything but nodes is warned of where it is.
+const HARMLESS: [&str; 10] = [
+    "KHR_animation_pointer",
+    "KHR_audio",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "EXT_instance_features",
+    "EXT_mesh_features",
+    "EXT_structural_metadata",
+    "ADOBE_materials_",
+    "CESIUM_primitive_outline",
+    "FB_ngon_encoding",
+];
+
 /// The extensions that compress geometry.
 const COMPRESSIONS: [&str; 3] =
     ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
@@ -98,6 +113,15 @@ impl Document {
         used.into_iter().find(|name| COMPRESSIONS.contains(name))
     }
 
+    /// The extensions that the file uses and that may change geometry in ways that are not known here, by quoted name.
+    pub fn unknown_extensions(&self) -> Vec<String> {
+        let used = self.root.extensions_used.iter();
+        let known = |name: &str| {
+            is_among(&UNDERSTOOD, name) || is_among(&HARMLESS, name) || COMPRESSIONS.contains(&name)
+        };
+        used.filter(|name| !known(name)).map(|name| format!("`{}`", quoted(name))).collect()
+    }
+
     /// Counts numbers that are about to be read; `what` names them.
     pub fn spend(&self, numbers: usize, what: &str) -> Result<()> {
         match self.budget.get().checked_sub(numbers) {
@@ -154,12 +178,17 @@ fn check_extensions(root: &Root) -> Result<()> {
         if COMPRESSIONS.contains(&name.as_str()) {
             return Err(compressed(name).into());
         }
-        if !UNDERSTOOD.iter().any(|known| name.starts_with(known)) {
+        if !is_among(&UNDERSTOOD, name) {
             let name = quoted(name);
             return Err(format!("the file requires the extension `{name}`, which is not supported").into());
         }
     }
     Ok(())
+}
+
+/// Whether an extension's name begins with one of these.
+fn is_among(beginnings: &[&str], name: &str) -> bool {
+    beginnings.iter().any(|beginning| name.starts_with(beginning))
 }
 
 /// What to say of a file whose geometry is compressed.

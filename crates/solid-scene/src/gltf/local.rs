@@ -37,6 +37,11 @@ impl Local {
         Ok(Local { translation, rotation, scale, matrix: None })
     }
 
+    /// Whether it is a matrix, which no animation changes.
+    pub fn is_matrix(&self) -> bool {
+        self.matrix.is_some()
+    }
+
     pub fn affine(&self) -> DAffine3 {
         self.matrix.unwrap_or_else(|| {
             DAffine3::from_scale_rotation_translation(self.scale, self.rotation, self.translation)

@@ -7,7 +7,7 @@ use glam::DAffine3;
 use gltf::json::Node;
 use solid3d::Shape;
 
-use super::animation::Animation;
+use super::animation::{Animation, list};
 use super::document::Document;
 use super::graph::{Graph, PATHS_MAX};
 use super::instances;
@@ -26,7 +26,16 @@ pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part>
     let graph = Graph::new(document)?;
     let nodes = document.root.nodes.iter().enumerate();
     let locals = nodes.map(|(index, node)| Local::of(index, node)).collect::<Result<Vec<_>>>()?;
+    let unknown = document.unknown_extensions();
+    if !unknown.is_empty() {
+        let names = list(&unknown);
+        warnings
+            .push(format!("uses extensions that are not supported ({names}): what they change is not seen"));
+    }
     let animation = Animation::read(document, animation, &mut warnings)?;
+    for node in animation.moved().filter(|&node| locals[node].is_matrix()) {
+        warnings.push(format!("node {node} has a matrix, so that its animation has no effect"));
+    }
     let motion = GltfMotion { graph, locals, animation, objects: Vec::new() };
     let mut reader = Reader::new(document, motion, warnings);
     for node in reader.motion.graph.scene.clone() {

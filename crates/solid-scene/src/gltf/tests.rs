@@ -430,6 +430,25 @@ fn extensions_and_versions_are_checked() {
     assert_eq!(file.refused(), "the file is of glTF 1.0; expected 2.0");
 }
 
+/// What may be missed is said, once.
+#[test]
+fn extensions_that_are_not_known_are_warned_of() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    file.add("nodes", json!({"mesh": mesh}));
+    file.0["extensionsUsed"] = json!([
+        "KHR_materials_unlit",
+        "EXT_meshopt_compression",
+        "KHR_animation_pointer",
+        "EXT_mesh_gpu_instancing"
+    ]);
+    assert_eq!(file.parse().unwrap().warnings, [""; 0]);
+    file.0["extensionsUsed"] = json!(["AGI_articulations", "KHR_texture_transform", "KHR_implicit_shapes"]);
+    let warning = "uses extensions that are not supported (`AGI_articulations`, `KHR_implicit_shapes`): what they \
+                   change is not seen";
+    assert_eq!(file.parse().unwrap().warnings, [warning]);
+}
+
 /// A file with a node that moves to the right in a second and has three instances of a triangle, and a child.
 fn instances() -> File {
     let mut file = File::new();
@@ -532,6 +551,20 @@ fn instances_are_checked() {
         (part.objects.len(), &part.warnings[..]),
         (2, &["`node3` has a skin, so that its instances are passed over".to_owned()][..])
     );
+}
+
+#[test]
+fn an_animation_that_has_no_effect_is_warned_of() {
+    let mut file = everything();
+    file.0["nodes"][1] = json!({"children": [2], "matrix": glam::Mat4::IDENTITY.to_cols_array()});
+    let warnings = file.parse().unwrap().warnings;
+    assert_eq!(warnings[1..], ["node 1 has a matrix, so that its animation has no effect"]);
+    // The weights of a node with a matrix change.
+    let mut file = everything();
+    let placed = file.0["nodes"][3].as_object_mut().unwrap();
+    placed.remove("scale");
+    placed.insert("matrix".to_owned(), json!(glam::Mat4::IDENTITY.to_cols_array()));
+    assert_eq!(file.parse().unwrap().warnings.len(), 1);
 }
 
 /// A channel may leave it to an extension to say what it changes (glTF 2.0, section 5.8).
