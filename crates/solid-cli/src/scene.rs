@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 use solid_scene::{Format, LoadOptions, Scene};
 
 use crate::args::SceneArgs;
-use crate::{progress, words};
+use crate::{complain, progress, words};
 
 /// Loads the files into one scene, which must have an object: a check of nothing finds nothing.
 pub fn load(args: &SceneArgs) -> Result<Scene> {
@@ -21,6 +21,10 @@ pub fn load(args: &SceneArgs) -> Result<Scene> {
     options.split = args.split;
     options.animation.clone_from(&args.animation);
     let scene = progress::while_waiting("reading the scene", || Scene::load(&args.files, &options))?;
+    if scene.objects().is_empty() {
+        // They say why, and nobody else will tell them.
+        warnings(&scene).for_each(|warning| complain("warning", warning));
+    }
     let files = || args.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ");
     ensure!(!scene.objects().is_empty(), "{}: there is no geometry; expected a node with a shape", files());
     Ok(scene)

@@ -258,6 +258,30 @@ fn bad_scenes_are_named() {
     assert!(matches!(run.status, 0 | 2), "{run:?}");
 }
 
+/// Where a scene is empty, the warnings say why.
+#[test]
+fn an_empty_scene_tells_its_warnings() {
+    let desk = Desk::new()
+        .file("inline.wrl", "#VRML V2.0 utf8\nInline { url \"http://nowhere/part.wrl\" }\n")
+        .file("unknown.wrl", "#VRML V2.0 utf8\nFoo { a 1 }\n")
+        .file("itself.wrl", "#VRML V2.0 utf8\nPROTO P [] { P {} }\nP {}\n");
+    for command in ["check", "info"] {
+        for (name, reason) in [("inline", "only local files are read"), ("unknown", "Foo"), ("itself", "P")] {
+            let run = desk.run(&format!("{command} {name}.wrl"));
+            assert_eq!(run.status, 2, "{run:?}");
+            let [warning, error] = run.stderr.lines().collect::<Vec<_>>()[..] else { panic!("{run:?}") };
+            assert!(
+                warning.starts_with(&format!("warning: {name}.wrl: ")) && warning.contains(reason),
+                "{warning}"
+            );
+            assert_eq!(
+                error,
+                format!("error: {name}.wrl: there is no geometry; expected a node with a shape")
+            );
+        }
+    }
+}
+
 /// They may have no end, or keep us waiting for ever.
 #[cfg(unix)]
 #[test]
