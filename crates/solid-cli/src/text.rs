@@ -23,6 +23,8 @@ fn read_within(path: &Path, bytes_max: u64) -> Result<String> {
         bytes.len() as u64 <= bytes_max,
         "{name}: there are more than {bytes_max} bytes, which is the limit"
     );
+    let is_utf16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
+    ensure!(!is_utf16, "{name}: is text in UTF-16; expected UTF-8, so save it as that first");
     String::from_utf8(bytes).map_err(|error| {
         let line =
             1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
@@ -41,7 +43,15 @@ mod tests {
         std::fs::write(&path, b"a = 1\nb = \xff\n").expect("a file");
         let error = read(&path).expect_err("it is no text").to_string();
         assert!(error.contains("rules.toml:2: "), "{error}");
-        let error = read_within(&path, 4).expect_err("it is too large").to_string();
-        assert!(error.contains("more than 4 bytes"), "{error}");
+        for utf16 in [b"\xff\xfea\0", b"\xfe\xff\0a"] {
+            std::fs::write(&path, utf16).expect("a file");
+            let error = read(&path).expect_err("it is in UTF-16").to_string();
+            assert!(
+                error.ends_with("rules.toml: is text in UTF-16; expected UTF-8, so save it as that first"),
+                "{error}"
+            );
+        }
+        let error = read_within(&path, 3).expect_err("it is too large").to_string();
+        assert!(error.contains("more than 3 bytes"), "{error}");
     }
 }

@@ -258,6 +258,31 @@ fn bad_scenes_are_named() {
     assert!(matches!(run.status, 0 | 2), "{run:?}");
 }
 
+/// As some editors save text.
+#[test]
+fn text_in_utf16_is_named() {
+    let utf16 = |text: &str, bytes: fn(u16) -> [u8; 2]| -> Vec<u8> {
+        "\u{feff}".encode_utf16().chain(text.encode_utf16()).flat_map(bytes).collect()
+    };
+    for (name, text) in [
+        ("a.obj", "v 0 0 0\n"),
+        ("a.wrl", "#VRML V2.0 utf8\n"),
+        ("a.stl", "solid\nendsolid\n"),
+        ("a.ply", "ply\n"),
+        ("a.gltf", "{}"),
+    ] {
+        for bytes in [u16::to_le_bytes, u16::to_be_bytes] {
+            let run = Desk::new().file(name, utf16(text, bytes)).run(&format!("check {name}"));
+            run.assert_fails(&[&format!(
+                "{name}: is text in UTF-16; expected UTF-8, so save it as that first"
+            )]);
+        }
+    }
+    let desk = Desk::with_boxes().file("r", utf16("default = \"ignore\"\n", u16::to_le_bytes));
+    desk.run("check a.obj --rules r").assert_fails(&["r: is text in UTF-16"]);
+    desk.run("check a.obj --placements r").assert_fails(&["r: is text in UTF-16"]);
+}
+
 /// Where a scene is empty, the warnings say why.
 #[test]
 fn an_empty_scene_tells_its_warnings() {

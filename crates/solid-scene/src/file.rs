@@ -5,10 +5,24 @@ use std::path::Path;
 
 use crate::error::SceneError;
 
-/// The bytes of a regular file.
+/// The bytes of a regular file, which are no text in UTF-16.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     metadata(path)?;
-    std::fs::read(path).map_err(|error| unreadable(path, &error))
+    let bytes = std::fs::read(path).map_err(|error| unreadable(path, &error))?;
+    if is_utf16(&bytes) {
+        return Err(SceneError::new(
+            path,
+            None,
+            "is text in UTF-16; expected UTF-8, so save it as that first",
+        ));
+    }
+    Ok(bytes)
+}
+
+/// Whether bytes are a byte order mark of UTF-16 and then, as in all formats here that are text, a letter of ASCII; so that hardly
+/// any header of a binary file is taken for it.
+fn is_utf16(bytes: &[u8]) -> bool {
+    matches!(bytes, [0xff, 0xfe, 1..0x80, 0, ..] | [0xfe, 0xff, 0, 1..0x80, ..])
 }
 
 /// What is known of a regular file. Others are refused: a pipe could keep us waiting, and a device may have no end.
