@@ -87,10 +87,13 @@ fn headers_suit_every_dialect() {
         }
     }
     if has("c++") {
-        for dialect in ["-std=c++98", "-std=c++17"] {
-            run(compile("header.c", Linking::Shared, &[dialect, "-pedantic"]));
-            run(compile("classes.cpp", Linking::Shared, &[dialect, "-pedantic"]));
-            run(compile("classes.cpp", Linking::Static, &[dialect, "-pedantic"]));
+        for dialect in ["-std=c++98", "-std=c++11", "-std=c++14", "-std=c++17", "-std=c++20", "-std=c++2b"] {
+            for program in ["header.c", "classes.cpp", "original.cpp"] {
+                run(compile(program, Linking::Shared, &[dialect, "-pedantic"]));
+            }
+        }
+        for program in ["classes.cpp", "original.cpp"] {
+            run(compile(program, Linking::Static, &["-std=c++98", "-pedantic"]));
         }
     }
 }

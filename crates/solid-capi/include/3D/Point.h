@@ -9,15 +9,18 @@ class Point : public Vector {
 public:
     Point() {}
     Point(Scalar x, Scalar y, Scalar z) : Vector(x, y, z) {}
-    explicit Point(const float v[3]) : Vector(v) {}
-    explicit Point(const double v[3]) : Vector(v) {}
+    // A DtVector, among others.
+    Point(const float v[3]) : Vector(v) {}
+    Point(const double v[3]) : Vector(v) {}
     // The point whose position vector is v.
-    explicit Point(const Vector& v) : Vector(v) {}
+    Point(const Vector& v) : Vector(v) {}
 };
 
 inline Point operator+(const Point& p, const Vector& v) { return Point(p[0] + v[0], p[1] + v[1], p[2] + v[2]); }
 inline Point operator-(const Point& p, const Vector& v) { return Point(p[0] - v[0], p[1] - v[1], p[2] - v[2]); }
 inline Vector operator-(const Point& p, const Point& q) { return Vector(p[0] - q[0], p[1] - q[1], p[2] - q[2]); }
+// Or either of the two before would do.
+inline Vector operator-(const Vector& v, const Point& p) { return Vector(v[0] - p[0], v[1] - p[1], v[2] - p[2]); }
 
 inline Scalar distance2(const Point& p, const Point& q) { return (p - q).length2(); }
 inline Scalar distance(const Point& p, const Point& q) { return (p - q).length(); }

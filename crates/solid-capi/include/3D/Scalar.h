@@ -24,5 +24,7 @@ inline Scalar sqr(Scalar x) { return x * x; }
 
 // A random number from [0, 1), by rand().
 inline Scalar randomScalar() { return std::rand() / (RAND_MAX + Scalar(1)); }
+// The same, as SOLID 2.0 calls it.
+inline Scalar rnd() { return randomScalar(); }
 
 #endif

@@ -49,7 +49,7 @@ public:
     // Of a transformation that does not flatten.
     Transform inverse() const {
         const Matrix back = basis.inverse();
-        return Transform(back, Point(back * -static_cast<const Vector&>(origin)));
+        return Transform(back, back * -origin);
     }
 
 private:

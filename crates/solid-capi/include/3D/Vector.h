@@ -11,8 +11,9 @@ class Vector {
 public:
     Vector() { setValue(0, 0, 0); }
     Vector(Scalar x, Scalar y, Scalar z) { setValue(x, y, z); }
-    explicit Vector(const float v[3]) { setValue(v[0], v[1], v[2]); }
-    explicit Vector(const double v[3]) { setValue(v[0], v[1], v[2]); }
+    // A DtVector, among others.
+    Vector(const float v[3]) { setValue(v[0], v[1], v[2]); }
+    Vector(const double v[3]) { setValue(v[0], v[1], v[2]); }
 
     void setValue(Scalar x, Scalar y, Scalar z) {
         co[0] = x;
