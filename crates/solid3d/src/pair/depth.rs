@@ -9,7 +9,7 @@ use solid_convex::{Outcome, Penetration, epa, gjk};
 
 use super::deepest::{deepest_pair, deepest_primitive};
 use super::table::{PlacedComplex, PlacedConvex};
-use super::{Mirror, Relation, Scratch, complex_complex, complex_convex};
+use super::{Mirror, Scratch, complex_complex, complex_convex};
 
 pub(super) fn convex_convex(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Option<Penetration> {
     scratch.primitive_tests += 1;
@@ -22,10 +22,7 @@ pub(super) fn complex_convex(
     scratch: &mut Scratch,
 ) -> Option<Penetration> {
     if a.0.is_solid() {
-        return match complex_convex::intersection(a, b, scratch) {
-            Relation::Separated { .. } => None,
-            Relation::Common(_) => Some(of_common((&a.0.hull(), a.1), b)),
-        };
+        return complex_convex::intersects(a, b, scratch).then(|| of_common((&a.0.hull(), a.1), b));
     }
     deepest_primitive(a, b, scratch)
 }
@@ -39,7 +36,7 @@ pub(super) fn complex_complex(
         return deepest_pair(a, b, scratch)
             .map(|[i, j]| of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1)));
     }
-    if matches!(complex_complex::intersection(a, b, scratch), Relation::Separated { .. }) {
+    if !complex_complex::intersects(a, b, scratch) {
         return None;
     }
     let deepest = match (a.0.is_solid(), b.0.is_solid()) {

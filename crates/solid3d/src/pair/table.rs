@@ -125,10 +125,7 @@ pub(crate) fn decide(a: Placed, b: Placed, proof: &mut Proof, scratch: &mut Scra
             let axis = convex_convex::axis(on_a, on_b, scratch);
             (axis.is_none(), axis)
         }
-        None => match intersection(a, b, scratch) {
-            Relation::Separated { axis } => (false, axis),
-            Relation::Common(_) => (true, None),
-        },
+        None => (intersects_by_class(a, b, scratch), None),
     };
     *proof = axis.into();
     Decision { intersect, by_the_same: false }

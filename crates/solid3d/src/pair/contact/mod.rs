@@ -39,7 +39,7 @@ use solid_convex::{Penetration, Support, epa, gjk};
 use super::depth::of_common;
 use super::frame::{Around, Frame};
 use super::reach::reach;
-use super::{Placed, Relation, Scratch, closed_form, table, world_bounds};
+use super::{Placed, Scratch, closed_form, table, world_bounds};
 use crate::shape::{Body, Class, Complex};
 use clip::{Origin, clip};
 use face::Face;
@@ -229,7 +229,7 @@ fn contacts_at_length(
     let pair = Pair::new(a, b, options.margin);
     // A surface that is taken for the body it bounds does not collide with what is inside.
     let hollow = is_hollow(a) || is_hollow(b);
-    let apart = |scratch: &mut _| matches!(table::intersection(a, b, scratch), Relation::Separated { .. });
+    let apart = |scratch: &mut _| !table::intersects(a, b, scratch);
     if hollow && options.margin == 0.0 && apart(scratch) {
         return Vec::new();
     }
