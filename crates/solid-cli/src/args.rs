@@ -25,7 +25,8 @@ const CHECK_NOTES: &str = "\
 Objects:
   Every node with geometry is an object, and so is every instance of its mesh where a glTF file has several. Nodes on one
   root path (one holds the other) are not tested against each other. Shapes are closed sets, so touching collides; a
-  mesh is a surface, so a body wholly inside one does not, unless --solid declares the mesh solid.
+  mesh is a surface, so a body wholly inside one does not, unless --solid declares the mesh solid. An object that is scaled to
+  nothing in a frame, or flattened, as animators hide one, is not there in that frame; a warning tells when it first is not.
 
 Convex pieces (--decompose PATTERN):
   In the place of the mesh are at most 32 convex pieces, found on a grid of 64 voxels along its longest side: they cover all
@@ -99,7 +100,7 @@ Placements (--placements FILE.csv): in place of the animation,
     0,ship,0,0,0,0,0,0,1
     12,ship,1.5,0,0,0,0,0.7071,0.7071
   A row places the object from its frame on: a translation and a quaternion (normalised when read), optionally followed
-  by a scale sx,sy,sz. Until placed, objects stay where they are at time 0. Frames run from 0 to the largest in the file.";
+  by a scale sx,sy,sz, none of them 0. Until placed, objects stay where they are at time 0. Frames run from 0 to the largest in the file.";
 
 /// Finds every collision in an animated scene
 #[derive(Debug, Parser)]

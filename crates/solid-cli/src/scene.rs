@@ -35,6 +35,16 @@ pub fn warnings(scene: &Scene) -> impl Iterator<Item = String> {
     scene.warnings().map(|(file, warning)| words::printable(&format!("{}: {warning}", file.display())))
 }
 
+/// That an object is not there at a time, in seconds, in words.
+pub fn absence(scene: &Scene, object: usize, time: f64) -> String {
+    let object = &scene.objects()[object];
+    let (file, name) = (scene.files()[object.file()].display(), words::quoted(object.name()));
+    let time = words::seconds(time);
+    words::printable(&format!(
+        "{file}: object {name} is scaled to nothing, or flat, at {time} s; it is not there in such frames"
+    ))
+}
+
 /// How much geometry there is, in words: `3 objects, 5804 triangles, 2 other primitives`.
 pub fn amount(scene: &Scene) -> String {
     let (mut triangles, mut others) = (0, 0);

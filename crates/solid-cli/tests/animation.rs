@@ -4,7 +4,7 @@
 
 mod harness;
 
-use harness::{BOX, Desk, Run, data};
+use harness::{Desk, Run, data};
 
 const VRML: &str = "#VRML V2.0 utf8\n";
 
@@ -132,13 +132,80 @@ fn nodes_on_one_root_path_are_not_tested_unless_a_rule_says_so() {
     assert_eq!(twice["summary"]["pairs"], 4, "files are apart");
 }
 
+/// A box `mover` under a scale and a translation of three keys, at 0 s, 1 s and 2 s, and one at the origin.
+fn hiding(scales: &str, translations: &str) -> Desk {
+    let interpolator = |name: &str, values: &str| {
+        format!("DEF {name} PositionInterpolator {{ key [0 0.5 1] keyValue [{values}] }}\n")
+    };
+    let route = |name: &str, field: &str| {
+        format!(
+            "ROUTE clock.fraction_changed TO {name}.set_fraction\nROUTE {name}.value_changed TO mover.{field}\n"
+        )
+    };
+    let nodes =
+        block("mover", "") + &block("goal", "") + "DEF clock TimeSensor { cycleInterval 2 loop TRUE }\n";
+    let paths = interpolator("size", scales) + &interpolator("place", translations);
+    let routes = route("size", "set_scale") + &route("place", "set_translation");
+    Desk::new().file("s.wrl", format!("{VRML}{nodes}{paths}{routes}"))
+}
+
+const HERE: &str = "0 0 0, 0 0 0, 0 0 0";
+
+/// What the command says of the mover, if it is first absent at a time.
+fn absence(time: &str) -> String {
+    format!(
+        "warning: s.wrl: object \"mover\" is scaled to nothing, or flat, at {time} s; it is not there in such frames\n"
+    )
+}
+
+/// Animators hide objects by a scale of 0.
 #[test]
-fn a_placement_that_becomes_singular_stops_the_check() {
-    let scale = drive("PositionInterpolator", "1 1 1, 1 0 1", "mover.set_scale");
-    let text = format!("{VRML}{}{}{scale}", block("mover", "translation 9 0 0"), block("goal", ""));
-    let desk = Desk::new().file("s.wrl", text).file("a.obj", BOX);
-    desk.run("check a.obj s.wrl --fps 4").assert_fails(&["s.wrl: ", "\"mover\"", "2.000 s", "singular"]);
-    desk.run("check a.obj s.wrl --fps 4 --to 1.75").assert_status(1);
+fn what_is_scaled_to_nothing_is_not_there() {
+    for nothing in ["0 0 0", "1 0 1", "1 1 1e-200"] {
+        let desk = hiding(&format!("1 1 1, {nothing}, 1 1 1"), HERE);
+        let check = "check s.wrl --fps 2 --clearance 0.1 --ray -9,0,0 1,0,0";
+        for more in ["", "--continuous", "--response smart", "--response contacts"] {
+            let run = desk.run(&format!("{check} {more} --json -"));
+            assert_eq!((run.status, run.stderr.as_str()), (1, absence("1.000").as_str()), "{nothing} {more}");
+            assert_eq!(colliding(&run), [0, 1, 3, 4], "{nothing} {more}");
+            let json = run.json();
+            let count = |frame: usize, list: &str| json["frames"][frame][list].as_array().unwrap().len();
+            assert_eq!([1, 2, 3].map(|frame| count(frame, "near")), [1, 0, 1], "{json}");
+            assert_eq!([1, 2, 3].map(|frame| count(frame, "rays")), [2, 1, 2], "{json}");
+        }
+        // Whether a frame is there does not decide over the others.
+        assert_eq!(desk.run("check s.wrl --fps 1.5").stderr, "");
+    }
+}
+
+#[test]
+fn what_is_absent_from_the_start_comes_later() {
+    let desk = hiding("0 0 0, 0 0 0, 1 1 1", HERE);
+    let run = desk.run("check s.wrl --fps 1 --json -");
+    assert_eq!((colliding(&run), run.stderr), (vec![2], absence("0.000")));
+    // And what is never there never collides.
+    let desk = hiding("0 0 0, 0 0 0, 0 0 0", HERE);
+    assert_eq!(desk.run("check s.wrl --from 1").assert_status(0).stderr, absence("1.000"));
+    let placements = format!("{}0,goal,0,0,0,0,0,0,1\n3,goal,1,0,0,0,0,0,1\n", harness::HEADER);
+    let run = desk.file("p.csv", placements).run("check s.wrl --placements p.csv");
+    assert_eq!(run.assert_status(0).stderr, absence("0.000"));
+}
+
+/// There is no way from where it was before it was absent.
+#[test]
+fn what_comes_again_is_new() {
+    let shown_elsewhere = "-10 0 0, -10 0 0, 10 0 0";
+    let status = |scales: &str, translations: &str| {
+        hiding(scales, translations).run("check s.wrl --fps 1 --continuous").status
+    };
+    assert_eq!(status("1 1 1, 1 1 1, 1 1 1", shown_elsewhere), 1);
+    assert_eq!(status("1 1 1, 0 0 0, 1 1 1", shown_elsewhere), 0);
+    assert_eq!(status("0 0 0, 0 0 0, 1 1 1", shown_elsewhere), 0);
+    let desk = hiding("1 1 1, 0 0 0, 1 1 1", "-10 0 0, -10 0 0, 0.5 0 0");
+    let run = desk.run("check s.wrl --fps 1 --continuous --response smart --json -");
+    let collision = run.assert_status(1).json()["frames"][2]["collisions"][0].clone();
+    assert_eq!(collision["contact_time"], 2.0, "{collision}");
+    assert_eq!(collision["normal"][0].as_f64().map(f64::abs), Some(1.0), "the way out: {collision}");
 }
 
 #[test]

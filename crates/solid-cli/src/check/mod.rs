@@ -6,6 +6,7 @@ mod crowd;
 mod files;
 mod motion;
 mod player;
+mod presence;
 mod report;
 mod root_paths;
 mod stage;
@@ -66,7 +67,10 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     clock.lap(&mut times.load);
 
     let mut player = Player { scene: &scene, stage, crowd, has_clearance, rays, recorders, clock, times };
-    let findings = player.play(&timeline)?;
+    let findings = player.play(&timeline);
+    // Now, that no progress bar is in the way; also where an error ended the play.
+    player.stage.absences().for_each(|absence| complain("warning", absence));
+    let findings = findings?;
     let statistics = player.stage.statistics();
     let report =
         Report { scene: &scene, findings: &findings, rays: &player.rays, statistics, times: player.times };

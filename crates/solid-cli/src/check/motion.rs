@@ -42,6 +42,14 @@ impl<'a> Motion<'a> {
         }
     }
 
+    /// Whether an object may be hidden now, by a placement that is flat: animators do that. In a table it is a mistake, at a line.
+    pub fn may_hide(&self, object: usize) -> bool {
+        match self {
+            Motion::Animation(_) => true,
+            Motion::Table(table) => table.lines[object].is_none(),
+        }
+    }
+
     /// Where it is written how an object is placed now: a file and perhaps a line.
     pub fn place(&self, object: usize) -> String {
         match self {

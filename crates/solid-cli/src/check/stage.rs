@@ -3,16 +3,25 @@
 use std::collections::{HashMap, HashSet};
 
 use anyhow::{Result, anyhow};
-use solid_scene::{ObjectPose, Pose, Scene};
+use solid_scene::{Pose, Scene};
+use solid3d::glam::{DAffine3, DVec3};
 use solid3d::query::{self, ImpactOptions, Path, RayOptions};
 use solid3d::{Aabb, Collision, Contact, Near, ObjectId, Shape, Statistics, When, World, WorldOptions};
 
 use super::motion::Motion;
+use super::presence::{Presence, Presences};
 use crate::rays::NamedRay;
 use crate::record::{Depth, Hit, Pass, Sighting};
-use crate::words;
+use crate::{scene, words};
+
+/// How small an object is made that is to wait in the world until it is there for the first time: next to nothing, so that it
+/// overlaps little, but far from where numbers end.
+const SPECK: DVec3 = DVec3::splat(1e-9);
 
 /// A world with the objects of a scene.
+///
+/// An object whose placement the library refuses because it is flat is absent, if its motion allows that. It waits in the world
+/// where it was last, so that rules and the order of the scene stay as they are; what is found of it is passed over.
 pub struct Stage<'a> {
     scene: &'a Scene,
     motion: Motion<'a>,
@@ -22,6 +31,7 @@ pub struct Stage<'a> {
     places: HashMap<ObjectId, usize>,
     /// The pose of the world.
     shown: Pose,
+    presences: Presences,
     /// The pose that motion wrote last.
     wanted: Pose,
     /// Whether the world is tested between frames, too.
@@ -48,13 +58,13 @@ impl<'a> Stage<'a> {
             ids: Vec::new(),
             places: HashMap::new(),
             shown: wanted.clone(),
+            presences: Presences::new(shapes.len()),
             wanted,
             tested,
             times: [time; 2],
         };
         for (object, shape) in shapes.iter().enumerate() {
-            let added = stage.add(object, shape);
-            let id = added.map_err(|error| stage.refusal(object, time, &error))?;
+            let id = stage.add(object, shape, time)?;
             stage.places.insert(id, object);
             stage.ids.push(id);
         }
@@ -85,26 +95,34 @@ impl<'a> Stage<'a> {
     pub fn show(&mut self, frame: u64, time: f64) -> Result<()> {
         self.motion.pose(frame, time, &mut self.wanted);
         self.times = [self.times[1], time];
-        for object in 0..self.ids.len() {
-            self.update(object).map_err(|error| self.refusal(object, time, &error))?;
-        }
-        Ok(())
+        (0..self.ids.len()).try_for_each(|object| self.show_object(object, time))
+    }
+
+    /// Which objects were absent in some frame so far, in words, a line each.
+    pub fn absences(&self) -> impl Iterator<Item = String> {
+        self.presences.absences().map(|(object, time)| scene::absence(self.scene, object, time))
     }
 
     /// What is nearer than its clearance in the frame, in the scene's order.
     pub fn near(&mut self, passes: &mut Vec<Pass>) {
         let near = self.world.near();
         passes.clear();
-        passes.extend(near.iter().map(|near| self.pass(near)));
+        passes.extend(near.iter().map(|near| self.pass(near)).filter(|pass| self.are_there(pass.a, pass.b)));
     }
 
     /// The collisions of the frame, in the scene's order. Ends the frame.
     pub fn test(&mut self, hits: &mut Vec<Hit>) {
         let collisions = self.world.test();
         hits.clear();
-        hits.extend(collisions.iter().filter_map(|collision| match self.tested {
-            solid3d::Motion::Sampled => Some(self.hit(collision)),
-            solid3d::Motion::Swept => self.timed_hit(collision),
+        hits.extend(collisions.iter().filter_map(|collision| {
+            let hit = self.hit(collision);
+            if !self.are_there(hit.a, hit.b) {
+                return None;
+            }
+            match self.tested {
+                solid3d::Motion::Sampled => Some(hit),
+                solid3d::Motion::Swept => self.timed(hit, collision),
+            }
         }));
         self.world.proceed();
     }
@@ -114,7 +132,8 @@ impl<'a> Stage<'a> {
         sightings.clear();
         let mut met = HashSet::new();
         for (place, NamedRay { ray, .. }) in rays.iter().enumerate() {
-            let hits = self.world.cast_ray_all(ray, &RayOptions::default(), |_| true);
+            let is_there = |id| self.is_there(self.places[&id]);
+            let hits = self.world.cast_ray_all(ray, &RayOptions::default(), is_there);
             met.clear();
             let length = ray.direction.length();
             let hits = hits.expect("the ray was checked when it was read").into_iter();
@@ -134,13 +153,41 @@ impl<'a> Stage<'a> {
         self.world.statistics()
     }
 
-    fn add(&mut self, object: usize, shape: &Shape) -> solid3d::Result<ObjectId> {
-        let ObjectPose { placement, positions } = &self.wanted.objects[object];
-        let id = self.world.add(shape, *placement)?;
+    /// Adds an object as it is in the first frame, at a time in seconds; if it is absent there, as a speck.
+    fn add(&mut self, object: usize, shape: &Shape, time: f64) -> Result<ObjectId> {
+        let placement = self.wanted.objects[object].placement;
+        let mut added = self.add_at(object, shape, placement);
+        if self.is_absence(object, &added) {
+            self.presences.hide(object, time);
+            let speck = DAffine3 { translation: placement.translation, ..DAffine3::from_scale(SPECK) };
+            self.shown.objects[object].placement = speck;
+            added = self.add_at(object, shape, speck);
+        }
+        added.map_err(|error| self.refusal(object, time, &error))
+    }
+
+    fn add_at(&mut self, object: usize, shape: &Shape, placement: DAffine3) -> solid3d::Result<ObjectId> {
+        let positions = &self.wanted.objects[object].positions;
+        let id = self.world.add(shape, placement)?;
         if !positions.is_empty() {
             self.world.deform(id, positions)?;
         }
         Ok(id)
+    }
+
+    /// Brings an object to the frame at a time, if it is there. What is new there is as in the first frame: its own previous one.
+    fn show_object(&mut self, object: usize, time: f64) -> Result<()> {
+        let updated = self.update(object);
+        if self.is_absence(object, &updated) {
+            self.presences.hide(object, time);
+            return Ok(());
+        }
+        updated.map_err(|error| self.refusal(object, time, &error))?;
+        self.presences.show(object);
+        if self.presences.of(object) == Presence::New {
+            self.world.proceed_object(self.ids[object])?;
+        }
+        Ok(())
     }
 
     /// Moves and deforms an object, if it is to be elsewhere or otherwise.
@@ -158,6 +205,19 @@ impl<'a> Stage<'a> {
         Ok(())
     }
 
+    /// Whether the world refused an object because it is absent.
+    fn is_absence<T>(&self, object: usize, answer: &solid3d::Result<T>) -> bool {
+        self.motion.may_hide(object) && matches!(answer, Err(solid3d::Error::SingularPlacement { .. }))
+    }
+
+    fn is_there(&self, object: usize) -> bool {
+        self.presences.of(object) != Presence::Absent
+    }
+
+    fn are_there(&self, a: usize, b: usize) -> bool {
+        self.is_there(a) && self.is_there(b)
+    }
+
     fn hit(&self, collision: &Collision) -> Hit {
         let [a, b] = [collision.a, collision.b].map(|id| self.places[&id]);
         let (point, normal, curve) = (collision.point(), collision.normal(), collision.curve().cloned());
@@ -172,13 +232,15 @@ impl<'a> Stage<'a> {
     }
 
     /// The same with the time of the first contact since the previous frame; `None` for a pair that only seemed to meet on the
-    /// way: what the world tests encloses the way of what turns or deforms.
-    fn timed_hit(&self, collision: &Collision) -> Option<Hit> {
+    /// way: what the world tests encloses the way of what turns or deforms. What is new has no way, and meets others at the frame.
+    fn timed(&self, hit: Hit, collision: &Collision) -> Option<Hit> {
+        let [previous, now] = self.times;
+        if [hit.a, hit.b].map(|object| self.presences.of(object)).contains(&Presence::New) {
+            return (collision.when == When::Now).then_some(Hit { contact_time: Some(now), ..hit });
+        }
         let options = ImpactOptions { path: Path::Straight, ..ImpactOptions::default() };
         let impact = self.world.time_of_impact(collision.a, collision.b, &options);
         let impact = impact.expect("the world said that they collide, and the options are in range");
-        let hit = self.hit(collision);
-        let [previous, now] = self.times;
         match (collision.when, impact) {
             (When::OnTheWay, None) => None,
             // Touching counts now, by less than the error of the time of impact.
