@@ -25,6 +25,16 @@ fn objects_are_listed_with_what_they_are() {
 }
 
 #[test]
+fn what_is_not_there_at_time_0_is_told() {
+    let flat = "#VRML V2.0 utf8\nDEF sheet Transform { children Shape { geometry Box {} } }\n\
+                DEF clock TimeSensor {}\nDEF path PositionInterpolator { key [0 1] keyValue [1 0 1, 1 1 1] }\n\
+                ROUTE clock.fraction_changed TO path.set_fraction\nROUTE path.value_changed TO sheet.set_scale\n";
+    let run = Desk::with_boxes().file("flat.wrl", flat).run("info a.obj flat.wrl");
+    let warning = "warning: flat.wrl: object \"sheet\" is scaled to nothing, or flat, at 0.000 s; it is not there in such frames\n";
+    assert!(run.assert_status(0).stdout.ends_with(warning), "{run:?}");
+}
+
+#[test]
 fn bad_files_make_status_2() {
     Desk::new().run("info missing.obj").assert_fails(&["missing.obj"]);
 }

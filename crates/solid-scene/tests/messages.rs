@@ -48,7 +48,7 @@ const FILES: [(&str, &str); 23] = [
     ("gltf", r#"{"asset": {"version": "2.0"}, "buffers": [{"name": "WORD", "byteLength": 4}]}"#),
     (
         "gltf",
-        r#"{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "name": "WORD", "scale": [0, 0, 0]}],
+        r#"{"asset": {"version": "2.0"}, "extensionsUsed": ["WORD"], "nodes": [{"mesh": 0}],
             "meshes": [{"primitives": [{"mode": 4, "attributes": {"POSITION": 0}}]}],
             "accessors": [{"count": 3, "componentType": 5126, "type": "VEC3"}]}"#,
     ),

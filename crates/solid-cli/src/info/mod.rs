@@ -5,8 +5,8 @@ mod closed;
 use std::io::{IsTerminal, Write};
 
 use anyhow::Result;
-use solid_scene::{Scene, SceneObject};
-use solid3d::{Shape, ShapeKind};
+use solid_scene::{Pose, Scene, SceneObject};
+use solid3d::{Error, Shape, ShapeKind, query};
 
 use crate::args::InfoArgs;
 use crate::table::{self, Column, Style};
@@ -35,7 +35,8 @@ pub fn run(args: &InfoArgs) -> Result<()> {
 fn text(scene: &Scene, style: Style) -> String {
     let objects = table::draw(style, &OBJECT_COLUMNS, scene.objects().iter().map(|o| object_row(scene, o)));
     let files = table::draw(style, &FILE_COLUMNS, (0..scene.files().len()).map(|file| file_row(scene, file)));
-    let warnings: String = scene::warnings(scene).map(|warning| format!("warning: {warning}\n")).collect();
+    let warnings = scene::warnings(scene).chain(absences(scene));
+    let warnings: String = warnings.map(|warning| format!("warning: {warning}\n")).collect();
     let amount = scene::amount(scene);
     format!("{objects}\n{files}\n{amount}, {}\n{warnings}", animation(scene.duration()))
 }
@@ -71,6 +72,16 @@ fn closedness(shape: &Shape) -> String {
         (ShapeKind::Complex, ..) => "-".to_owned(),
         _ => "solid".to_owned(),
     }
+}
+
+/// Which objects are not there at time 0, in words, a line each.
+fn absences(scene: &Scene) -> impl Iterator<Item = String> {
+    let mut pose = Pose::default();
+    scene.sample(0.0, &mut pose);
+    (0..).zip(pose.objects).filter_map(|(object, pose)| {
+        let bounds = query::bounds(scene.objects()[object].shape(), &pose.placement);
+        matches!(bounds, Err(Error::SingularPlacement { .. })).then(|| scene::absence(scene, object, 0.0))
+    })
 }
 
 fn animation(duration: f64) -> String {

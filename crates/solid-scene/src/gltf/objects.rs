@@ -126,10 +126,6 @@ impl<'a> Reader<'a> {
     }
 
     fn add(&mut self, object: PartObject, moved: Moved) -> Result<()> {
-        if moved.placement(&self.worlds).matrix3.determinant() == 0.0 {
-            let name = quoted(&object.name);
-            self.warnings.push(format!("`{name}` is flat at time 0: its placement is singular"));
-        }
         self.in_paths += object.path.len();
         if self.in_paths > PATHS_MAX {
             return Err(
