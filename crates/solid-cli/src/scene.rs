@@ -30,9 +30,14 @@ pub fn load(args: &SceneArgs) -> Result<Scene> {
     Ok(scene)
 }
 
-/// What was passed over or guessed in the files, a line each.
+/// What was passed over or guessed in the files, and which have no objects while others have, a line each.
 pub fn warnings(scene: &Scene) -> impl Iterator<Item = String> {
-    scene.warnings().map(|(file, warning)| words::printable(&format!("{}: {warning}", file.display())))
+    let has_objects = |file| scene.objects().iter().any(|object| object.file() == file);
+    let files = scene.files().iter().enumerate();
+    let empty = files.filter(move |&(file, _)| !scene.objects().is_empty() && !has_objects(file));
+    let empty = empty.map(|(_, file)| (file.as_path(), "there is no geometry"));
+    let all = scene.warnings().chain(empty);
+    all.map(|(file, warning)| words::printable(&format!("{}: {warning}", file.display())))
 }
 
 /// That an object is not there at a time, in seconds, in words.

@@ -289,22 +289,38 @@ fn an_empty_scene_tells_its_warnings() {
     let desk = Desk::new()
         .file("inline.wrl", "#VRML V2.0 utf8\nInline { url \"http://nowhere/part.wrl\" }\n")
         .file("unknown.wrl", "#VRML V2.0 utf8\nFoo { a 1 }\n")
-        .file("itself.wrl", "#VRML V2.0 utf8\nPROTO P [] { P {} }\nP {}\n");
+        .file("itself.wrl", "#VRML V2.0 utf8\nPROTO P [] { P {} }\nP {}\n")
+        .file("hollow.gltf", HOLLOW);
     for command in ["check", "info"] {
-        for (name, reason) in [("inline", "only local files are read"), ("unknown", "Foo"), ("itself", "P")] {
-            let run = desk.run(&format!("{command} {name}.wrl"));
+        for (name, reason) in [
+            ("inline.wrl", "only local files are read"),
+            ("unknown.wrl", "Foo"),
+            ("itself.wrl", "P"),
+            ("hollow.gltf", "mesh 0 (`m`) has no geometry"),
+        ] {
+            let run = desk.run(&format!("{command} {name}"));
             assert_eq!(run.status, 2, "{run:?}");
             let [warning, error] = run.stderr.lines().collect::<Vec<_>>()[..] else { panic!("{run:?}") };
             assert!(
-                warning.starts_with(&format!("warning: {name}.wrl: ")) && warning.contains(reason),
+                warning.starts_with(&format!("warning: {name}: ")) && warning.contains(reason),
                 "{warning}"
             );
-            assert_eq!(
-                error,
-                format!("error: {name}.wrl: there is no geometry; expected a node with a shape")
-            );
+            assert_eq!(error, format!("error: {name}: there is no geometry; expected a node with a shape"));
         }
     }
+}
+
+/// A glTF file with a mesh without positions.
+const HOLLOW: &str = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+"meshes": [{"name": "m", "primitives": [{"attributes": {}}]}]}"#;
+
+#[test]
+fn an_empty_file_among_others_is_warned_of() {
+    let desk = Desk::with_boxes().file("hollow.gltf", HOLLOW).file("empty.wrl", "#VRML V2.0 utf8\n");
+    let run = desk.run("check empty.wrl a.obj hollow.gltf");
+    let expected = "warning: hollow.gltf: mesh 0 (`m`) has no geometry\n\
+                    warning: empty.wrl: there is no geometry\nwarning: hollow.gltf: there is no geometry\n";
+    assert_eq!(run.assert_status(0).stderr, expected);
 }
 
 /// They may have no end, or keep us waiting for ever.

@@ -63,7 +63,7 @@ impl SceneObject {
 }
 
 impl Scene {
-    /// Loads files into one scene, in the order given.
+    /// Loads files into one scene, in the order given. Of VRML and glTF a file may have no objects; its warnings may say why.
     pub fn load<P: AsRef<Path>>(files: &[P], options: &LoadOptions) -> Result<Scene, SceneError> {
         let files: Vec<PathBuf> = files.iter().map(|file| file.as_ref().to_owned()).collect();
         let mut parts = files.iter().map(|file| load(file, options)).collect::<Result<Vec<_>, _>>()?;

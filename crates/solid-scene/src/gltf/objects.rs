@@ -41,9 +41,6 @@ pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part>
     for node in reader.motion.graph.scene.clone() {
         reader.node(node).map_err(|fault| fault.of(&format!("node {node}")))?;
     }
-    if reader.objects.is_empty() {
-        return Err("the scene has no geometry: no node with a mesh".into());
-    }
     let Reader { objects, motion, warnings, .. } = reader;
     let duration = motion.animation.duration;
     let files = document.files.clone();

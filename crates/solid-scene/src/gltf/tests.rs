@@ -272,7 +272,6 @@ fn broken_hierarchies_are_refused() {
             "not glTF 2.0: number out of range at line 1 column 352",
         ),
         (json!([{"mesh": 0, "matrix": vec![1.0; 16]}]), "node 0 has a matrix that is not affine"),
-        (json!([]), "the scene has no geometry: no node with a mesh"),
     ];
     for (nodes, message) in hierarchies {
         file.0["nodes"] = nodes;
@@ -354,6 +353,17 @@ fn accessors_stay_in_their_buffers() {
         let refused = file.refused();
         assert!(refused.contains(message), "{path}: {refused}");
     }
+}
+
+/// Its warnings may say why.
+#[test]
+fn a_file_may_have_no_geometry() {
+    let mut file = File::new();
+    assert!(file.parse().unwrap().objects.is_empty());
+    let mesh = file.add("meshes", json!({"primitives": [{"attributes": {}}]}));
+    file.add("nodes", json!({"mesh": mesh}));
+    let part = file.parse().unwrap();
+    assert!(part.objects.is_empty() && part.warnings == ["mesh 0 has no geometry"], "{:?}", part.warnings);
 }
 
 /// Zeros need no bytes in the file, and so are counted.
