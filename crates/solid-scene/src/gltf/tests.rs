@@ -366,6 +366,45 @@ fn a_file_may_have_no_geometry() {
     assert!(part.objects.is_empty() && part.warnings == ["mesh 0 has no geometry"], "{:?}", part.warnings);
 }
 
+/// What a small file names again and again takes memory each time; some sharing is fine.
+#[test]
+fn sharing_is_limited_in_proportion_to_the_file() {
+    let vertices = 9000;
+    let positions = |file: &mut File| file.floats("VEC3", vertices, &vec![0.0; 3 * vertices]);
+    let meshes = |count: usize| {
+        let mut file = File::new();
+        let shared = positions(&mut file);
+        for mesh in 0..count {
+            file.add("meshes", json!({"primitives": [{"attributes": {"POSITION": shared}, "mode": 0}]}));
+            file.add("nodes", json!({"mesh": mesh}));
+        }
+        file
+    };
+    let targets = |count: usize| {
+        let mut file = meshes(1);
+        let targets = vec![json!({"POSITION": 0}); count];
+        file.0["meshes"][0]["primitives"][0]["targets"] = json!(targets);
+        file
+    };
+    let channels = |count: usize| {
+        let mut file = meshes(1);
+        let times: Vec<f32> = (0..vertices as u16).map(f32::from).collect();
+        let times = file.floats("SCALAR", vertices, &times);
+        let channel = |sampler| json!({"sampler": sampler, "target": {"node": 0, "path": "translation"}});
+        file.0["animations"] = json!([{
+            "samplers": vec![json!({"input": times, "output": 0}); count],
+            "channels": (0..count).map(channel).collect::<Vec<_>>(),
+        }]);
+        file
+    };
+    let files: [&dyn Fn(usize) -> File; 3] = [&meshes, &targets, &channels];
+    for file in files {
+        assert_eq!(file(20).parse().map(|_| ()), Ok(()));
+        let refused = file(200).refused();
+        assert!(refused.ends_with("numbers are more than a file of this size may hold"), "{refused}");
+    }
+}
+
 /// Zeros need no bytes in the file, and so are counted.
 #[test]
 fn zeros_without_a_buffer_are_limited() {
