@@ -1,26 +1,30 @@
 //! Rays that are cast in every frame.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use anyhow::{Context, Result, bail};
 use solid3d::World;
 use solid3d::glam::DVec3;
 use solid3d::query::{Ray, RayOptions};
 
+use crate::words::quoted;
+
 /// A ray or a segment under a name. It can be cast.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedRay {
     pub name: String,
     pub ray: Ray,
+    /// `rules.toml:7`, or the option.
+    place: String,
 }
 
 impl NamedRay {
     /// The ray, if it can be cast; `place` says where it stands.
-    pub fn new(name: String, ray: Ray, place: &str) -> Result<NamedRay> {
+    pub fn new(name: String, ray: Ray, place: String) -> Result<NamedRay> {
         // That is for a world to say, also for an empty one.
         let cast = World::new().ray_meets(&ray, &RayOptions::default(), |_| true);
-        cast.with_context(|| place.to_owned())?;
-        Ok(NamedRay { name, ray })
+        cast.with_context(|| place.clone())?;
+        Ok(NamedRay { name, ray, place })
     }
 }
 
@@ -29,7 +33,7 @@ fn of_arguments(vectors: &[DVec3]) -> Result<Vec<NamedRay>> {
     let numbered = (1..).zip(vectors.chunks_exact(2));
     let ray = |(number, vectors): (u32, &[DVec3])| {
         let ray = Ray::new(vectors[0], vectors[1]);
-        NamedRay::new(number.to_string(), ray, &format!("--ray {number}"))
+        NamedRay::new(number.to_string(), ray, format!("--ray {number}"))
     };
     numbered.map(ray).collect()
 }
@@ -37,9 +41,14 @@ fn of_arguments(vectors: &[DVec3]) -> Result<Vec<NamedRay>> {
 /// The rays of the command line, and those of the rules: an error where two have one name, since nobody could tell what each meets.
 pub fn all(vectors: &[DVec3], of_rules: &[NamedRay]) -> Result<Vec<NamedRay>> {
     let rays = [of_arguments(vectors)?.as_slice(), of_rules].concat();
-    let mut names = HashSet::new();
-    if let Some(NamedRay { name, .. }) = rays.iter().find(|ray| !names.insert(&ray.name)) {
-        bail!("two rays have the name {name:?}: [[ray]] needs another (those of --ray are numbered from 1)");
+    let mut places = HashMap::new();
+    for NamedRay { name, place, .. } in &rays {
+        if let Some(other) = places.insert(name, place) {
+            let name = quoted(name);
+            bail!(
+                "{place}: the ray at {other} has the name {name}, too; expected a name of its own (rays of --ray are named by numbers from 1)"
+            );
+        }
     }
     Ok(rays)
 }
@@ -77,13 +86,17 @@ mod tests {
     #[test]
     fn a_name_stands_for_one_ray() {
         let named = |name: &str| {
-            NamedRay::new(name.to_owned(), Ray::new(DVec3::ZERO, DVec3::X), "").expect("it has a direction")
+            let ray = Ray::new(DVec3::ZERO, DVec3::X);
+            NamedRay::new(name.to_owned(), ray, "r.toml:2".to_owned()).expect("it has a direction")
         };
         let numbered = [DVec3::ZERO, DVec3::X];
         assert_eq!(all(&numbered, &[named("a"), named("b")]).map(|rays| rays.len()).ok(), Some(3));
-        for (of_rules, name) in [([named("a"), named("a")], "a"), ([named("a"), named("1")], "1")] {
+        for (of_rules, other) in [
+            ([named("a"), named("a")], "r.toml:2 has the name \"a\""),
+            ([named("a"), named("1")], "--ray 1 has the name \"1\""),
+        ] {
             let error = all(&numbered, &of_rules).expect_err("two have one name").to_string();
-            assert!(error.starts_with(&format!("two rays have the name \"{name}\":")), "{error}");
+            assert!(error.starts_with(&format!("r.toml:2: the ray at {other}")), "{error}");
         }
     }
 }

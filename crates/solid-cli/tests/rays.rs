@@ -93,5 +93,16 @@ fn mistakes_say_what_is_expected() {
     }
     let desk = desk.file("r.toml", "[[ray]]\nname = \"x\"\norigin = [0, 0, 0]\n");
     desk.run(&format!("{CHECK} --rules r.toml")).assert_fails(&["r.toml:2: a ray needs a direction"]);
+    let twin = "[[ray]]\nname = \"1\"\norigin = [0, 0, 0]\nto = [1, 0, 0]\n";
+    let desk = desk.file("r.toml", twin).file("twins.toml", twin.repeat(2));
+    for (arguments, expected) in [
+        (
+            "--rules twins.toml",
+            "twins.toml:6: the ray at twins.toml:2 has the name \"1\", too; expected a name of its own",
+        ),
+        ("--ray 0,0,0 1,0,0 --rules r.toml", "r.toml:2: the ray at --ray 1 has the name \"1\", too"),
+    ] {
+        desk.run(&format!("{CHECK} {arguments}")).assert_fails(&[expected]);
+    }
     assert!(desk.run("check --help").stdout.contains("--ray <ORIGIN> <DIRECTION>"));
 }

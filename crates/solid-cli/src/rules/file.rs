@@ -157,7 +157,7 @@ impl Source<'_> {
             }
             (None, None) => return Err(anyhow!("{place}: a ray needs a direction or an end (to)")),
         };
-        NamedRay::new(name.into_inner(), ray, &place)
+        NamedRay::new(name.into_inner(), ray, place)
     }
 
     fn fault(&self, error: &toml::de::Error) -> anyhow::Error {
