@@ -125,7 +125,8 @@ fn the_choice_of_an_animation() {
     assert_eq!(run.duration(), load_animation(&fox, "2").unwrap().duration());
     assert!(run.duration() < first.duration());
     let error = load_animation(&fox, "Swim").unwrap_err();
-    assert_eq!(error.message, "there is no animation `Swim`; the file has `Survey`, `Walk`, `Run`");
+    let expected = "there is no animation `Swim`; the animations of the file are `Survey`, `Walk`, `Run`";
+    assert_eq!(error.message, expected);
 }
 
 /// The pair that was baked in single precision: 16 frames over two rounds of the fox's run, the last as the first.

@@ -96,6 +96,9 @@ fn of_many_animations_the_first_are_told() {
     let mut options = LoadOptions::default();
     options.animation = Some("walk".to_owned());
     let error = Scene::load(&[path], &options).unwrap_err();
-    assert!(error.message.starts_with("there is no animation `walk`; the file has 0, 1, 2, "), "{error}");
+    assert!(
+        error.message.starts_with("there is no animation `walk`; the animations of the file are 0, 1, 2, "),
+        "{error}"
+    );
     assert!(error.message.ends_with(", 19 and 980 more"), "{error}");
 }

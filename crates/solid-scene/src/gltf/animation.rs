@@ -144,7 +144,11 @@ fn chosen(document: &Document, names: &[String], choice: &str) -> Result<usize> 
     let by_name = animations.position(|animation| animation.name.as_deref() == Some(choice));
     let by_number = || choice.parse().ok().filter(|&number: &usize| number < names.len());
     by_name.or_else(by_number).ok_or_else(|| {
-        let known = if names.is_empty() { "none".to_owned() } else { list(names) };
-        format!("there is no animation `{choice}`; the file has {known}").into()
+        let known = match names {
+            [] => "the file has none".to_owned(),
+            [name] => format!("the only one of the file is {name}"),
+            names => format!("the animations of the file are {}", list(names)),
+        };
+        format!("there is no animation `{choice}`; {known}").into()
     })
 }

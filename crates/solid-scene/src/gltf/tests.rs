@@ -676,8 +676,15 @@ fn skins_and_animations_are_checked() {
         let refused = file.refused();
         assert!(refused.contains(message), "{path}: {refused}");
     }
-    let refused = everything().parse_animation(Some("x")).unwrap_err();
-    assert_eq!(refused, "there is no animation `x`; the file has `all`, 1");
+    let mut file = everything();
+    let refused = file.parse_animation(Some("x")).unwrap_err();
+    assert_eq!(refused, "there is no animation `x`; the animations of the file are `all`, 1");
+    file.0["animations"].as_array_mut().unwrap().truncate(1);
+    let refused = file.parse_animation(Some("1")).unwrap_err();
+    assert_eq!(refused, "there is no animation `1`; the only one of the file is `all`");
+    file.0["animations"] = json!([]);
+    let refused = file.parse_animation(Some("0")).unwrap_err();
+    assert_eq!(refused, "there is no animation `0`; the file has none");
 }
 
 #[test]
