@@ -60,8 +60,9 @@ Clearance (--clearance DISTANCE):
   Reports every pair that comes nearer than DISTANCE, in units of length of the scene (metres in glTF and VRML97), in each
   frame: the distance, and the closest points. Pairs that collide count, too; their distance is less the depth of the
   one in the other, and the points are the deepest. What is at just the distance is not nearer. Pairs that are ignored
-  are not looked at. The table tells of each pair where it is nearest, and when. The JSON of a frame then also has
-  \"near\", and of CSV the rows with a distance are these; a pair that collides has a row of each.
+  are not looked at. Clearances are those at the frames: also with --continuous, what is nearer only between two frames is
+  not reported. The table tells of each pair where it is nearest, and when. The JSON of a frame then also has \"near\", and
+  of CSV the rows with a distance are these; a pair that collides has a row of each.
 
 Rays (--ray ORIGIN DIRECTION, each X,Y,Z):
   What a ray meets in each frame: of every object on its way, whatever its response, the first point, the triangle, the normal on
@@ -177,7 +178,7 @@ pub struct CheckArgs {
     #[arg(long, value_name = "PATTERN")]
     pub decompose: Vec<String>,
 
-    /// Report pairs that come nearer than this, in units of length of the scene, with their closest points
+    /// Report pairs that are nearer than this in a frame, in units of length of the scene, with their closest points
     #[arg(long, value_name = "DISTANCE", value_parser = clearance, allow_negative_numbers = true)]
     pub clearance: Option<f64>,
 

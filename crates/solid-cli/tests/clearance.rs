@@ -44,9 +44,18 @@ fn what_comes_nearer_is_told_with_when_and_where() {
 #[test]
 fn what_keeps_its_clearance_is_clean() {
     let run = apart().run(&format!("{CHECK} --clearance 0.25"));
-    assert!(run.assert_status(0).stdout.contains("nothing is nearer than its clearance"), "{run:?}");
+    assert!(
+        run.assert_status(0).stdout.contains("\nin no frame is anything nearer than its clearance\n"),
+        "{run:?}"
+    );
     // What collides has no clearance at all.
     passing().run(&format!("{CHECK} --clearance 0")).assert_status(1);
+    // Also where the ways between frames are tested for collisions.
+    let desk = Desk::with_boxes().file("p.csv", format!("{HEADER}0,b,-9,0,0,0,0,0,1\n1,b,9,0,0,0,0,0,1\n"));
+    let run = desk.run(&format!("{CHECK} --continuous --clearance 1"));
+    assert!(run.assert_status(1).stdout.contains("\nin no frame is anything nearer"), "{run:?}");
+    let help = desk.run("check --help").stdout;
+    assert!(help.contains("Clearances are those at the frames: also with --continuous"), "{help}");
     let run = apart().run(CHECK);
     assert!(!run.assert_status(0).stdout.contains("nearer"), "{run:?}");
 }

@@ -71,7 +71,7 @@ impl Report<'_> {
 fn nearness(summary: &NearSummary, frames: &str) -> String {
     let NearSummary { near_frames, near_pairs, least_distance } = summary;
     let Some(least) = least_distance else {
-        return "nothing is nearer than its clearance".to_owned();
+        return "in no frame is anything nearer than its clearance".to_owned();
     };
     let are = if *near_pairs == 1 { "is" } else { "are" };
     let pairs = words::count(*near_pairs, "pair");
