@@ -101,7 +101,8 @@ Placements (--placements FILE.csv): in place of the animation,
     0,ship,0,0,0,0,0,0,1
     12,ship,1.5,0,0,0,0,0.7071,0.7071
   A row places the object from its frame on: a translation and a quaternion (normalised when read), optionally followed
-  by a scale sx,sy,sz, none of them 0. Until placed, objects stay where they are at time 0. Frames run from 0 to the largest in the file.";
+  by a scale sx,sy,sz, none of them 0. Rows come in any order; of two for one frame and object the later holds, with a
+  warning. Until placed, objects stay where they are at time 0. Frames run from 0 to the largest in the file.";
 
 /// Finds every collision in an animated scene
 #[derive(Debug, Parser)]

@@ -79,6 +79,23 @@ fn a_singular_placement_stops_the_check() {
     run(&format!("{header}0,b,9,0,0,0,0,0,1,0,0,0\n")).assert_fails(&["p.csv:2: ", "0.000 s", "singular"]);
 }
 
+/// The later row holds, and it is said that there are two.
+#[test]
+fn an_object_that_is_placed_twice_is_warned_of() {
+    let rows = "3,b,9,0,0,0,0,0,1\n0,b,9,0,0,0,0,0,1\n3,a,0,0,0,0,0,0,1\n3,b,0,0,0,0,0,0,1\n";
+    let csv = format!("{HEADER}{rows}");
+    assert_eq!(colliding(&csv), [3]);
+    let warning =
+        "warning: p.csv:5: object \"b\" is placed in frame 3 again, after line 2; the later row holds";
+    assert_eq!(run(&csv).stderr, format!("{warning}\n"));
+    let csv = format!("{csv}0,b,9,0,0,0,0,0,1\n3,b,0,0,0,0,0,0,1\n");
+    let warning = "warning: p.csv:6: object \"b\" is placed in frame 0 again, after line 3; the later row holds; \
+                   there are 2 more such rows\n";
+    assert_eq!(run(&csv).stderr, warning);
+    let help = Desk::new().run("check --help").stdout;
+    assert!(help.contains("of two for one frame and object the later holds"), "{help}");
+}
+
 #[test]
 fn a_file_without_rows_is_warned_of() {
     let run = run(HEADER);

@@ -84,7 +84,9 @@ fn placements(args: &CheckArgs, scene: &Scene) -> Result<Option<Placements>> {
     let Some(path) = &args.placements else {
         return Ok(None);
     };
-    let placements = Placements::read(path, &names(scene))?;
+    let names = names(scene);
+    let placements = Placements::read(path, &names)?;
+    placements.repetition(&names).iter().for_each(|warning| complain("warning", warning));
     if placements.rows().is_empty() {
         complain("warning", format_args!("{}: there are no rows; nothing is placed", path.display()));
     }

@@ -21,7 +21,7 @@ const COLUMNS_MIN: usize = 9;
 #[derive(Debug)]
 pub struct Placements {
     path: PathBuf,
-    /// By frame; those of one frame in the order of the file.
+    /// By frame, then by object; those of one object and frame in the order of the file.
     rows: Vec<Row>,
 }
 
@@ -42,6 +42,23 @@ impl Placements {
     /// The last frame that is spoken of; 0 for none.
     pub fn last_frame(&self) -> u64 {
         self.rows.last().map_or(0, |row| row.frame)
+    }
+
+    /// That objects are placed twice in a frame, in words, if any is; `names` are those of the objects.
+    pub fn repetition(&self, names: &[&str]) -> Option<String> {
+        let twice = |pair: &&[Row]| (pair[0].frame, pair[0].object) == (pair[1].frame, pair[1].object);
+        let mut pairs = self.rows.windows(2).filter(twice);
+        let [before, row] = pairs.next()?.first_chunk()?;
+        let more = match pairs.count() {
+            0 => String::new(),
+            1 => "; there is 1 more such row".to_owned(),
+            count => format!("; there are {count} more such rows"),
+        };
+        let (place, name, frame, line) =
+            (self.place(row.line), quoted(names[row.object]), row.frame, before.line);
+        Some(format!(
+            "{place}: object {name} is placed in frame {frame} again, after line {line}; the later row holds{more}"
+        ))
     }
 
     /// Where a line is.
@@ -69,7 +86,7 @@ fn rows(text: &str, names: &[&str]) -> std::result::Result<Vec<Row>, Mistake> {
     let reader = RowReader::new(columns, names);
     let read = |(line, record)| reader.row(line, &record).map_err(|message| (line, message));
     let mut rows = records.map(|record| record.and_then(read)).collect::<std::result::Result<Vec<_>, _>>()?;
-    rows.sort_by_key(|row| row.frame);
+    rows.sort_by_key(|row| (row.frame, row.object));
     Ok(rows)
 }
 
