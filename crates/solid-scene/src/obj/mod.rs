@@ -11,13 +11,13 @@ mod reader;
 use std::path::Path;
 
 use crate::error::SceneError;
-use crate::fault::Result;
+use crate::fault::{Fault, Result};
 use crate::file;
 use crate::load::LoadOptions;
 use crate::part::Part;
 use crate::polygon::folded_warning;
 use crate::soup::still_part;
-use crate::text::without_mark;
+use crate::text::{lines, without_mark};
 
 /// Reads an OBJ file: one object, named by the file, or with [`LoadOptions::split`] one for each group or object that
 /// has primitives, named by it.
@@ -27,7 +27,23 @@ pub(crate) fn load(path: &Path, options: &LoadOptions) -> std::result::Result<Pa
 }
 
 fn parse(bytes: &[u8], stem: &str, split: bool) -> Result<Part> {
-    let statements = reader::read(&String::from_utf8_lossy(without_mark(bytes)), stem)?;
+    let text = String::from_utf8_lossy(without_mark(bytes));
+    parse_text(&text, stem, split).map_err(|fault| not_text(&text).unwrap_or(fault))
+}
+
+/// What to say of a text that is none: where there is a character that no text has. Where all else is right it does no harm.
+fn not_text(text: &str) -> Option<Fault> {
+    let is_of_no_text = |byte: &u8| matches!(byte, 0..=0x08 | 0x0e..=0x19 | 0x1b..=0x1f | 0x7f);
+    lines(text).find_map(|(line, text)| {
+        let byte = text.bytes().find(is_of_no_text)?;
+        let message =
+            format!("there is the byte {byte:#04x}, which no text has; expected an OBJ file, which is text");
+        Some(Fault::at(line, message))
+    })
+}
+
+fn parse_text(text: &str, stem: &str, split: bool) -> Result<Part> {
+    let statements = reader::read(text, stem)?;
     let mut warnings = statements.warnings();
     let soups = if split { statements.split()? } else { statements.whole(stem)? };
     warnings.extend(folded_warning(soups.folded));
@@ -120,9 +136,21 @@ mod tests {
 
     #[test]
     fn a_file_without_geometry_is_refused() {
-        for text in ["", "# nothing\n", "v 1 2 3\n", "g f l p\nv 0 0 0\n", "\\", "\0\u{1}binary"] {
+        for text in ["", "# nothing\n", "v 1 2 3\n", "g f l p\nv 0 0 0\n", "\\"] {
             assert_eq!(refused(text).1, "the file has no geometry: no face, line or point");
         }
+    }
+
+    /// Bytes of which nothing can be made are named; in a comment of a good file they do no harm.
+    #[test]
+    fn what_is_no_text_is_named() {
+        let message = |byte: &str| {
+            format!("there is the byte {byte}, which no text has; expected an OBJ file, which is text")
+        };
+        assert_eq!(refused("\0\u{1}binary"), (Some(1), message("0x00")));
+        assert_eq!(refused("\nx\r\nv 1 \u{1b}"), (Some(3), message("0x1b")));
+        assert_eq!(refused("v 0 0 0\rv\tx y\u{c}\nf \u{7f}"), (Some(3), message("0x7f")));
+        assert!(parse(b"# \0\xff\nv 0 0 0\np 1\n\x1a", "stem", false).is_ok());
     }
 
     proptest! {
