@@ -191,6 +191,16 @@ fn what_is_absent_from_the_start_comes_later() {
     assert_eq!(run.assert_status(0).stderr, absence("0.000"));
 }
 
+/// However many are absent in one place.
+#[test]
+fn what_is_absent_does_not_crowd() {
+    let blocks = ["a", "b", "c"].map(|name| block(name, "")).concat();
+    let routes = ["b", "c"].map(|name| format!("ROUTE path.value_changed TO {name}.set_scale\n")).concat();
+    let scale = drive("PositionInterpolator", "0 0 0, 0 0 0", "a.set_scale");
+    let desk = Desk::new().file("s.wrl", format!("{VRML}{blocks}{scale}{routes}"));
+    desk.run("check s.wrl --max-pairs 0 --clearance 1").assert_status(0);
+}
+
 /// There is no way from where it was before it was absent.
 #[test]
 fn what_comes_again_is_new() {

@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use anyhow::{Result, anyhow};
 use solid_scene::{Pose, Scene};
+use solid3d::convex::MAGNITUDE_MAX;
 use solid3d::glam::{DAffine3, DVec3};
 use solid3d::query::{self, ImpactOptions, Path, RayOptions};
 use solid3d::{Aabb, Collision, Contact, Near, ObjectId, Shape, Statistics, When, World, WorldOptions};
@@ -16,7 +17,7 @@ use crate::{scene, words};
 
 /// How small an object is made that is to wait in the world until it is there for the first time: next to nothing, so that it
 /// overlaps little, but far from where numbers end.
-const SPECK: DVec3 = DVec3::splat(1e-9);
+const SPECK: f64 = 1e-9;
 
 /// A world with the objects of a scene.
 ///
@@ -159,7 +160,7 @@ impl<'a> Stage<'a> {
         let mut added = self.add_at(object, shape, placement);
         if self.is_absence(object, &added) {
             self.presences.hide(object, time);
-            let speck = DAffine3 { translation: placement.translation, ..DAffine3::from_scale(SPECK) };
+            let speck = speck(object, shape, placement.translation);
             self.shown.objects[object].placement = speck;
             added = self.add_at(object, shape, speck);
         }
@@ -258,6 +259,15 @@ impl<'a> Stage<'a> {
         let (place, name) = (self.motion.place(object), words::quoted(self.scene.objects()[object].name()));
         anyhow!("{place}: object {name} at {} s: {error}", words::seconds(time))
     }
+}
+
+/// Where an object waits that is to be at a point: as a speck beside it. Of many that are to be there each has room of its own
+/// size, or the boxes of all pairs would overlap.
+fn speck(object: usize, shape: &Shape, point: DVec3) -> DAffine3 {
+    let bounds = query::bounds(shape, &DAffine3::IDENTITY).expect("the placement is good");
+    let size = 2.0 * bounds.min.abs().max(bounds.max.abs()).max_element();
+    let beside = (point + DVec3::X * size * object as f64).min(DVec3::splat(MAGNITUDE_MAX));
+    DAffine3 { translation: beside, ..DAffine3::from_scale(DVec3::splat(SPECK)) }
 }
 
 /// How deep the objects of a collision are in each other, with the deepest points, if its response tells.
