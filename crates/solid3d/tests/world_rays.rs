@@ -7,12 +7,12 @@
 
 mod common;
 
-use common::{direction, in_cube, placement, random_mesh, shape_of};
-use glam::DAffine3;
+use common::{cube, direction, in_cube, placement, random_mesh, shape_of};
+use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid3d::query::{self, Ray, RayOptions};
-use solid3d::{BroadPhaseKind, ObjectHit, ObjectId, World, WorldOptions, glam};
+use solid3d::{BroadPhaseKind, ObjectHit, ObjectId, Shape, World, WorldOptions, glam};
 
 /// With either broad phase, and whatever the world knows already: nothing tested, all tested, some moved since, some removed.
 #[test]
@@ -89,6 +89,48 @@ fn a_world_sees_what_its_objects_show() {
         println!("{hits} of {cases} rays hit; {in_region} objects in regions");
         assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))) && in_region > 100);
     }
+}
+
+/// Law: of objects that are met at the same `t` the first in the order of pairs is told, by either broad phase, whether they were placed in it or not;
+/// also from so far that rounding leaves few values of `t` for all of a shape.
+#[test]
+fn of_objects_met_at_the_same_t_the_first_is_told_from_any_distance() {
+    let mut rng = seeded(112);
+    let options = RayOptions::default();
+    let shapes =
+        [cube(0.5).shape(), Shape::cuboid([1.0; 3]).unwrap(), shape_of(&random_shape(&mut rng, 1.0))];
+    let (mut hits, cases) = (0, 2400);
+    for case in 0..cases {
+        let shape = &shapes[[0, 0, 1, 2][case % 4]];
+        let turn = DQuat::from_axis_angle(direction(&mut rng), rng.random_range(0.0..3.1));
+        let at = DAffine3::from_rotation_translation(turn, in_cube(&mut rng) * 3.0);
+        let from = direction(&mut rng) * [1.0, 1e6, 1e9, 3e9, 1e10, 1e11][case / 4 % 6];
+        let ray = Ray::new(from, at.translation + in_cube(&mut rng) * 0.5 - from);
+        let Some(hit) = query::cast_ray(shape, &at, &ray, &options).unwrap() else { continue };
+        hits += 1;
+        assert_eq!(
+            query::cast_ray(shape, &at, &ray.until(hit.t), &options).unwrap(),
+            Some(hit),
+            "case {case}"
+        );
+        for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+            let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
+            for _ in 0..3 {
+                world.add_ranked(shape, at, 1).unwrap();
+            }
+            world.refresh();
+            // Looked at before those, then among them.
+            let object = world.add(shape, at).unwrap();
+            for refreshed in [false, true] {
+                let found = world.cast_ray(&ray, &options, |_| true).unwrap();
+                let context = format!("case {case}, {broad_phase:?}, refreshed: {refreshed}");
+                assert_eq!(found, Some(ObjectHit { object, hit }), "{context}");
+                world.refresh();
+            }
+        }
+    }
+    println!("{hits} of {cases} hit");
+    assert!(hits > cases / 2);
 }
 
 /// Of a ray without an end, too, only the objects are asked whose boxes it meets; in either broad phase, whether they were tested or not.
