@@ -11,7 +11,7 @@ use common::{cube, direction, in_cube, placement, random_mesh, shape_of};
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use solid_oracle::generate::{random_shape, seeded};
-use solid3d::query::{self, Ray, RayOptions};
+use solid3d::query::{self, FromInside, Ray, RayOptions};
 use solid3d::{BroadPhaseKind, ObjectHit, ObjectId, Shape, World, WorldOptions, glam};
 
 /// With either broad phase, and whatever the world knows already: nothing tested, all tested, some moved since, some removed.
@@ -131,6 +131,34 @@ fn of_objects_met_at_the_same_t_the_first_is_told_from_any_distance() {
     }
     println!("{hits} of {cases} hit");
     assert!(hits > cases / 2);
+}
+
+/// Law: what a world tells of a ray is what the query tells, to the bit, signs of zeros too.
+#[test]
+fn a_world_and_a_query_tell_the_same_bits() {
+    let mut rng = seeded(113);
+    let options = RayOptions { from_inside: FromInside::Passes, ..RayOptions::default() };
+    let (mut backs, cases) = (0, 3000);
+    for case in 0..cases {
+        let shape = shape_of(&random_shape(&mut rng, 1.0));
+        // Zeros are where rays and turns are about axes.
+        let turn = DQuat::from_axis_angle(DVec3::AXES[case % 3], f64::from(case as u32 % 7));
+        let at = DAffine3::from_rotation_translation(
+            turn,
+            DVec3::AXES[case / 3 % 3] * f64::from(case as u32 / 9 % 3),
+        );
+        let way = DVec3::AXES[case / 21 % 3] * [1.0, -1.0][case / 63 % 2];
+        let ray = Ray::new(DVec3::AXES[case / 5 % 3] * f64::from(case as u32 / 15 % 2), way);
+        let mut world = World::new();
+        world.add(&shape, at).unwrap();
+        let in_world = world.cast_ray(&ray, &options, |_| true).unwrap().map(|found| found.hit);
+        let of_query = query::cast_ray(&shape, &at, &ray, &options).unwrap();
+        // In words a zero has its sign.
+        assert_eq!(format!("{in_world:?}"), format!("{of_query:?}"), "case {case}: {at:?} {ray:?}");
+        backs += usize::from(of_query.and_then(|hit| hit.surface).is_some_and(|surface| surface.back));
+    }
+    println!("{backs} of {cases} hit from the back");
+    assert!(backs > cases / 10);
 }
 
 /// Of a ray without an end, too, only the objects are asked whose boxes it meets; in either broad phase, whether they were tested or not.

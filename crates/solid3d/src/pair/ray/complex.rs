@@ -10,7 +10,7 @@ use super::super::table::PlacedComplex;
 use super::convex::hull_hits;
 use super::glance::Glance;
 use super::triangle::{Corners, LANES, Shear, TriangleHit, put};
-use super::{FromInside, Hits, SurfaceHit, world_normal};
+use super::{FromInside, Hits, SurfaceHit, facing, world_normal};
 use crate::bounds::Aabb;
 use crate::placement::{direction, inverse_linear};
 use crate::shape::Complex;
@@ -206,13 +206,7 @@ impl LocalRay {
         let edge = |i: usize| (triangle[i] - triangle[0]) * scale;
         let back = back.unwrap_or(false);
         let normal = match world_normal(&self.to_local, edge(1).cross(edge(2))) {
-            Some(front) => {
-                if back {
-                    -front
-                } else {
-                    front
-                }
-            }
+            Some(front) => facing(front, back),
             // A segment or a point has none: it turns to the ray.
             None => -direction(hits.ray.direction).expect("a ray has a direction"),
         };

@@ -9,7 +9,7 @@ use solid_convex::{Chord, Line, Support, gjk};
 use super::super::closed_form::{to_body, to_world};
 use super::super::reach::image_reach;
 use super::super::{POINT, Placed};
-use super::{Faces, FromInside, Hits, Ray, RayHit, RayOptions, SurfaceHit, Wanted, world_normal};
+use super::{Faces, FromInside, Hits, Ray, RayHit, RayOptions, SurfaceHit, Wanted, facing, world_normal};
 use crate::error::Result;
 use crate::placement::{direction, inverse_linear};
 use crate::shape::{Class, Shape};
@@ -76,11 +76,12 @@ pub(crate) fn first_hit(
             (enter.t, enter.normal, false)
         } else if counts(leave.t.max(enter.t), true) {
             // As [`report`] has it.
-            (leave.t.max(enter.t), -leave.normal, true)
+            (leave.t.max(enter.t), leave.normal, true)
         } else {
             return Ok(None);
         };
-        let surface = SurfaceHit { normal: similar.normal(normal, ray.direction), back, primitive: 0, barycentric: None };
+        let normal = facing(similar.normal(normal, ray.direction), back);
+        let surface = SurfaceHit { normal, back, primitive: 0, barycentric: None };
         Ok(Some(RayHit { t, point: ray.at(t), surface: Some(surface) }))
     })
 }
@@ -165,7 +166,7 @@ fn add(
     let Some((t, normal)) = end else { return false };
     let is_wanted = hits.options.faces.includes(back) && hits.wants(t, primitive);
     if is_wanted {
-        let normal = if back { -placed(normal) } else { placed(normal) };
+        let normal = facing(placed(normal), back);
         hits.add(t, Some(SurfaceHit { normal, back, primitive, barycentric: None }));
     }
     is_wanted

@@ -227,6 +227,14 @@ pub(crate) fn ray_hits(placed: Placed, hits: &mut Hits, scratch: &mut Scratch) {
     }
 }
 
+/// The normal on the side that a ray comes from, by that of the front.
+///
+/// Of the world: turned round before a placement takes it along, a zero may have another sign.
+#[inline(always)]
+fn facing(front: DVec3, back: bool) -> DVec3 {
+    if back { -front } else { front }
+}
+
 /// The world's unit normal of a surface that has a normal in local space; `None` where that is zero.
 fn world_normal(to_local: &DMat3, normal: DVec3) -> Option<DVec3> {
     // Normals go by the inverse transpose. Its entries may be so large or small that their squares are not numbers.
