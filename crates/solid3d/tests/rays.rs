@@ -205,6 +205,54 @@ fn what_is_turned_is_hit_as_what_is_skewed_a_little() {
     assert!(hits > 3 * cases / 10 && backs > cases / 20);
 }
 
+/// Law: a placement that makes a needle, or what is flat, as long as wide takes hits along, whatever its own extents: rays hit it where they hit what has
+/// that size itself.
+#[test]
+fn what_a_placement_makes_even_is_hit_as_what_is_even() {
+    let mut rng = seeded(96);
+    let even = |width: f64, height: f64| {
+        let corners = [DVec3::NEG_X, DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.3, -0.8, -0.9)]
+            .map(|corner| corner * DVec3::new(width, height, width));
+        let faces = [[0, 2, 3], [2, 1, 3], [0, 4, 2], [4, 1, 2], [3, 1, 4], [0, 3, 4]];
+        [
+            ("cylinder", Shape::cylinder(width, height).unwrap()),
+            ("cone", Shape::cone(width, height).unwrap()),
+            ("cuboid", Shape::cuboid([width, height, width]).unwrap()),
+            ("hull", Shape::convex_hull(&corners).unwrap()),
+            ("mesh", Shape::mesh(corners, faces).unwrap()),
+        ]
+    };
+    let (mut hits, mut cases) = (0, 0);
+    for power in (0..100).step_by(9) {
+        for (width, height) in [(-power, power), (power, -power)].map(|(w, h)| (10f64.powi(w), 10f64.powi(h)))
+        {
+            let stretch = DVec3::new(1.0 / width, 1.0 / height, 1.0 / width);
+            for ((name, shape), (_, plain)) in even(width, height).iter().zip(even(1.0, 1.0)) {
+                for case in 0..60 {
+                    // Beside it, or all around it.
+                    let to = in_cube(&mut rng) * if case % 2 == 0 { 3.0 } else { 3e3 };
+                    let here = DAffine3::from_translation(to);
+                    let at = DAffine3 { translation: to, ..DAffine3::from_scale(stretch) };
+                    let from = to + direction(&mut rng) * 4.0;
+                    let target = if case % 4 < 3 { to + in_cube(&mut rng) } else { in_cube(&mut rng) };
+                    let ray = Ray::segment(from, target + (target - from));
+                    let [x, y] = [(&plain, &here), (shape, &at)]
+                        .map(|(shape, at)| query::cast_ray(shape, at, &ray, &PASSES).unwrap());
+                    let context = || format!("{name}, {width:e} by {height:e}, case {case}: {x:?} {y:?}");
+                    assert_eq!(x.is_some(), y.is_some(), "{}", context());
+                    cases += 1;
+                    let (Some(x), Some(y)) = (x, y) else { continue };
+                    hits += 1;
+                    let slope = x.surface.unwrap().normal.dot(ray.direction.normalize()).abs();
+                    let apart = (x.point - y.point).length();
+                    assert!(apart * slope < 1e-9, "{}", context());
+                }
+            }
+        }
+    }
+    assert_rate("rays", hits, cases);
+}
+
 /// From so far off that rounding leaves few digits of where a ray meets a shape, normals are unit vectors still.
 #[test]
 fn normals_are_unit_vectors_from_any_distance() {

@@ -2,11 +2,10 @@
 
 use glam::DVec3;
 
-use super::round::capped_cylinder;
-use super::{Chord, End, Line, slab};
+use super::{Chord, End, Line, evening, is_slim, slab};
 use crate::Cone;
 
-/// A cone whose height is this part of its radius, or less, is no more than rounding thinner than a cylinder: its sides would be lost.
+/// A cone whose height is this part of its radius, or less, is no higher than the rounding of where a line is closest to its middle: its sides would be lost.
 const FLAT: f64 = 16.0 * f64::EPSILON;
 
 /// A quadratic `a t^2 + 2 b t + c`, whose sign says on which side of a double cone a point of a line is.
@@ -78,11 +77,13 @@ impl Cone {
     /// The part of a line that is in the cone.
     pub fn chord(&self, line: &Line) -> Option<Chord> {
         let (radius, half) = (self.radius(), 0.5 * self.height());
+        if is_slim(radius, half) || 2.0 * half <= FLAT * radius {
+            let by = evening(radius, half);
+            let image = Cone::new(radius * by.x, self.height()).ok()?;
+            return line.stretched(radius.max(half), by, |line| image.chord(line));
+        }
         let (foot, scale) = line.near(radius.max(half))?;
         let (radius, half) = (radius * scale, half * scale);
-        if 2.0 * half <= FLAT * radius {
-            return line.chord(capped_cylinder(foot, line.along, radius, half), scale);
-        }
         let sides = endless_cone(foot, line.along, half, radius, 2.0 * half)?;
         line.chord(sides.and(slab(foot, line.along, 1, half)?), scale)
     }

@@ -12,6 +12,7 @@ mod tests;
 
 use glam::DVec3;
 
+use crate::direction::direction;
 use crate::{Cuboid, unit_scale};
 
 /// A line through a shape's own space, with a parameter `t`: the points `origin + t * direction`.
@@ -68,6 +69,23 @@ impl Line {
         (self.foot.abs().max_element() <= BEYOND * size).then(|| (self.foot * scale, scale))
     }
 
+    /// The chord of a shape that reaches no further than `size`, by that of its image, with axes stretched by powers of two.
+    #[cold]
+    fn stretched(&self, size: f64, by: DVec3, image: impl Fn(&Line) -> Option<Chord>) -> Option<Chord> {
+        /// What is left of the way to the foot is each time a part of 1e-32 of that before, down to 1e-200 of it where the image is stretched the most.
+        const FEET: usize = 7;
+        self.near(size)?;
+        let mut line = Line::new(self.foot * by, self.along * by)?;
+        for _ in 1..FEET {
+            let nearer = Line::new(line.foot, line.along)?;
+            line = Line { to_foot: line.to_foot + nearer.to_foot, foot: nearer.foot, ..line };
+        }
+        let chord = image(&line)?;
+        // Normals go by the inverse transpose.
+        let end = |end: End| End { t: end.t, normal: direction(end.normal * by).unwrap_or(end.normal) };
+        self.chord(Some(Chord { enter: end(chord.enter), leave: end(chord.leave) }), 1.0)
+    }
+
     /// A chord whose ends are measured along the line from its foot, in a unit of the given scale.
     #[inline(always)]
     fn chord(&self, span: Option<Chord>, scale: f64) -> Option<Chord> {
@@ -75,6 +93,21 @@ impl Line {
         let end = |end: End| End { t: (self.to_foot + end.t * unit) * self.scale, ..end };
         span.map(|chord| Chord { enter: end(chord.enter), leave: end(chord.leave) })
     }
+}
+
+/// A round shape is slim whose radius is below this part of its length: fourth powers of it, which are computed in the unit of the length, would
+/// soon have no digits.
+const SLIM: f64 = 1e-60;
+
+#[inline(always)]
+fn is_slim(radius: f64, half_height: f64) -> bool {
+    radius < SLIM * half_height
+}
+
+/// The powers of two along the axes by which what is around the axis y becomes about as wide as it is long.
+fn evening(radius: f64, half_height: f64) -> DVec3 {
+    let wide = unit_scale(radius) / unit_scale(half_height);
+    DVec3::new(wide, 1.0, wide)
 }
 
 /// An end of a chord.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Chord, End, Line, slab};
+use super::{Chord, End, Line, evening, is_slim, slab};
 use crate::{Capsule, Cylinder, Sphere};
 
 /// The chord of a ball whose centre is on the axis y, at `center`.
@@ -41,7 +41,7 @@ fn endless_cylinder(foot: DVec3, along: DVec3, radius: f64) -> Option<Chord> {
 
 /// The chord of a cylinder around the axis y.
 #[inline(always)]
-pub(super) fn capped_cylinder(foot: DVec3, along: DVec3, radius: f64, half_height: f64) -> Option<Chord> {
+fn capped_cylinder(foot: DVec3, along: DVec3, radius: f64, half_height: f64) -> Option<Chord> {
     endless_cylinder(foot, along, radius)?.and(slab(foot, along, 1, half_height)?)
 }
 
@@ -59,6 +59,11 @@ impl Cylinder {
     #[inline(always)]
     pub fn chord(&self, line: &Line) -> Option<Chord> {
         let (radius, half) = (self.radius(), 0.5 * self.height());
+        if is_slim(radius, half) {
+            let by = evening(radius, half);
+            let image = Cylinder::new(radius * by.x, self.height()).ok()?;
+            return line.stretched(half, by, |line| image.chord(line));
+        }
         let (foot, scale) = line.near(radius.max(half))?;
         line.chord(capped_cylinder(foot, line.along, radius * scale, half * scale), scale)
     }
@@ -69,6 +74,10 @@ impl Capsule {
     #[inline(always)]
     pub fn chord(&self, line: &Line) -> Option<Chord> {
         let (radius, half) = (self.radius(), 0.5 * self.height());
+        if is_slim(radius, half) {
+            // Its ends are no more than rounding beyond the cylinder's.
+            return Cylinder::new(radius, self.height()).ok()?.chord(line);
+        }
         let (foot, scale) = line.near(radius + half)?;
         let (radius, half) = (radius * scale, half * scale);
         let end = |center: f64| ball(line, foot, center, radius);

@@ -152,14 +152,13 @@ impl LocalRay {
         let (origin, direction) =
             (to_local * (hits.ray.origin - at.translation), to_local * hits.ray.direction);
         let bounds = complex.bounds();
-        let size = bounds.half_extents().max_element();
         let start = entry(&roomy(&bounds, origin), origin, direction)?;
         if start > hits.until {
             return None;
         }
         let origin = origin + direction * start;
-        let from_origin = (origin - bounds.center()).abs().max_element();
-        let shear = Shear::new(origin, direction, unit_scale(size + from_origin));
+        let reach = bounds.half_extents() + (origin - bounds.center()).abs();
+        let shear = Shear::new(origin, direction, reach);
         Some(LocalRay { origin, direction, start, shear, to_local })
     }
 

@@ -124,7 +124,6 @@ mod tests {
     use rand::Rng;
     use rand::rngs::StdRng;
     use solid_convex::simd::{dispatch, levels};
-    use solid_convex::unit_scale;
     use solid_oracle::generate::{in_cube, seeded};
 
     /// Up to eight triangles in a mesh of many, at a place and of a size of their own: near each other, thin, flat or of no area.
@@ -179,7 +178,7 @@ mod tests {
             if direction == DVec3::ZERO {
                 continue;
             }
-            let shear = Shear::new(from, direction, unit_scale(size * (2.0 + far)));
+            let shear = Shear::new(from, direction, DVec3::splat(size * (2.0 + far)));
             let glance = Glance::new(&shear, tree.normal());
             for leaf in tree.leaves() {
                 let image = images.of(&leaf);

@@ -9,6 +9,7 @@ use fearless_simd::{Simd, SimdBase, SimdMask, f64x8};
 use glam::{DVec2, DVec3};
 use solid_convex::determinant::difference_of_products;
 use solid_convex::simd::{dispatch, each};
+use solid_convex::unit_scale;
 
 use super::super::crossing::{sign, winding};
 use crate::triangle_triangle::Triangle;
@@ -20,8 +21,8 @@ pub(super) struct Shear {
     pub axes: [usize; 3],
     /// How far the ray runs along the first two axes, for each unit along the last: at most one.
     pub shear: DVec2,
-    /// Local lengths times this are those of the sheared space: a power of two, so that no product overflows or vanishes.
-    scale: f64,
+    /// Local lengths along the axes, once sheared, times these are those of the sheared space: powers of two, so that no product overflows or vanishes.
+    scales: [f64; 3],
     /// Depths in the sheared space times this are parameters of the ray.
     depth_to_t: f64,
 }
@@ -57,9 +58,13 @@ const DETERMINANT_ERROR: f64 = 2.0 * f64::EPSILON;
 /// weights of the corners.
 const WEIGHT_ERROR: f64 = 32.0 * f64::EPSILON;
 
+/// Where what is across a ray is below this part of the size of the data, it has a unit of its own: in the unit of that size products of two such lengths,
+/// 1e-120 and less, would soon have no digits, nor would what rounding takes from them.
+const UNEVEN: f64 = 1e-60;
+
 impl Shear {
-    /// `scale` is a power of two that takes the size of the data to about 1.
-    pub fn new(origin: DVec3, direction: DVec3, scale: f64) -> Shear {
+    /// The data lies no further than about `reach` from the origin, along each axis.
+    pub fn new(origin: DVec3, direction: DVec3, reach: DVec3) -> Shear {
         let magnitude = direction.abs();
         // Without branches, which would be foretold wrongly.
         let second = usize::from(magnitude.y > magnitude.x);
@@ -67,7 +72,14 @@ impl Shear {
         let (next, last) = ((main + 1) % 3, (main + 2) % 3);
         let axes = if direction[main] < 0.0 { [last, next, main] } else { [next, last, main] };
         let shear = DVec2::new(direction[axes[0]], direction[axes[1]]) / direction[main];
-        Shear { origin, axes, shear, scale, depth_to_t: 1.0 / scale / direction[main] }
+        let reach_across = |i: usize| reach[axes[i]] + shear[i].abs() * reach[main];
+        let (size, across) = (reach.max_element(), [reach_across(0), reach_across(1)]);
+        let scales = if across[0].min(across[1]) < UNEVEN * size {
+            [across[0], across[1], reach[main]].map(unit_scale)
+        } else {
+            [unit_scale(size); 3]
+        };
+        Shear { origin, axes, shear, scales, depth_to_t: 1.0 / scales[2] / direction[main] }
     }
 
     /// The triangles that may be hit, as bits: of the others two edges surely pass the ray on different sides.
@@ -79,7 +91,7 @@ impl Shear {
     #[inline(always)]
     fn candidates_on<S: Simd>(&self, simd: S, corners: &Corners) -> u32 {
         // Loops, not closures: what is called from a closure is compiled for the baseline, and nothing of it is inlined.
-        let (scale, error) = (f64x8::splat(simd, self.scale), f64x8::splat(simd, DETERMINANT_ERROR));
+        let error = f64x8::splat(simd, DETERMINANT_ERROR);
         let zero = f64x8::splat(simd, 0.0);
         // The same operations as for one.
         let mut points = [[zero; 2]; 3];
@@ -87,10 +99,12 @@ impl Shear {
             let mut local = [zero; 3];
             for axis in 0..3 {
                 let origin = f64x8::splat(simd, self.origin[self.axes[axis]]);
-                local[axis] = (f64x8::from_slice(simd, &rows[self.axes[axis]]) - origin) * scale;
+                local[axis] = f64x8::from_slice(simd, &rows[self.axes[axis]]) - origin;
             }
-            point[0] = local[0] - f64x8::splat(simd, self.shear.x) * local[2];
-            point[1] = local[1] - f64x8::splat(simd, self.shear.y) * local[2];
+            for axis in 0..2 {
+                let sheared = local[axis] - f64x8::splat(simd, self.shear[axis]) * local[2];
+                point[axis] = sheared * f64x8::splat(simd, self.scales[axis]);
+            }
         }
         let none = zero.simd_gt(zero);
         let (mut left, mut right) = (none, none);
@@ -106,9 +120,10 @@ impl Shear {
 
     #[inline]
     fn point(&self, p: DVec3) -> DVec3 {
-        let p = (p - self.origin) * self.scale;
+        let p = p - self.origin;
         let [x, y, z] = self.axes;
-        DVec3::new(p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], p[z])
+        let sheared = DVec3::new(p[x] - self.shear.x * p[z], p[y] - self.shear.y * p[z], p[z]);
+        sheared * DVec3::from_array(self.scales)
     }
 
     /// Where the ray, from its origin on, meets a triangle.
@@ -230,7 +245,7 @@ mod tests {
             let origin = target - direction * back.x.abs();
             let end = origin + direction * 16.0;
             let expected = triangles_intersect(&triangle, &[origin, end, end]);
-            let found = Shear::new(origin, direction, 1.0).hit(&triangle);
+            let found = Shear::new(origin, direction, DVec3::ONE).hit(&triangle);
             assert_eq!(found.is_some(), expected, "{triangle:?} {origin} {direction} {found:?}");
             if let Some(hit) = found {
                 hits += 1;
@@ -270,7 +285,8 @@ mod tests {
                 continue;
             }
             // Before them all.
-            let shear = Shear::new(target - direction / direction.abs().max_element() * 8.0, direction, 1.0);
+            let shear =
+                Shear::new(target - direction / direction.abs().max_element() * 8.0, direction, DVec3::ONE);
             let faces = [[a, b, c], [a, d, b], [b, d, c], [c, d, a]];
             let windings = faces.map(|face| shear.winding(&face));
             assert_eq!(windings.iter().sum::<i64>(), 0, "case {case}: {faces:?} {target} {direction}");
@@ -292,7 +308,7 @@ mod tests {
         let (a, b, c) = (DVec3::new(-1.0, 2.0, 0.0), DVec3::new(1.0, 1.0, -1.0), DVec3::new(-2.0, -2.0, 2.0));
         for triangle in [[a, b, c], [b, c, a], [c, b, a]] {
             for direction in [DVec3::new(1.0, -2.0, 0.0), DVec3::new(-1.0, 2.0, 0.0)] {
-                let hit = Shear::new(DVec3::ZERO, direction, 1.0).hit(&triangle);
+                let hit = Shear::new(DVec3::ZERO, direction, DVec3::ONE).hit(&triangle);
                 assert_eq!(hit.map(|hit| hit.t), Some(0.0), "{triangle:?} {direction}");
             }
         }
@@ -311,7 +327,7 @@ mod tests {
             let target = triangle[0] * 0.2 + triangle[1] * 0.3 + triangle[2] * 0.5;
             let direction = (target - a) + off * grazing;
             let origin = target - direction * f64::from(case / 324 % 2);
-            let Some(hit) = Shear::new(origin, direction, 1.0).hit(&triangle) else { continue };
+            let Some(hit) = Shear::new(origin, direction, DVec3::ONE).hit(&triangle) else { continue };
             hits += 1;
             let at = origin + direction * hit.t;
             let weighed: DVec3 = (0..3).map(|i| triangle[i] * hit.barycentric[i]).sum();
@@ -336,7 +352,7 @@ mod tests {
             let triangles: [Triangle; LANES] = std::array::from_fn(|_| [random(), random(), random()]);
             let [a, b, c] = triangles[case as usize % LANES];
             let origin = random() * 3.0;
-            let shear = Shear::new(origin, (a + b + c) / 3.0 - origin, 1.0);
+            let shear = Shear::new(origin, (a + b + c) / 3.0 - origin, DVec3::ONE);
             let mut corners = Corners::default();
             for (lane, triangle) in triangles.iter().enumerate() {
                 put(&mut corners, lane, triangle.each_ref());
@@ -374,7 +390,7 @@ mod tests {
                 let target = apex.lerp(rim[i], along);
                 let from = target + DVec3::new(0.3, -0.2, 1.0 + rng.random_range(0.0..1.0));
                 let shift = |p: DVec3| p + offset;
-                let shear = Shear::new(shift(from), shift(target) - shift(from), 1.0);
+                let shear = Shear::new(shift(from), shift(target) - shift(from), DVec3::ONE);
                 let hit = |i: usize| shear.hit(&[apex, rim[i], rim[(i + 1) % count]].map(shift)).is_some();
                 assert!((0..count).any(hit), "case {case}, {i} of {count}");
             }
