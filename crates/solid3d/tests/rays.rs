@@ -38,6 +38,21 @@ fn some_ray(rng: &mut StdRng, shape: &Shape, at: &DAffine3) -> Ray {
     Ray::new(from, (target - from) * 10f64.powi(rng.random_range(-3..3)))
 }
 
+/// Whether a ray runs through a convex shape for less than a part of 1e-5 of the size of the data. What is round then reaches beyond the ray by some 1e-11 of
+/// that size, as the square of the part, and rounding of a few times 1e-12 may decide whether it is met; so it may at an edge, and at a hull that is flat or a point.
+fn grazes(shape: &Shape, at: &DAffine3, ray: &Ray) -> bool {
+    let ends: Vec<f64> =
+        query::cast_ray_all(shape, at, ray, &PASSES).unwrap().iter().map(|hit| hit.t).collect();
+    let part = match ends[..] {
+        [leave] => leave,
+        [enter, leave] => leave - enter,
+        _ => return false,
+    };
+    let extent = query::bounds(shape, at).unwrap().half_extents().max_element();
+    let size = extent + (at.translation - ray.origin).length();
+    shape.kind() != ShapeKind::Complex && part * ray.direction.length() < 1e-5 * size
+}
+
 /// A segment is a shape too: a ray hits if and only if they intersect, and first where they first do.
 #[test]
 fn a_ray_hits_if_and_only_if_its_segment_intersects() {
@@ -145,8 +160,9 @@ fn a_placement_takes_hits_along() {
         let in_local = query::cast_ray(&shape, &DAffine3::IDENTITY, &local, &PASSES).unwrap();
         let in_world = query::cast_ray(&shape, &at, &world, &PASSES).unwrap();
         let (Some(x), Some(y)) = (in_local, in_world) else {
-            // A ray that only grazes may be decided by rounding; these do not.
-            assert_eq!(in_local.is_some(), in_world.is_some(), "case {case}");
+            let one_alone = in_local.map(|_| (DAffine3::IDENTITY, local)).or(in_world.map(|_| (at, world)));
+            let grazed = one_alone.is_none_or(|(at, ray)| grazes(&shape, &at, &ray));
+            assert!(grazed, "case {case}: {in_local:?} {in_world:?}");
             continue;
         };
         hits += 1;
@@ -190,7 +206,9 @@ fn what_is_turned_is_hit_as_what_is_skewed_a_little() {
             (all.first(), query::ray_meets(&shape, &at, &ray, &options).unwrap())
         );
         let (Some(x), Some(y)) = (x, y) else {
-            assert_eq!(x.is_some(), y.is_some(), "case {case}: {x:?} {y:?}");
+            let one_alone = x.map(|_| &at).or(y.map(|_| &skewed));
+            let grazed = one_alone.is_none_or(|at| grazes(&shape, at, &ray));
+            assert!(grazed, "case {case}: {shape:?} at {at:?}, {ray:?}: {x:?} {y:?}");
             continue;
         };
         let slope = x.surface.map_or(1.0, |on| on.normal.dot(ray.direction.normalize()).abs());
