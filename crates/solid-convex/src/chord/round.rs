@@ -54,15 +54,22 @@ impl Sphere {
     }
 }
 
+/// The chord of a cylinder around the axis y, in a space in which it is about as wide as it is long.
+#[cold]
+#[inline(never)] // the way of the others is short
+fn slim_chord(line: &Line, radius: f64, half_height: f64) -> Option<Chord> {
+    let by = evening(radius, half_height);
+    let image = Cylinder::new(radius * by.x, 2.0 * half_height).ok()?;
+    line.stretched(half_height, by, |line| image.chord(line))
+}
+
 impl Cylinder {
     /// The part of a line that is in the cylinder.
     #[inline(always)]
     pub fn chord(&self, line: &Line) -> Option<Chord> {
         let (radius, half) = (self.radius(), 0.5 * self.height());
         if is_slim(radius, half) {
-            let by = evening(radius, half);
-            let image = Cylinder::new(radius * by.x, self.height()).ok()?;
-            return line.stretched(half, by, |line| image.chord(line));
+            return slim_chord(line, radius, half);
         }
         let (foot, scale) = line.near(radius.max(half))?;
         line.chord(capped_cylinder(foot, line.along, radius * scale, half * scale), scale)
@@ -76,7 +83,7 @@ impl Capsule {
         let (radius, half) = (self.radius(), 0.5 * self.height());
         if is_slim(radius, half) {
             // Its ends are no more than rounding beyond the cylinder's.
-            return Cylinder::new(radius, self.height()).ok()?.chord(line);
+            return slim_chord(line, radius, half);
         }
         let (foot, scale) = line.near(radius + half)?;
         let (radius, half) = (radius * scale, half * scale);
