@@ -238,9 +238,10 @@ impl Ball {
 
 impl Balls {
     /// Both about the local origin, of these radii.
+    #[inline(always)] // into kernels: what a call writes is waited for there
     pub fn about_origin(inner: f64, outer: f64) -> Balls {
-        let [inner, outer] = [inner, outer].map(|radius| Ball { center: DVec3::ZERO, radius });
-        Balls { inner, outer }
+        let center = DVec3::ZERO;
+        Balls { inner: Ball { center, radius: inner }, outer: Ball { center, radius: outer } }
     }
 
     /// Radii by which two objects certainly overlap or are apart, under placements that nearly are similarities: the distance of the

@@ -61,10 +61,17 @@ pub(super) struct Body {
 }
 
 impl Body {
-    /// All that is within a radius of a point; or what has all within one in it, and nothing beyond another. A gap of `gap` is clear.
+    /// All that is within a radius of a point. A gap of `gap` is clear.
     #[inline(always)]
-    pub fn ball(inner: f64, outer: f64, gap: f64) -> Body {
-        Body { is_ball: true, inner: inner - gap, outer: outer + gap }
+    fn ball(radius: f64, gap: f64) -> Body {
+        Body { is_ball: true, inner: radius - gap, outer: radius + gap }
+    }
+
+    /// What has a ball in it and is in another, seen from the centre of the first; lengths are so many times as long here.
+    #[inline(always)]
+    pub fn between(Balls { inner, outer }: &Balls, times: f64, gap: f64) -> Body {
+        let around = outer.radius + outer.center.distance(inner.center);
+        Body { is_ball: true, inner: inner.radius * times - gap, outer: around * times + gap }
     }
 
     #[inline(always)]
@@ -98,14 +105,12 @@ impl Glance {
         normal: &Normal,
     ) -> Option<Glance> {
         let (middle, body) = match direct {
-            Direct::Round(round) => (round.center()?, Body::ball(round.radius, round.radius, gap)),
+            Direct::Round(round) => (round.center()?, Body::ball(round.radius, gap)),
             Direct::Cube(cube) => (DVec3::ZERO, Body::cube(cube)),
             Direct::None => {
-                let Balls { inner, outer } = shape.balls()?;
+                let balls = shape.balls()?;
                 let Similarity { stretch, .. } = Similarity::new(&to_common.matrix3)?;
-                let around = outer.radius + outer.center.distance(inner.center);
-                let body = Body::ball(inner.radius * stretch, around * stretch, gap);
-                (to_common.transform_point3(inner.center), body)
+                (to_common.transform_point3(balls.inner.center), Body::between(&balls, stretch, gap))
             }
         };
         Some(Glance::of(body, middle, map, normal, 0.0))

@@ -34,7 +34,7 @@ pub(super) fn sight<S: Simd>(simd: S, complex: PlacedComplex, convex: PlacedConv
     let squares = plain_squares(simd, [complex.1, convex.1])?;
     let body = Outline::of(convex.0)?;
     let tree = complex.0.tree();
-    let alike = Alike::new(tree.normal(), [complex.1, convex.1], squares, body.outer);
+    let alike = Alike::new(tree.normal(), [complex.1, convex.1], squares, body.balls.outer);
     let glance = alike.glance(&body, tree.normal())?;
     let (box_around, around) = alike.around(&body, convex.0);
     let metric = Stretch::alike((1.0 - STRETCH) * alike.of_complex).metric(&Stretch::NONE);
@@ -47,8 +47,7 @@ pub(super) fn sight<S: Simd>(simd: S, complex: PlacedComplex, convex: PlacedConv
 
 /// What is known of a convex shape but its support mapping.
 struct Outline {
-    inner: Ball,
-    outer: Ball,
+    balls: Balls,
     kind: Kind,
 }
 
@@ -68,30 +67,22 @@ enum Kind {
 impl Outline {
     #[inline(always)]
     fn of(shape: &dyn Support) -> Option<Outline> {
-        let about_origin = {
-            #[inline(always)]
-            |inner: f64, outer: f64, kind: Kind| {
-                let [inner, outer] = [
-                    Ball { center: DVec3::ZERO, radius: inner },
-                    Ball { center: DVec3::ZERO, radius: outer },
-                ];
-                Some(Outline { inner, outer, kind })
-            }
-        };
         let radius = shape.core_radius();
         if radius > 0.0 {
             let half_height = shape.core_support(DVec3::Y).y;
-            return about_origin(radius, radius + half_height, Kind::Round { half_height, radius });
+            let balls = Balls::about_origin(radius, radius + half_height);
+            return Some(Outline { balls, kind: Kind::Round { half_height, radius } });
         }
         if let Some([x, y, z]) = shape.half_edges() {
             let half = DVec3::new(x.x, y.y, z.z);
-            return about_origin(half.min_element(), half.length(), Kind::Box { half });
+            let balls = Balls::about_origin(half.min_element(), half.length());
+            return Some(Outline { balls, kind: Kind::Box { half } });
         }
-        let Balls { inner, outer } = match shape.as_polytope() {
+        let balls = match shape.as_polytope() {
             Some(polytope) => polytope.balls(),
             None => shape.balls(),
         }?;
-        Some(Outline { inner, outer, kind: Kind::Other })
+        Some(Outline { balls, kind: Kind::Other })
     }
 }
 
@@ -148,7 +139,7 @@ impl<'s> Alike<'s> {
     /// Where the convex shape is, as [`Shadow::around`](super::shadow::Shadow::around) says.
     #[inline(always)]
     fn around(&self, body: &Outline, shape: &dyn Support) -> (Option<Around>, Around) {
-        let Outline { inner, outer, kind } = body;
+        let Outline { balls: Balls { inner, outer }, kind } = body;
         let slack = self.slack / self.of_complex;
         let within = {
             #[inline(always)]
@@ -180,14 +171,13 @@ impl<'s> Alike<'s> {
 
     /// What looks at images of triangles: in the space in which a box is a cube, or in the common frame turned into the directions of the complex shape.
     #[inline(always)]
-    fn glance(&self, Outline { inner, outer, kind }: &Outline, normal: &Normal) -> Option<Glance> {
+    fn glance(&self, Outline { balls, kind }: &Outline, normal: &Normal) -> Option<Glance> {
         if let Kind::Box { half } = kind {
             let cube = self.cube(*half)?;
             return Some(Glance::of(Body::cube(&cube), DVec3::ZERO, &cube.map, normal, 0.0));
         }
-        let around = outer.radius + outer.center.distance(inner.center);
-        let body = Body::ball(inner.radius * self.of_convex, around * self.of_convex, CLEARLY_APART);
-        let middle = self.in_complex(inner.center) * self.of_complex;
+        let body = Body::between(balls, self.of_convex, CLEARLY_APART);
+        let middle = self.in_complex(balls.inner.center) * self.of_complex;
         Some(Glance::upright(body, middle, self.of_complex, normal, self.slack))
     }
 

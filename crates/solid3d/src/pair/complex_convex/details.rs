@@ -3,7 +3,6 @@
 use std::cell::OnceCell;
 
 use glam::DAffine3;
-use solid_convex::unit_scale;
 
 use super::super::direct::Direct;
 use super::super::frame::{Frame, size};
@@ -24,12 +23,8 @@ pub(super) struct Details<'s> {
 }
 
 impl<'s> Details<'s> {
-    /// World lengths times `scale` are to be lengths of the common frame.
     #[inline(always)] // made where it stays: it is large
-    pub fn new(complex: PlacedComplex, convex: PlacedConvex<'s>, scale: Option<f64>) -> Self {
-        let size = size([complex.1, convex.1], [complex.0.reach(), convex.0.reach()]);
-        let scale = scale.unwrap_or_else(|| unit_scale(size));
-        let frame = Frame::scaled(complex.1, convex.1, size, scale);
+    pub fn new(frame: Frame, convex: PlacedConvex<'s>) -> Self {
         let direct = Direct::new(convex.0, &frame, CLEARLY_APART);
         let map = match &direct {
             Direct::Cube(cube) => cube.map,
@@ -39,7 +34,7 @@ impl<'s> Details<'s> {
         Details { frame, direct, map, shadow, interior: OnceCell::new() }
     }
 
-    /// Those that there are, or new ones.
+    /// Those that there are, or new ones in a common frame of which world lengths times `scale` are lengths.
     #[inline(always)]
     pub fn of<'d>(
         details: &'d mut Option<Self>,
@@ -58,5 +53,6 @@ impl<'s> Details<'s> {
 #[cold]
 #[inline(never)]
 fn fill<'s>(details: &mut Option<Details<'s>>, complex: PlacedComplex, convex: PlacedConvex<'s>, scale: f64) {
-    *details = Some(Details::new(complex, convex, Some(scale)));
+    let size = size([complex.1, convex.1], [complex.0.reach(), convex.0.reach()]);
+    *details = Some(Details::new(Frame::scaled(complex.1, convex.1, size, scale), convex));
 }

@@ -15,7 +15,7 @@ use super::super::table::{PlacedComplex, PlacedConvex};
 use super::details::Details;
 use super::interior::Interior;
 use super::sight::Sight;
-use super::{CLEARLY_APART, alike};
+use super::{CLEARLY_APART, alike, frame};
 use crate::tree::{Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves, bits};
 
 /// A walk that opens so many nodes is long: better bounds are then worth preparing.
@@ -33,7 +33,8 @@ pub(super) fn primitives(
         return walk(complex, convex, sight, &mut None, scratch, found);
     }
     let mut details = None;
-    let sight = Sight::new(complex, convex, details.insert(Details::new(complex, convex, None)), wants_any);
+    let sight =
+        Sight::new(complex, convex, details.insert(Details::new(frame(complex, convex), convex)), wants_any);
     walk(complex, convex, &sight, &mut details, scratch, found)
 }
 
