@@ -8,12 +8,13 @@ use crate::pair::glance::{Points, dot, minus};
 /// Eight triangles, and what is known of them wherever they are looked at from.
 pub struct Triangles<S: Simd> {
     pub corners: [Points<S>; 3],
-    edges: [Points<S>; 3],
-    /// One over their squares.
+    /// From the first corner to the second and the third.
+    edges: [Points<S>; 2],
+    /// Of these edges, and of the one between their ends: their squares, and one over these.
+    squares: [f32x8<S>; 3],
     inverse: [f32x8<S>; 3],
-    /// Of the first edge, and the reverse of the last: their product, and one over the squared area of the parallelogram.
+    /// Of the two edges: their product, and one over the squared area of the parallelogram.
     product: f32x8<S>,
-    squares: [f32x8<S>; 2],
     per_area: f32x8<S>,
 }
 
@@ -22,47 +23,48 @@ impl<S: Simd> Triangles<S> {
     pub fn new(simd: S, corners: [Points<S>; 3]) -> Self {
         let (one, tiny) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, f32::MIN_POSITIVE));
         let [p, q, r] = &corners;
-        let edges = [minus(q, p), minus(r, q), minus(p, r)];
-        let squares = [dot(&edges[0], &edges[0]), dot(&edges[1], &edges[1]), dot(&edges[2], &edges[2])];
+        let (pq, pr) = (minus(q, p), minus(r, p));
+        let product = dot(&pq, &pr);
+        let (of_pq, of_pr) = (dot(&pq, &pq), dot(&pr, &pr));
+        let squares = [of_pq, of_pr, of_pq + of_pr - (product + product)];
         let inverse = [one / squares[0].max(tiny), one / squares[1].max(tiny), one / squares[2].max(tiny)];
-        let product = -dot(&edges[0], &edges[2]);
-        let per_area = one / (squares[0] * squares[2] - product * product).max(tiny);
-        Triangles { corners, edges, inverse, product, squares: [squares[0], squares[2]], per_area }
+        let per_area = one / (of_pq * of_pr - product * product).max(tiny);
+        Triangles { corners, edges: [pq, pr], squares, inverse, product, per_area }
     }
 
     /// The ways from points to what is nearest to them, of the triangle, or nearly so.
+    ///
+    /// By two coordinates, along the two edges: of the foot of the perpendicular, or of the nearest point of the nearest edge. The distance from a point
+    /// of these is a quadratic function of them, of which what is the same for all is left out.
     #[inline(always)]
     pub fn toward(&self, simd: S, from: &Points<S>) -> Points<S> {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        let Triangles { corners, edges, .. } = self;
-        let mut best = minus(&corners[0], from);
-        let to_first = best;
-        let mut least = f32x8::splat(simd, f32::INFINITY);
-        for j in 0..3 {
-            let to_corner = minus(&corners[j], from);
-            let t = (-dot(&edges[j], &to_corner) * self.inverse[j]).min(one).max(zero);
-            let way = [
-                to_corner[0] + edges[j][0] * t,
-                to_corner[1] + edges[j][1] * t,
-                to_corner[2] + edges[j][2] * t,
-            ];
-            let squared = dot(&way, &way);
-            let is_nearer = squared.simd_lt(least);
-            least = is_nearer.select(squared, least);
-            for axis in 0..3 {
-                best[axis] = is_nearer.select(way[axis], best[axis]);
-            }
-        }
-        // Where the foot of the perpendicular is inside, by its coordinates along the first edge and the reverse of the last.
-        let (along_first, along_last) = (-dot(&edges[0], &to_first), dot(&edges[2], &to_first));
-        let s = (self.squares[1] * along_first - self.product * along_last) * self.per_area;
-        let t = (self.squares[0] * along_last - self.product * along_first) * self.per_area;
-        let is_inside = s.simd_gt(zero) & t.simd_gt(zero) & (s + t).simd_lt(one);
-        for axis in 0..3 {
-            let way = to_first[axis] + edges[0][axis] * s - edges[2][axis] * t;
-            best[axis] = is_inside.select(way, best[axis]);
-        }
-        best
+        let Triangles {
+            corners,
+            edges: [pq, pr],
+            squares: [of_pq, of_pr, of_qr],
+            inverse,
+            product,
+            per_area,
+        } = self;
+        let away = minus(&corners[0], from);
+        let (u, v) = (-dot(pq, &away), -dot(pr, &away));
+        let on_pq = (u * inverse[0]).min(one).max(zero);
+        let on_pr = (v * inverse[1]).min(one).max(zero);
+        let along = v - u + *of_pq - *product;
+        let on_qr = (along * inverse[2]).min(one).max(zero);
+        let at_pq = on_pq * (on_pq * *of_pq - (u + u));
+        let at_pr = on_pr * (on_pr * *of_pr - (v + v));
+        let at_qr = on_qr * (on_qr * *of_qr - (along + along)) + (*of_pq - (u + u));
+        let is_pr = at_pr.simd_lt(at_pq);
+        let is_qr = at_qr.simd_lt(at_pq.min(at_pr));
+        let s = is_qr.select(one - on_qr, is_pr.select(zero, on_pq));
+        let t = is_qr.select(on_qr, is_pr.select(on_pr, zero));
+        let foot_s = (*of_pr * u - *product * v) * *per_area;
+        let foot_t = (*of_pq * v - *product * u) * *per_area;
+        let is_inside = foot_s.simd_gt(zero) & foot_t.simd_gt(zero) & (foot_s + foot_t).simd_lt(one);
+        let (s, t) = (is_inside.select(foot_s, s), is_inside.select(foot_t, t));
+        [away[0] + pq[0] * s + pr[0] * t, away[1] + pq[1] * s + pr[1] * t, away[2] + pq[2] * s + pr[2] * t]
     }
 }
 
