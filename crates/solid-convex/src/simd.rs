@@ -175,11 +175,18 @@ pub fn vectorize<S: fearless_simd::Simd, R>(simd: S, kernel: impl FnOnce() -> R)
 /// way, while else one place is waited for after the other. It changes no answer.
 #[inline(always)]
 #[doc(hidden)]
-pub fn prefetch<T: ?Sized>(value: &T) {
+pub fn prefetch<T>(value: &T) {
+    prefetch_some::<T, 1>(std::slice::from_ref(value), 0);
+}
+
+/// The same for so many elements of a slice, from one on. Of what is beyond its end nothing comes.
+#[inline(always)]
+#[doc(hidden)]
+pub fn prefetch_some<T, const N: usize>(slice: &[T], first: usize) {
     /// What memory comes by, in bytes.
     const LINE: usize = 64;
-    let first = std::ptr::from_ref(value).cast::<i8>();
-    for offset in (0..size_of_val(value)).step_by(LINE) {
+    let first = slice.as_ptr().wrapping_add(first).cast::<i8>();
+    for offset in (0..N * size_of::<T>()).step_by(LINE) {
         prefetch_line(first.wrapping_add(offset));
     }
 }

@@ -22,7 +22,7 @@ use glam::DVec3;
 use solid_convex::simd;
 
 #[cfg(test)]
-use super::nearest::Boxes;
+use super::near::Boxes;
 use super::node::{Child, Kind, LEAF_SIZE, Node};
 use super::{Normal, Tree};
 
@@ -98,10 +98,10 @@ impl LeafImages {
         Image { leaf: *leaf, words: &self.words[WORDS * leaf.start..] }
     }
 
-    /// Asks for the memory of the image of a leaf, which may soon be looked at.
+    /// Asks for the memory of the image of a leaf that begins there in the order, which may soon be looked at.
     #[inline(always)]
-    pub fn prefetch(&self, leaf: &Leaf) {
-        simd::prefetch(&self.words[WORDS * leaf.start..][..WORDS * leaf.primitives.len()]);
+    pub fn prefetch(&self, start: usize) {
+        simd::prefetch_some::<u32, { WORDS * LEAF_SIZE }>(&self.words, WORDS * start);
     }
 
     /// The memory that they own, in bytes.

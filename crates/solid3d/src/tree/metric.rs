@@ -50,14 +50,14 @@ impl PairMetric {
 }
 
 /// Pays for the rounding of all weighing, about ten operations in `f32` and the root of what they gave, with sixteen times 2^-24.
-const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
+pub(super) const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
 /// A metric in tree coordinates.
 pub(super) struct Folded {
     pub a: Weights,
     pub b: Weights,
     /// World distance of one unit, so chosen that no weight exceeds 1.
-    unit: f64,
+    pub unit: f64,
 }
 
 impl Folded {

@@ -58,6 +58,7 @@ mod lanes;
 mod leaf_images;
 mod leaf_points;
 mod metric;
+mod near;
 mod nearest;
 mod nearest_pairs;
 mod node;
@@ -91,7 +92,7 @@ pub(crate) use lanes::bits;
 pub(crate) use leaf_images::{HALF_STEP, Image, Leaf, LeafImages, STEPS};
 pub(crate) use leaf_points::LeafPoints;
 pub use metric::PairMetric;
-pub(crate) use nearest::{Around, Boxes, NearLeaves, NearQuery};
+pub(crate) use near::{Around, Boxes, NearLeaves, NearQuery};
 pub use nearest_pairs::nearest_pairs;
 pub(crate) use nearest_pairs::{NearLeafPairs, nearest_pairs_on};
 pub use node::{LEAF_SIZE, PRIMITIVES_MAX};
@@ -222,13 +223,13 @@ impl Tree {
         }
     }
 
-    /// Asks for the memory of a child at a place, to which a walk may soon come: of a node; of a leaf `of_leaf` does so.
+    /// Asks for the memory of a child to which a walk may soon come: of a node; of a leaf `of_leaf` does so, given where it begins in the order.
     #[inline(always)]
-    fn prefetch(&self, (child, place): (Child, Place), of_leaf: impl FnOnce(&Leaf)) {
+    fn prefetch(&self, child: Child, of_leaf: impl FnOnce(usize)) {
         match child.kind() {
             Kind::Empty => {}
-            Kind::Inner(node) => simd::prefetch(&self.nodes[node]),
-            Kind::Leaf(range) => of_leaf(&self.leaf_at(place, range)),
+            Kind::Inner(node) => simd::prefetch_some::<_, 1>(&self.nodes, node),
+            Kind::Leaf(range) => of_leaf(range.start),
         }
     }
 

@@ -13,9 +13,9 @@ use crate::Aabb;
 
 /// What is done with the leaves along a ray, in vectors of the level of instructions that the walk runs on.
 pub(crate) trait RayLeaves {
-    /// Asks for the memory of a leaf that the walk may come to.
+    /// Asks for the memory of a leaf that the walk may come to, given where it begins in the order of the tree.
     #[inline(always)]
-    fn prefetch(&self, _leaf: &Leaf) {}
+    fn prefetch(&self, _start: usize) {}
 
     /// Called with the leaves that the ray may meet up to `until`; lowers it.
     fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, until: &mut f64);
@@ -143,9 +143,9 @@ impl Tree {
                     for lane in bits(hits) {
                         let next = entry(lane);
                         self.prefetch(
-                            next.1,
+                            node.child[lane],
                             #[inline(always)]
-                            |leaf| visitor.prefetch(leaf),
+                            |start| visitor.prefetch(start),
                         );
                         push_unless_far(next, f32::INFINITY, stack, from);
                     }

@@ -49,6 +49,8 @@ pub struct Traversal {
     pub(super) pairs: Stack,
     /// Subtrees to visit, the nearest first.
     pub(super) near: Broods,
+    /// The same, by bounds that are functions; of each node, the nearest last.
+    pub(super) nearest: Vec<(f64, Place)>,
     /// Subtrees to visit along a ray, with the parameter at which it enters them; of each node, the nearest last.
     pub(super) ahead: Vec<(f32, (Child, Place))>,
     /// The same for pairs of subtrees, by lower bounds of their distances.
@@ -58,10 +60,11 @@ pub struct Traversal {
 impl Traversal {
     /// The memory that it owns, in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        let Traversal { counters: _, nodes, pairs, near, ahead, near_pairs } = self;
+        let Traversal { counters: _, nodes, pairs, near, nearest, ahead, near_pairs } = self;
         nodes.capacity() * size_of::<u32>()
             + pairs.bytes()
             + near.bytes()
+            + nearest.capacity() * size_of::<(f64, Place)>()
             + ahead.capacity() * size_of::<(f32, (Child, Place))>()
             + near_pairs.capacity() * size_of::<(f64, Pair)>()
     }

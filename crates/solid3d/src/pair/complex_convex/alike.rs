@@ -138,7 +138,7 @@ impl<'s> Alike<'s> {
 
     /// Where the convex shape is, as [`Shadow::around`](super::shadow::Shadow::around) says.
     #[inline(always)]
-    fn around(&self, body: &Outline, shape: &dyn Support) -> (Option<Around>, Around) {
+    fn around(&self, body: &Outline, shape: &dyn Support) -> (Option<Aabb>, Around) {
         let Outline { balls: Balls { inner, outer }, kind } = body;
         let slack = self.slack / self.of_complex;
         let within = {
@@ -166,7 +166,7 @@ impl<'s> Alike<'s> {
         );
         let [min, max] = shape.image_bounds(&DMat3::from_cols(x, y, z));
         let middle = self.in_complex(DVec3::ZERO) + 0.5 * (min + max);
-        (Some(within(middle, 0.5 * (max - min), 0.0)), ball)
+        (Some(within(middle, 0.5 * (max - min), 0.0).bounds), ball)
     }
 
     /// What looks at images of triangles: in the space in which a box is a cube, or in the common frame turned into the directions of the complex shape.

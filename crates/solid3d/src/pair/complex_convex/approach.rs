@@ -1,6 +1,6 @@
 //! Which primitive is closest to the convex shape.
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, f32x8};
 use glam::DVec3;
 use solid_convex::simd::{each, level};
 use solid_convex::{Closest, Witness, gjk};
@@ -13,7 +13,7 @@ use super::super::row::{CONFIRMED, Row, distances_of_core};
 use super::super::table::{PlacedComplex, PlacedConvex};
 use super::shadow::Shadow;
 use super::{CLEARLY_APART, ball};
-use crate::tree::{Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves};
+use crate::tree::{Boxes, Leaf, LeafImages, NearLeaves};
 
 /// The closest primitive, without points where these are for GJK to find; of shapes that are farther apart than a bound, `None` or some
 /// primitive.
@@ -78,17 +78,17 @@ struct Approach<'s> {
 
 impl NearLeaves for Approach<'_> {
     #[inline(always)]
-    fn prefetch(&self, leaf: &Leaf) {
+    fn prefetch(&self, start: usize) {
         if let Some(images) = self.images {
-            images.prefetch(leaf);
+            images.prefetch(start);
         }
     }
 
     #[inline(always)]
-    fn raise<S: Simd>(&mut self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
-        if let Some(gaps) = self.gaps.as_ref().filter(|_| !matches!(self.direct, Direct::Round(_))) {
-            gaps.raise(simd, boxes, bounds);
-        }
+    fn bounds<S: Simd>(&mut self, simd: S, boxes: &Boxes) -> Option<f32x8<S>> {
+        // Of what is round, those that there are are as good as they get.
+        let gaps = self.gaps.as_ref().filter(|_| !matches!(self.direct, Direct::Round(_)))?;
+        Some(gaps.of_boxes(simd, boxes))
     }
 
     #[inline(always)]

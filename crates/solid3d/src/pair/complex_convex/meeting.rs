@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, f32x8};
 use solid_convex::simd::{dispatch, level};
 use solid_convex::{Outcome, Witness, gjk};
 
@@ -16,7 +16,7 @@ use super::details::Details;
 use super::interior::Interior;
 use super::sight::Sight;
 use super::{CLEARLY_APART, alike, frame};
-use crate::tree::{Boxes, LEAF_SIZE, Leaf, LeafImages, NearLeaves, bits};
+use crate::tree::{Boxes, Leaf, LeafImages, NearLeaves, bits};
 
 /// A walk that opens so many nodes is long: better bounds are then worth preparing.
 const LONG: usize = 8;
@@ -93,7 +93,7 @@ impl NearLeaves for Meeting<'_, '_> {
     const NODES_LOOKED_AT: usize = 1;
 
     #[inline(always)]
-    fn raise<S: Simd>(&mut self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
+    fn bounds<S: Simd>(&mut self, simd: S, boxes: &Boxes) -> Option<f32x8<S>> {
         self.opened += 1;
         if self.opened == LONG {
             let Details { frame, direct, shadow, .. } =
@@ -106,15 +106,13 @@ impl NearLeaves for Meeting<'_, '_> {
                 gaps.look_along(simd, shadow.axis());
             }
         }
-        if let Some(gaps) = &self.gaps {
-            gaps.raise(simd, boxes, bounds);
-        }
+        Some(self.gaps.as_ref()?.of_boxes(simd, boxes))
     }
 
     #[inline(always)]
-    fn prefetch(&self, leaf: &Leaf) {
+    fn prefetch(&self, start: usize) {
         if let Some((_, images)) = self.glance {
-            images.prefetch(leaf);
+            images.prefetch(start);
         }
     }
 

@@ -70,12 +70,12 @@ impl<'s> Shadow<'s> {
     }
 
     /// Where the shape is, in the space of the complex one: in all of these.
-    pub fn around(&self, direct: &Direct, frame: &Frame) -> (Option<Around>, Around) {
+    pub fn around(&self, direct: &Direct, frame: &Frame) -> (Option<Aabb>, Around) {
         let within = |points: &[DVec3], radius: f64| {
             let points = points.iter().map(|&point| frame.b_to_a.transform_point3(point));
             Around { bounds: Aabb::of_points(points).inflated(frame.slack_in_a), radius }
         };
-        let in_complex = || Around { bounds: *self.in_complex(frame), radius: 0.0 };
+        let in_complex = || *self.in_complex(frame);
         if let Direct::Round(round) = direct {
             return (None, within(&round.local_ends, round.radius));
         }

@@ -26,7 +26,7 @@ mod body;
 mod triangles;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x8, mask32x8};
+use fearless_simd::{Simd, f32x8, mask32x8};
 use glam::{DMat3, DVec3};
 use solid_convex::Support;
 use solid_convex::simd::each;
@@ -40,7 +40,7 @@ use super::glance::{Points, dot};
 use super::reach::convex_bounds;
 use crate::bounds::Aabb;
 use crate::placement::row_norm;
-use crate::tree::{Boxes, HALF_STEP, Image, LEAF_SIZE, Normal, STEPS};
+use crate::tree::{Boxes, HALF_STEP, Image, Normal, STEPS};
 
 /// 16u: see the module.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
@@ -142,17 +142,17 @@ impl Gaps {
         }
     }
 
-    /// Raises lower bounds of the distances of boxes, in the common frame.
+    /// Lower bounds of the distances of the boxes of a node from the body, in the common frame.
     #[inline(never)] // nor into the walk: on the scalar level, optimising it then takes minutes
-    pub fn raise<S: Simd>(&self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
+    pub fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes) -> f32x8<S> {
         simd.vectorize(
             #[inline(always)]
-            || self.raise_on(simd, boxes, bounds),
-        );
+            || self.of_boxes_on(simd, boxes),
+        )
     }
 
     #[inline(always)]
-    fn raise_on<S: Simd>(&self, simd: S, boxes: &Boxes, bounds: &mut [f64; LEAF_SIZE]) {
+    fn of_boxes_on<S: Simd>(&self, simd: S, boxes: &Boxes) -> f32x8<S> {
         let (zero, tiny) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, TINY));
         let [mut least, mut greatest] = [[zero; 3]; 2];
         for axis in 0..3 {
@@ -183,22 +183,15 @@ impl Gaps {
         // Boxes lie within 1 on each axis, and their ends and the middle are rounded.
         let furthest = 2.0 * self.middle_in_tree.abs().element_sum() + 3.0;
         let error = self.slack + ROUNDING * (furthest + self.size);
-        let (low, high) = simd.widen_f32x8(gap);
-        let gap = simd.combine_f64x4(low, high);
-        let [unit, error, radius] = each(
-            [self.unit, error, self.radius],
-            #[inline(always)]
-            |x| f64x8::splat(simd, x),
-        );
-        let raised = (gap - error) * unit - radius;
-        let bound = f64x8::from_slice(simd, bounds);
-        raised.simd_gt(bound).select(raised, bound).store_slice(bounds);
+        // Rounded downward, as the error is upward.
+        let unit = self.unit * (1.0 - ROUNDING);
+        (gap - f32x8::splat(simd, (error * (1.0 + ROUNDING)) as f32)) * f32x8::splat(simd, unit as f32)
     }
 
     /// Which of the triangles of an image in some lanes may be the nearest, where one is sought that is nearer than a distance of the
     /// common frame; lanes are given as bits. The others are no nearer than that, or another of them is nearer by more than `margin`. (So who
     /// goes on from the nearest of a leaf, by less than the margin, goes on from the same.)
-    #[inline(never)] // see `raise`
+    #[inline(never)] // see `of_boxes`
     pub fn prospects<S: Simd>(&self, simd: S, image: &Image, lanes: u32, distance: f64, margin: f64) -> u32 {
         simd.vectorize(
             #[inline(always)]
@@ -368,13 +361,12 @@ mod tests {
                 let distance = [f64::INFINITY, nearest, exact[0], 1.0001 * exact[0]][case % 4];
                 let (boxes, own) = leaf.boxes();
                 let (bound, near) = alike(|level| {
-                    let mut bounds = [f64::NEG_INFINITY; LEAF_SIZE];
-                    let found = dispatch!(widest level, simd => {
-                        gaps.raise(simd, &boxes, &mut bounds);
-                        gaps.prospects(simd, &images.of(&leaf), leaf.lanes(), distance, CLEARLY_APART)
-                    });
-                    (bounds[own], found)
+                    dispatch!(widest level, simd => (
+                        gaps.of_boxes(simd, &boxes).to_array()[own],
+                        gaps.prospects(simd, &images.of(&leaf), leaf.lanes(), distance, CLEARLY_APART),
+                    ))
                 });
+                let bound = f64::from(bound) - gaps.radius;
                 assert!(bound <= nearest + 1e-12, "case {case}: {bound} for {nearest}");
                 // Of those that meet what is round, the nearest to its core is enough.
                 let meets = |lane: usize| near >> lane & 1 == 1 && exact[lane] == 0.0;

@@ -75,9 +75,9 @@ struct Crossed {
 
 impl RayLeaves for Meeting<'_, '_> {
     #[inline(always)]
-    fn prefetch(&self, leaf: &Leaf) {
+    fn prefetch(&self, start: usize) {
         if let Some((_, images)) = &self.images {
-            images.prefetch(leaf);
+            images.prefetch(start);
         }
     }
 

@@ -1,0 +1,301 @@
+//! Branch and bound for one query: what it asks, and the walk down the tree, the nearest child first.
+//!
+//! # Squares
+//!
+//! Subtrees are compared by squares: lower bounds of the squared distance of their boxes from that of the query, in units of the metric. With a
+//! radius r around that box, nothing in a box of square s is nearer than `unit * sqrt(s) - r`: so what is at most as near as `d` has a square of at
+//! least ((d + r) / unit)². This is found once for each `d`; a root of each square would be waited for, as it tells where the walk goes on.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x8};
+use solid_convex::simd::{Level, dispatch};
+
+use super::lanes::{LANES, Weights, bits, distances_squared_to_box, lanes};
+use super::metric::{Folded, PairMetric, ROUNDING};
+use super::node::{Child, Kind, Node};
+use super::normal::round_down;
+use super::packed::PackedBox;
+use super::{Leaf, Place, Traversal, Tree};
+use crate::Aabb;
+
+/// Where a query is: within a distance, in the world, of some point of a box of local coordinates; anywhere, if the distance is no number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around {
+    pub bounds: Aabb,
+    pub radius: f64,
+}
+
+/// What [`nearest_on`](Tree::nearest_on) is asked, in the coordinates of the tree.
+pub(crate) struct NearQuery {
+    around: PackedBox,
+    radius: f64,
+    within: Option<PackedBox>,
+    weights: Weights,
+    /// A length in the world times this is at least that many units.
+    per_unit: f64,
+    /// The radius in units, and a unit in the world, by which squares are raised.
+    reach: f32,
+    units: f32,
+}
+
+/// The boxes of a node.
+pub(crate) struct Boxes<'t>(pub(super) &'t Node);
+
+impl Boxes<'_> {
+    /// Their ends along an axis, in tree coordinates.
+    #[inline(always)]
+    pub fn axis<S: Simd>(&self, simd: S, axis: usize) -> (f32x8<S>, f32x8<S>) {
+        lanes(simd, self.0, axis)
+    }
+}
+
+/// What is done with leaves, in vectors of the level of instructions that the walk runs on.
+pub(crate) trait NearLeaves {
+    /// Of how many nodes, the last opened, the nearest child comes next: nodes that were opened since may hold what is farther. Where the first
+    /// that is found will do, one is enough.
+    const NODES_LOOKED_AT: usize = 3;
+
+    /// Lower bounds of the distances to anything in the boxes of a node, where it knows better; of lanes that are not in use they mean nothing.
+    #[inline(always)]
+    fn bounds<S: Simd>(&mut self, _simd: S, _boxes: &Boxes) -> Option<f32x8<S>> {
+        None
+    }
+
+    /// Asks for the memory of a leaf that the walk may come to, given where it begins in the order of the tree.
+    #[inline(always)]
+    fn prefetch(&self, _start: usize) {}
+
+    /// Called with the leaves that may hold something nearer than `best`; lowers it.
+    fn visit<S: Simd>(&mut self, simd: S, leaf: &Leaf, best: &mut f64);
+}
+
+impl Tree {
+    /// The query that is around `around`, and within a box too. Of `metric`, the half for `a` counts. Where both tell no distance, the former gives the
+    /// order.
+    #[inline(always)] // into kernels, where nothing of it need be written before it is read
+    pub(crate) fn near_query(&self, within: Option<Aabb>, around: Around, metric: &PairMetric) -> NearQuery {
+        let Folded { a: weights, unit, .. } = Folded::new(metric, &self.normal, &self.normal);
+        let (units, Around { bounds, radius }) = (unit.recip(), around);
+        NearQuery {
+            around: self.normal.pack_any(&bounds),
+            radius,
+            within: within.map(
+                #[inline(always)]
+                |bounds| self.normal.pack_any(&bounds),
+            ),
+            weights,
+            per_unit: units / (1.0 - ROUNDING),
+            reach: round_down((radius * units).min(f64::from(f32::MAX))),
+            units: round_down(units.min(f64::from(f32::MAX))),
+        }
+    }
+
+    /// Visits the leaves that may hold something nearer than `best`, the nearest child first, on a level of instructions. `visitor` lowers the best
+    /// distance; at zero the walk ends.
+    pub(crate) fn nearest_on(
+        &self,
+        level: Level,
+        query: &NearQuery,
+        best: &mut f64,
+        traversal: &mut Traversal,
+        visitor: &mut impl NearLeaves,
+    ) {
+        dispatch!(widest level, simd => self.walk_near(simd, query, best, traversal, visitor));
+    }
+
+    #[inline(always)] // into the function that is compiled for a level of instructions
+    fn walk_near<S: Simd, V: NearLeaves>(
+        &self,
+        simd: S,
+        query: &NearQuery,
+        best: &mut f64,
+        traversal: &mut Traversal,
+        visitor: &mut V,
+    ) {
+        let Traversal { counters, near: broods, .. } = traversal;
+        broods.clear();
+        let mut limit = query.limit(*best);
+        // What comes next, where it is known: of a node with near children mostly one of these.
+        let mut next = Some((0.0, Place::ROOT));
+        while let Some((square, place)) = next.take().or_else(
+            #[inline(always)]
+            || broods.take(simd, V::NODES_LOOKED_AT, limit),
+        ) {
+            if *best == 0.0 {
+                return;
+            }
+            let child = self.child_at(place);
+            if square >= limit || child == Child::EMPTY {
+                continue;
+            }
+            match child.kind() {
+                Kind::Empty => {}
+                Kind::Leaf(range) => {
+                    counters.leaf_visits += 1;
+                    visitor.visit(simd, &self.leaf_at(place, range), best);
+                    limit = query.limit(*best);
+                }
+                Kind::Inner(index) => {
+                    counters.box_tests += 1;
+                    let node = &self.nodes[index];
+                    let mut squares = query.squares(simd, node);
+                    if reaching(simd, squares, limit) == u32::MAX {
+                        continue;
+                    }
+                    if let Some(bounds) = visitor.bounds(simd, &Boxes(node)) {
+                        squares = query.raised(simd, squares, bounds);
+                    }
+                    let near = !reaching(simd, squares, limit);
+                    if near == 0 {
+                        continue;
+                    }
+                    if near.is_power_of_two() {
+                        next =
+                            Some((squares.reduce_min(), Place::lane(index, near.trailing_zeros() as usize)));
+                        continue;
+                    }
+                    for lane in bits(near) {
+                        self.prefetch(
+                            node.child[lane],
+                            #[inline(always)]
+                            |start| visitor.prefetch(start),
+                        );
+                    }
+                    next = broods.add_and_take(simd, (index, squares), V::NODES_LOOKED_AT, limit);
+                }
+            }
+        }
+    }
+}
+
+impl NearQuery {
+    /// What has a square of at least this is no nearer than a distance.
+    #[inline(always)]
+    fn limit(&self, distance: f64) -> f32 {
+        let units = (distance + self.radius) * self.per_unit;
+        // Without a unit or a radius it is no number: nothing is skipped then. It is rounded up, also what underflows.
+        ((units * units).min(f64::INFINITY) as f32).next_up()
+    }
+
+    /// Those of the lanes of a node. Empty lanes are far off, or do no harm.
+    #[inline(always)]
+    fn squares<S: Simd>(&self, simd: S, node: &Node) -> f32x8<S> {
+        let squares = distances_squared_to_box(simd, node, &self.around, &self.weights);
+        let Some(within) = &self.within else { return squares };
+        let zero = f32x8::splat(simd, 0.0);
+        let apart = distances_squared_to_box(simd, node, within, &self.weights);
+        let units = apart.simd_gt(zero).select(apart.sqrt() + f32x8::splat(simd, self.reach), zero);
+        greater_square(simd, squares, units)
+    }
+
+    /// Squares, raised by lower bounds of distances in the world.
+    #[inline(always)]
+    fn raised<S: Simd>(&self, simd: S, squares: f32x8<S>, bounds: f32x8<S>) -> f32x8<S> {
+        let [units, reach] = [f32x8::splat(simd, self.units), f32x8::splat(simd, self.reach)];
+        greater_square(simd, squares, bounds * units + reach)
+    }
+}
+
+/// The greater of squares and those of numbers above zero; finite, as no limit may be less.
+#[inline(always)]
+fn greater_square<S: Simd>(simd: S, squares: f32x8<S>, roots: f32x8<S>) -> f32x8<S> {
+    let square = (roots * roots).min(f32x8::splat(simd, f32::MAX));
+    (roots.simd_gt(f32x8::splat(simd, 0.0)) & square.simd_gt(squares)).select(square, squares)
+}
+
+/// The lanes whose square is at least a limit, as bits.
+#[inline(always)]
+fn reaching<S: Simd>(simd: S, squares: f32x8<S>, limit: f32) -> u32 {
+    squares.simd_ge(f32x8::splat(simd, limit)).to_bitmask() as u32 | !LANES
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tree::node::WIDTH;
+    use crate::tree::tests::scenes::{affine, point, rng};
+    use glam::{DMat3, DVec3};
+    use rand::Rng;
+    use solid_convex::simd::alike;
+
+    /// Looks for what is nearest.
+    struct Nearest<'t, F> {
+        tree: &'t Tree,
+        distances: &'t [f64],
+        /// Bounds of local boxes, where they are told.
+        bound: Option<F>,
+    }
+
+    impl<F: Fn(&Aabb) -> f64> NearLeaves for Nearest<'_, F> {
+        fn bounds<S: Simd>(&mut self, simd: S, boxes: &Boxes) -> Option<f32x8<S>> {
+            let bound = self.bound.as_ref()?;
+            let lane = |lane| round_down(bound(&self.tree.normal.unpack(&boxes.0.lane(lane))));
+            Some(f32x8::from_slice(simd, &std::array::from_fn::<f32, WIDTH, _>(lane)))
+        }
+
+        fn visit<S: Simd>(&mut self, _: S, leaf: &Leaf, best: &mut f64) {
+            *best = leaf.primitives.iter().map(|&i| self.distances[i as usize]).fold(*best, f64::min);
+        }
+    }
+
+    /// Law: what is nearest to a ball, or to a point that is known to be in a box and in a ball, or of which bounds are told, is found, as brute force finds
+    /// it: of any size and radius, under any affine map, on every level of instructions; and few leaves are visited, as many whatever the size.
+    #[test]
+    fn the_nearest_is_that_of_brute_force() {
+        let mut rng = rng(99);
+        let (mut traversal, cases) = (Traversal::default(), 600);
+        for case in 0..cases {
+            let [size, scale] = [(); 2].map(|()| 10f64.powi(rng.random_range(-40..40)));
+            // A metric that tells nothing loses nothing, and the walk ends where there is no distance, in the last leaf too.
+            let tells_nothing = case % 10 == 0;
+            let count = if tells_nothing { 20 } else { 600 };
+            let points: Vec<DVec3> = (0..count).map(|_| point(&mut rng, size)).collect();
+            let tree = Tree::build(&points.iter().map(|&p| Aabb::new(p, p)).collect::<Vec<_>>());
+            let query = if tells_nothing { points[case / 10 % 20] } else { point(&mut rng, 2.0 * size) };
+            let (knows_bounds, knows_box) = (case % 3 == 1, case % 3 == 2);
+            let (stretch, metric) = if knows_bounds {
+                let all = DVec3::splat(scale);
+                (DMat3::from_diagonal(all), (all, scale))
+            } else {
+                let map = affine(&mut rng, scale, 0.0).matrix3;
+                let rows = map.inverse().transpose();
+                let facet = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length());
+                // One over the norm of Frobenius of the inverse is no more than the least singular value.
+                (map, ((1.0 - 1e-14) / facet, (1.0 - 1e-14) / facet.length()))
+            };
+            let metric = PairMetric {
+                facet_a: metric.0,
+                facet_b: DVec3::ZERO,
+                sigma_min_a: metric.1,
+                sigma_min_b: 0.0,
+            };
+            let is_ball = case % 3 == 0;
+            let radius = match case / 3 % 5 {
+                _ if tells_nothing => 0.0,
+                4 if !is_ball => f64::NAN,
+                kind => [0.0, 1e-9, 0.1, 1e3, 1.0][kind] * size * scale,
+            };
+            let around = Around { bounds: Aabb::new(query, query), radius };
+            let within = knows_box.then_some(around.bounds);
+            let near_query = tree.near_query(within, around, &metric);
+            let distances: Vec<f64> = (points.iter())
+                .map(|&p| (stretch * (p - query)).length() - if is_ball { radius } else { 0.0 })
+                .map(|distance| distance.max(0.0))
+                .collect();
+            let bound =
+                |bounds: &Aabb| scale * query.distance(query.clamp(bounds.min, bounds.max)) * (1.0 - 1e-14);
+            let limit = if case % 2 == 0 { f64::INFINITY } else { 1.5 * size * scale };
+            let found = alike(|level| {
+                let mut best = limit;
+                let mut visitor =
+                    Nearest { tree: &tree, distances: &distances, bound: knows_bounds.then_some(bound) };
+                tree.nearest_on(level, &near_query, &mut best, &mut traversal, &mut visitor);
+                best
+            });
+            assert_eq!(found, distances.iter().copied().fold(limit, f64::min), "case {case}");
+        }
+        let visits = traversal.counters.leaf_visits;
+        println!("{visits} leaves in {cases} queries, on each level");
+        assert!(visits < 60 * cases as u64);
+    }
+}
