@@ -5,15 +5,19 @@
 //! It also hands on a text of the same lines that means the same in VRML97 and in the parser's dialect:
 //!
 //! * comments are blank, because `#/*` opens a comment over several lines in the dialect;
-//! * a decimal integer below -2^31 gets a decimal point: it is a legal float, but as the size of an image it makes the
-//!   parser panic.
+//! * a decimal integer below -2^31 or above 2^32 - 1 gets a decimal point: it is a legal float, but the parser takes an integer
+//!   by its lowest 32 bits, and one so low as the size of an image makes it panic. What is between may be a pixel.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use super::limits::*;
 use crate::error::SceneError;
 use crate::text::quoted;
+
+/// What 32 bits hold, with a sign or without.
+const INTEGERS: RangeInclusive<f64> = i32::MIN as f64..=u32::MAX as f64;
 
 /// A text that is safe to parse.
 #[derive(Debug)]
@@ -256,11 +260,14 @@ impl<'a> Scanner<'a> {
     /// Copies a number, or several without space between.
     fn number(&mut self, word: &str) {
         let mut rest = word;
-        while let Some(minus) = rest.find('-') {
-            let digits = rest[minus + 1..].bytes().take_while(u8::is_ascii_digit).count();
-            let end = minus + 1 + digits;
+        // What follows a point is a fraction, no integer.
+        let mut integer = if self.out.ends_with('.') { rest.find('-') } else { Some(0) };
+        while let Some(start) = integer {
+            let sign = usize::from(rest[start..].starts_with(['-', '+']));
+            let digits = rest[start + sign..].bytes().take_while(u8::is_ascii_digit).count();
+            let end = start + sign + digits;
             self.out.push_str(&rest[..end]);
-            if rest[minus..end].parse::<f64>().is_ok_and(|value| value < f64::from(i32::MIN)) {
+            if rest[start..end].parse::<f64>().is_ok_and(|value| !INTEGERS.contains(&value)) {
                 let next =
                     rest[end..].bytes().next().or(self.text.as_bytes().get(self.at + word.len()).copied());
                 if next != Some(b'.') {
@@ -268,6 +275,7 @@ impl<'a> Scanner<'a> {
                 }
             }
             rest = &rest[end..];
+            integer = rest.find('-');
         }
         self.out.push_str(rest);
         self.at += word.len();
@@ -425,6 +433,11 @@ mod tests {
         let text = "#\na -2147483649 -2147483648 5-99999999999 -99999999999.5 A-99999999999 -9999999999e2";
         let expected =
             "#\na -2147483649. -2147483648 5-99999999999. -99999999999.5 A-99999999999 -9999999999.e2";
+        assert_eq!(run(text).unwrap().text, expected);
+        let text =
+            "#\na 4294967295 4294967296 +4294967298,4294967298.5 0.4294967298 99999999999e2 0x100000000";
+        let expected =
+            "#\na 4294967295 4294967296. +4294967298.,4294967298.5 0.4294967298 99999999999.e2 0x100000000";
         assert_eq!(run(text).unwrap().text, expected);
     }
 

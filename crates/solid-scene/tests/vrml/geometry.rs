@@ -111,6 +111,8 @@ fn indices_are_checked() {
     );
     assert!(message("0 1 -2").contains("coordIndex holds -2"));
     assert!(message("0 1 2147483647").contains("coordIndex holds 2147483647"));
+    // Not by its lowest 32 bits, which name the third point.
+    assert_eq!(message("0 1 4294967298 -1"), "expected one more value or ']'");
 }
 
 #[test]
