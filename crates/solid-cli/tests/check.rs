@@ -283,6 +283,23 @@ fn text_in_utf16_is_named() {
     desk.run("check a.obj --placements r").assert_fails(&["r: is text in UTF-16"]);
 }
 
+/// As a clone has them where Git LFS is not set up.
+#[test]
+fn pointers_of_git_lfs_are_named() {
+    let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0123\nsize 100\n";
+    let buffers = r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":100,"uri":"a.bin"}]}"#;
+    let mut desk = Desk::new().file("a.bin", pointer).file("of_buffer.gltf", buffers);
+    for name in ["a.obj", "a.wrl", "a.stl", "a.ply", "a.gltf", "a.glb"] {
+        desk = desk.file(name, pointer);
+        desk.run(&format!("check {name}")).assert_fails(&[&format!("{name}: is a pointer of Git LFS")]);
+    }
+    let run = desk.run("check of_buffer.gltf");
+    run.assert_fails(&["of_buffer.gltf: buffer 0: `a.bin` is a pointer of Git LFS", "git lfs pull"]);
+    // The file is named also when it is short.
+    let desk = desk.file("a.bin", "short");
+    desk.run("check of_buffer.gltf").assert_fails(&["buffer 0: `a.bin` has 5 bytes; it should have 100"]);
+}
+
 /// Where a scene is empty, the warnings say why.
 #[test]
 fn an_empty_scene_tells_its_warnings() {

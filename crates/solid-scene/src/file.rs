@@ -5,7 +5,11 @@ use std::path::Path;
 
 use crate::error::SceneError;
 
-/// The bytes of a regular file, which are no text in UTF-16.
+/// What a file has in its place when Git LFS has not fetched it.
+pub(crate) const IS_POINTER: &str =
+    "is a pointer of Git LFS; expected the file that it stands for, so fetch that first (git lfs pull)";
+
+/// The bytes of a regular file, which are no text in UTF-16, and no pointer to what is elsewhere.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
     metadata(path)?;
     let bytes = std::fs::read(path).map_err(|error| unreadable(path, &error))?;
@@ -16,7 +20,15 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
             "is text in UTF-16; expected UTF-8, so save it as that first",
         ));
     }
+    if is_pointer(&bytes) {
+        return Err(SceneError::new(path, None, IS_POINTER));
+    }
     Ok(bytes)
+}
+
+/// Whether bytes are a pointer of Git LFS: how its specification has each begin.
+pub(crate) fn is_pointer(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"version https://git-lfs.github.com/spec/v1\n")
 }
 
 /// Whether bytes are a byte order mark of UTF-16 and then, as in all formats here that are text, a letter of ASCII; so that hardly

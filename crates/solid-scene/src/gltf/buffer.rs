@@ -8,6 +8,7 @@ use gltf::json::Buffer;
 
 use super::uri::{Source, resolve};
 use crate::fault::Result;
+use crate::file::{IS_POINTER, is_pointer};
 use crate::text::quoted;
 
 /// The bytes of a buffer, `byteLength` of them. `binary` is the binary part of a `.glb`, which buffer 0 is when it has
@@ -19,7 +20,7 @@ pub(super) fn load(
     folder: &Path,
     files: &mut Vec<PathBuf>,
 ) -> Result<Vec<u8>> {
-    let name = name(index, buffer);
+    let mut name = name(index, buffer);
     let needed = buffer.byte_length.0;
     let mut bytes = match &buffer.uri {
         None if index == 0 => binary.take().ok_or_else(|| format!("{name} has no URI and no binary part"))?,
@@ -28,15 +29,17 @@ pub(super) fn load(
             Source::Bytes(bytes) => bytes,
             Source::File(path) => {
                 // A data URI without its first letters is long.
-                let wrong =
-                    |error| format!("{name}: `{}` can't be read: {error}", quoted(&path.to_string_lossy()));
+                name = format!("{name}: `{}`", quoted(&path.to_string_lossy()));
                 let file = folder.join(&path);
-                let bytes = read(&file, needed).map_err(wrong)?;
+                let bytes = read(&file, needed).map_err(|error| format!("{name} can't be read: {error}"))?;
                 files.push(file);
                 bytes
             }
         },
     };
+    if is_pointer(&bytes) {
+        return Err(format!("{name} {IS_POINTER}").into());
+    }
     if (bytes.len() as u64) < needed {
         return Err(format!("{name} has {} bytes; it should have {needed}", bytes.len()).into());
     }
