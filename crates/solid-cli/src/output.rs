@@ -1,6 +1,6 @@
 //! Writing: to a file or to standard output, where the reader may leave early.
 
-use std::fs::OpenOptions;
+use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -55,39 +55,107 @@ fn create(path: &Path) -> io::Result<Box<dyn Write>> {
     }
     let path = destination(path);
     let folder = folder(&path);
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".solid-");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     if !folder.is_dir() {
         return Err(io::Error::new(ErrorKind::NotFound, format!("there is no folder {}", folder.display())));
     }
     // Its errors name the file beside it, which is no concern of the user.
-    let file = builder.tempfile_in(folder).map_err(|error| error.kind())?;
+    let file = Unfinished::in_folder(folder).map_err(|error| error.kind())?;
     Ok(Box::new(Staged { file: Some(file), path }))
 }
 
 /// A file that takes its name when it is flushed, once.
 struct Staged {
-    file: Option<NamedTempFile>,
+    file: Option<Unfinished>,
     path: PathBuf,
 }
 
 impl Write for Staged {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         match &mut self.file {
-            Some(file) => file.write(buffer),
+            Some(file) => file.as_file_mut().write(buffer),
             None => Err(io::Error::other("written after its end")),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        if let Some(mut file) = self.file.take() {
-            file.flush()?;
-            file.persist(&self.path)?;
+        self.file.take().map_or(Ok(()), |file| file.persist(&self.path))
+    }
+}
+
+/// A file that has not got its name yet.
+enum Unfinished {
+    /// It has none at all: nothing is left of it, however the run ends.
+    Unnamed(File),
+    /// It has another, beside: where a file cannot be without. A run that is killed leaves it.
+    Beside(NamedTempFile),
+}
+
+impl Unfinished {
+    fn in_folder(folder: &Path) -> io::Result<Self> {
+        unnamed(folder).map_or_else(
+            || Ok(Unfinished::Beside(names_beside().tempfile_in(folder)?)),
+            |file| Ok(Unfinished::Unnamed(file)),
+        )
+    }
+
+    fn as_file_mut(&mut self) -> &mut File {
+        match self {
+            Unfinished::Unnamed(file) => file,
+            Unfinished::Beside(file) => file.as_file_mut(),
+        }
+    }
+
+    fn persist(self, path: &Path) -> io::Result<()> {
+        match self {
+            // Only a name takes the place of another.
+            Unfinished::Unnamed(file) => {
+                names_beside().make_in(folder(path), |beside| link(&file, beside))?.persist(path)?;
+            }
+            Unfinished::Beside(file) => drop(file.persist(path)?),
         }
         Ok(())
     }
+}
+
+fn names_beside() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".solid-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder
+}
+
+/// Where the system lists what a process has open: by this a file without a name gets one.
+#[cfg(target_os = "linux")]
+const OPEN_FILES: &str = "/proc/self/fd";
+
+/// A file in a folder, without a name; `None` where there is no such thing.
+#[cfg(target_os = "linux")]
+fn unnamed(folder: &Path) -> Option<File> {
+    use rustix::fs::{Mode, OFlags};
+    if !Path::new(OPEN_FILES).is_dir() {
+        return None;
+    }
+    let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
+    Some(rustix::fs::open(folder, flags, Mode::from_raw_mode(0o666)).ok()?.into())
+}
+
+#[cfg(not(target_os = "linux"))]
+fn unnamed(_: &Path) -> Option<File> {
+    None
+}
+
+/// Gives a file that has no name a new one.
+#[cfg(target_os = "linux")]
+fn link(file: &File, path: &Path) -> io::Result<()> {
+    use rustix::fs::{AtFlags, CWD};
+    let open = format!("{OPEN_FILES}/{}", std::os::fd::AsRawFd::as_raw_fd(file));
+    Ok(rustix::fs::linkat(CWD, open, CWD, path, AtFlags::SYMLINK_FOLLOW)?)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn link(_: &File, _: &Path) -> io::Result<()> {
+    Err(ErrorKind::Unsupported.into())
 }
 
 /// Standard output.
@@ -156,6 +224,23 @@ mod tests {
         output.write_all(b"after").and_then(|()| output.flush()).expect("it is written");
         assert_eq!(read(), "after");
         assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_file_that_is_not_finished_has_no_name() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("out.json");
+        let files = || std::fs::read_dir(&folder).expect("a folder").count();
+        if unnamed(folder.path()).is_none() {
+            eprintln!("passed over: every file of {} has a name", folder.path().display());
+            return;
+        }
+        let mut output = open(&path).expect("it opens");
+        output.get_mut().write_all(b"whole").expect("it is written");
+        assert_eq!(files(), 0);
+        output.flush().expect("it is written");
+        assert_eq!((files(), std::fs::read(&path).expect("a file").as_slice()), (1, b"whole".as_slice()));
     }
 
     struct Failing(ErrorKind);
