@@ -186,21 +186,25 @@ pub enum Error {
     },
     /// A placement has an entry that is not finite, or too large.
     #[error(
-        "placement has the entry {value:?}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
+        "{argument} has the entry {value:?}; each must be finite and at most {MAGNITUDE_MAX:e} in magnitude"
     )]
     PlacementEntry {
+        /// The argument's name.
+        argument: &'static str,
         /// The entry.
         value: f64,
     },
     /// A placement flattens space.
     #[error(
-        "placement is singular: its axes are {}, {}, {}; each needs a direction of its own, out of the plane of the \
+        "{argument} is singular: its axes are {}, {}, {}; each needs a direction of its own, out of the plane of the \
          others, and a length of at least {MAGNITUDE_MIN:e}",
         coordinates(x),
         coordinates(y),
         coordinates(z)
     )]
     SingularPlacement {
+        /// The argument's name.
+        argument: &'static str,
         /// The image of the axis x.
         x: DVec3,
         /// The image of the axis y.

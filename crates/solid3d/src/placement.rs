@@ -18,19 +18,19 @@ const VOLUME_MIN: f64 = 1e-12;
 
 /// The placement itself when it can be used: finite, in range, and not singular.
 #[inline]
-pub(crate) fn checked(placement: &DAffine3) -> Result<&DAffine3> {
+pub(crate) fn checked<'a>(argument: &'static str, placement: &'a DAffine3) -> Result<&'a DAffine3> {
     if dispatch!(simd => is_plainly_good(simd, placement)) {
         Ok(placement)
     } else {
-        checked_at_length(placement)
+        checked_at_length(argument, placement)
     }
 }
 
 #[inline(never)]
-fn checked_at_length(placement: &DAffine3) -> Result<&DAffine3> {
+fn checked_at_length<'a>(argument: &'static str, placement: &'a DAffine3) -> Result<&'a DAffine3> {
     let out_of_range = |x: &f64| !x.is_finite() || x.abs() > MAGNITUDE_MAX;
     if let Some(value) = placement.to_cols_array().into_iter().find(out_of_range) {
-        return Err(Error::PlacementEntry { value });
+        return Err(Error::PlacementEntry { argument, value });
     }
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
     let is_long = |axis: &DVec3| axis.abs().max_element() >= MAGNITUDE_MIN;
@@ -38,7 +38,7 @@ fn checked_at_length(placement: &DAffine3) -> Result<&DAffine3> {
         [Some(x), Some(y), Some(z)] => x.cross(y).dot(z).abs() < VOLUME_MIN,
         _ => true,
     };
-    if flat { Err(Error::SingularPlacement { x, y, z }) } else { Ok(placement) }
+    if flat { Err(Error::SingularPlacement { argument, x, y, z }) } else { Ok(placement) }
 }
 
 /// Whether two placements are the same to the bit, of zeros too.
@@ -138,7 +138,7 @@ mod tests {
     fn scales_alone_are_never_singular() {
         for scale in [1e-100, 1e-30, 1.0, 1e100] {
             let placement = DAffine3::from_scale(DVec3::new(scale, 1.0, -1e-100));
-            assert!(checked(&placement).is_ok(), "{scale}");
+            assert!(checked("placement", &placement).is_ok(), "{scale}");
             let product = placement.matrix3 * inverse_linear(&placement.matrix3);
             assert!(product.abs_diff_eq(DMat3::IDENTITY, 1e-15), "{product}");
         }
@@ -173,7 +173,7 @@ mod tests {
             let mut scale = || scales[rng.random_range(0..4 * scales.len()).saturating_sub(3 * scales.len())];
             let placement =
                 DAffine3::from_cols(x * scale(), y * scale(), z * scale(), to * scale() * scale());
-            let is_good = checked_at_length(&placement).is_ok();
+            let is_good = checked_at_length("placement", &placement).is_ok();
             assert!(is_good || !is_plain(&placement), "{placement}");
             good += usize::from(is_good);
             plain += usize::from(is_plain(&placement));
@@ -185,14 +185,17 @@ mod tests {
     #[test]
     fn flat_and_wild_placements_are_refused() {
         let flat = DAffine3::from_cols(DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0), DVec3::ZERO);
-        assert!(matches!(checked(&flat), Err(Error::SingularPlacement { .. })));
+        assert!(matches!(checked("placement", &flat), Err(Error::SingularPlacement { .. })));
         for short in [0.0, 5e-324, 9e-101] {
             let placement = DAffine3::from_scale(DVec3::new(1.0, short, 1.0));
-            assert!(matches!(checked(&placement), Err(Error::SingularPlacement { .. })), "{short}");
+            assert!(
+                matches!(checked("placement", &placement), Err(Error::SingularPlacement { .. })),
+                "{short}"
+            );
         }
         for bad in [f64::NAN, f64::INFINITY, 1e101] {
             let placement = DAffine3::from_translation(DVec3::new(0.0, bad, 0.0));
-            assert!(matches!(checked(&placement), Err(Error::PlacementEntry { .. })));
+            assert!(matches!(checked("placement", &placement), Err(Error::PlacementEntry { .. })));
         }
     }
 }

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 use glam::{DAffine3, DMat3, DVec3};
 use proptest::prelude::*;
 use solid3d::{
-    BroadPhaseKind, ComplexShapeBuilder, Error, ObjectId, Response, Shape, World, WorldOptions, glam, query,
+    BroadPhaseKind, ComplexShapeBuilder, Error, ObjectId, Response, Shape, World, WorldOptions, glam,
+    query::{self, ContactOptions, ImpactOptions, PairCache},
 };
 
 /// What no size may be.
@@ -99,7 +100,7 @@ fn bad_placements() -> Vec<(DAffine3, Vec<String>)> {
         for value in BAD_COORDINATES {
             let mut entries = DAffine3::IDENTITY.to_cols_array();
             entries[entry] = value;
-            let words = ["placement", &format!("{value:?}"), "1e100"].map(str::to_string).to_vec();
+            let words = ["has the entry", &format!("{value:?}"), "1e100"].map(str::to_string).to_vec();
             bad.push((DAffine3::from_cols_array(&entries), words));
         }
     }
@@ -115,7 +116,7 @@ fn bad_placements() -> Vec<(DAffine3, Vec<String>)> {
         DMat3::from_diagonal(DVec3::splat(1e-101)),
     ];
     for matrix3 in singular {
-        let words = ["placement is singular", "axes", "direction", "1e-100"].map(str::to_string).to_vec();
+        let words = ["is singular", "axes", "direction", "1e-100"].map(str::to_string).to_vec();
         bad.push((DAffine3 { matrix3, translation: DVec3::ONE }, words));
     }
     bad
@@ -137,13 +138,28 @@ fn bad_placements_are_refused_by_queries_on_either_side() {
     for (bad, words) in bad_placements() {
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         for (a, b) in shapes.iter().flat_map(|a| shapes.iter().map(move |b| (a, b))) {
-            for (at_a, at_b) in [(&bad, &good), (&good, &bad), (&bad, &bad)] {
+            for (at_a, at_b, name) in
+                [(&bad, &good, "placement_a"), (&good, &bad, "placement_b"), (&bad, &bad, "placement_a")]
+            {
+                let words = [words.as_slice(), &[name]].concat();
                 refused(query::intersects(a, at_a, b, at_b), &words);
                 refused(query::common_point(a, at_a, b, at_b), &words);
                 refused(query::distance(a, at_a, b, at_b), &words);
+                refused(query::distance_within(a, at_a, b, at_b, 1.0), &words);
                 refused(query::separating_axis(a, at_a, b, at_b), &words);
                 refused(query::penetration(a, at_a, b, at_b), &words);
-                refused(query::contacts(a, at_a, b, at_b, &query::ContactOptions::default()), &words);
+                refused(query::contacts(a, at_a, b, at_b, &ContactOptions::default()), &words);
+                refused(query::cast_shape(a, at_a, DVec3::X, b, at_b, DVec3::ZERO), &words);
+                refused(PairCache::new(a, b).intersects(at_a, at_b), &words);
+                refused(PairCache::new(a, b).distance(at_a, at_b), &words);
+                refused(PairCache::new(a, b).penetration(at_a, at_b), &words);
+            }
+            for (place, name) in ["from_a", "to_a", "from_b", "to_b"].into_iter().enumerate() {
+                let words = [words.as_slice(), &[name]].concat();
+                let [from_a, to_a, from_b, to_b] =
+                    [0, 1, 2, 3].map(|i| if i == place { &bad } else { &good });
+                let options = ImpactOptions::default();
+                refused(query::time_of_impact(a, from_a, to_a, b, from_b, to_b, &options), &words);
             }
         }
     }
@@ -203,7 +219,8 @@ fn a_refused_call_leaves_the_world_as_an_untouched_twin() {
 
         assert_eq!(transcript(&mut world, &ids), transcript(&mut twin, &ids));
         for (bad, words) in bad_placements() {
-            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            let mut words: Vec<&str> = words.iter().map(String::as_str).collect();
+            words.push("placement ");
             refused(world.add(&ball, bad), &words);
             refused(world.set_placement(ids[3], bad), &words);
         }
@@ -229,6 +246,8 @@ fn a_refused_call_leaves_the_world_as_an_untouched_twin() {
                 refused(world.clear_pair_response(a, b), &words);
                 refused(world.reset_pair_response(a, b), &words);
                 refused(world.response(a, b), &words);
+                refused(world.contacts(a, b, &ContactOptions::default()), &words);
+                refused(world.time_of_impact(a, b, &ImpactOptions::default()), &words);
             }
         }
         for &id in &ids {
@@ -238,6 +257,8 @@ fn a_refused_call_leaves_the_world_as_an_untouched_twin() {
             refused(world.clear_pair_response(id, id), &words);
             refused(world.reset_pair_response(id, id), &words);
             refused(world.response(id, id), &words);
+            refused(world.contacts(id, id, &ContactOptions::default()), &words);
+            refused(world.time_of_impact(id, id, &ImpactOptions::default()), &words);
         }
         refused(world.deform(ids[0], &[]), &["sphere", "vertex buffer"]);
         refused(world.deform(ids[1], &[DVec3::ZERO]), &["box", "vertex buffer"]);

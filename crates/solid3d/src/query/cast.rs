@@ -66,7 +66,7 @@ pub fn cast_shape(
 /// The same, of whatever has no closed form.
 #[inline(never)]
 fn cast_at_length(a: Placed, b: Placed, motions: [DVec3; 2]) -> Result<Option<ShapeCast>> {
-    let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
+    let (a, b) = (placed("placement_a", a.shape, a.placement)?, placed("placement_b", b.shape, b.placement)?);
     let impact = Scratch::with(|scratch| pair::cast(a, motions[0] - motions[1], b, scratch));
     Ok(impact.map(|impact| ShapeCast::new(a, b, motions, &impact)))
 }

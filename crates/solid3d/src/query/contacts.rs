@@ -59,7 +59,7 @@ pub fn contacts(
     if let Some(contact) = pair::quick_contact(on_a, on_b) {
         return Ok(vec![contact]);
     }
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let (a, b) = (placed("placement_a", a, placement_a)?, placed("placement_b", b, placement_b)?);
     Ok(Scratch::with(|scratch| pair::contacts_closely(a, b, options, scratch)))
 }
 

@@ -40,7 +40,7 @@ pub fn distance_within(
     if !matches!(bound.partial_cmp(&0.0), Some(std::cmp::Ordering::Equal | std::cmp::Ordering::Greater)) {
         return Err(Error::Negative { argument: "bound", value: bound });
     }
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let (a, b) = (placed("placement_a", a, placement_a)?, placed("placement_b", b, placement_b)?);
     let closest = pair::convex_closest_within(a, b, bound)
         .unwrap_or_else(|| Scratch::with(|scratch| pair::closest_within(a, b, bound, scratch)));
     Ok(closest.map(|closest| Distance::new(a, b, &closest)))

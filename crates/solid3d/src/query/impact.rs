@@ -95,13 +95,15 @@ pub fn time_of_impact(
 ///
 /// # Errors
 ///
-/// [`Error::NotADeformation`] when the two shapes of a motion are different ones.
+/// [`Error::NotADeformation`] when the two shapes of a motion are different ones. Placements are named as they are by
+/// [`time_of_impact`]: `from_a`, `to_a`, `from_b`, `to_b`.
 pub fn time_of_impact_deforming(
     a: [(&Shape, &DAffine3); 2],
     b: [(&Shape, &DAffine3); 2],
     options: &ImpactOptions,
 ) -> Result<Option<Impact>> {
-    impact_of(&moving("a", a)?, &moving("b", b)?, options, &mut Scratch::default())
+    let (a, b) = (moving("a", ["from_a", "to_a"], a)?, moving("b", ["from_b", "to_b"], b)?);
+    impact_of(&a, &b, options, &mut Scratch::default())
 }
 
 /// The same for what was checked, but for the options.
@@ -120,12 +122,14 @@ pub(crate) fn impact_of(
 
 fn moving<'a>(
     argument: &'static str,
+    [from_name, to_name]: [&'static str; 2],
     [(was, from), (is, to)]: [(&'a Shape, &'a DAffine3); 2],
 ) -> Result<Moving<'a>> {
     if !was.is_same_or_deformed(is) {
         return Err(Error::NotADeformation { argument, kinds: [was.kind(), is.kind()] });
     }
-    Ok(Moving { from: placed(was, from)?, to: placed(is, to)?, deformation: deformation(was, is) })
+    let (from, to) = (placed(from_name, was, from)?, placed(to_name, is, to)?);
+    Ok(Moving { from, to, deformation: deformation(was, is) })
 }
 
 impl From<Meeting> for Impact {

@@ -37,8 +37,8 @@ pub use crate::pair::{Faces, FromInside, Ray, RayHit, RayOptions, SurfaceHit};
 pub use crate::pair::{IntersectionCurve, Path, Polyline, PrimitivePair, Segment};
 use crate::placement;
 use crate::shape::Shape;
-pub(crate) use cast::bounded;
 pub use cast::{ShapeCast, cast_shape};
+pub(crate) use cast::bounded;
 pub use contacts::contacts;
 pub use distance::distance_within;
 pub(crate) use impact::impact_of;
@@ -84,7 +84,7 @@ fn intersects_at_length(&[a, b]: &[Placed; 2], seen: Glance) -> Result<bool> {
     if seen == Glance::Open {
         return Ok(pair::intersects_closely(a, b));
     }
-    let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
+    let (a, b) = (placed("placement_a", a.shape, a.placement)?, placed("placement_b", b.shape, b.placement)?);
     let answer = pair::convex_intersects(a, b);
     Ok(answer.unwrap_or_else(|| Scratch::with(|scratch| pair::intersects_by_class(a, b, scratch))))
 }
@@ -107,7 +107,7 @@ pub fn common_point(
     b: &Shape,
     placement_b: &DAffine3,
 ) -> Result<Option<DVec3>> {
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let (a, b) = (placed("placement_a", a, placement_a)?, placed("placement_b", b, placement_b)?);
     Ok(match Scratch::with(|scratch| pair::intersection(a, b, scratch)) {
         Relation::Common(witness) => Some(pair::midpoint(a, b, &witness)),
         Relation::Separated { .. } => None,
@@ -143,7 +143,7 @@ pub fn intersecting_primitives(
     placement_b: &DAffine3,
     mut found: impl FnMut(u32, u32) -> ControlFlow<()>,
 ) -> Result<()> {
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let (a, b) = (placed("placement_a", a, placement_a)?, placed("placement_b", b, placement_b)?);
     let mut found = |i, j| found(a.shape.owner(i), b.shape.owner(j));
     let _ = Scratch::with(|scratch| pair::meeting_primitives(a, b, scratch, &mut found));
     Ok(())
@@ -167,7 +167,7 @@ pub fn separating_axis(
     b: &Shape,
     placement_b: &DAffine3,
 ) -> Result<Option<DVec3>> {
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let (a, b) = (placed("placement_a", a, placement_a)?, placed("placement_b", b, placement_b)?);
     Ok(Scratch::with(|scratch| pair::axis(a, b, scratch)))
 }
 
@@ -205,7 +205,7 @@ pub fn distance(a: &Shape, placement_a: &DAffine3, b: &Shape, placement_b: &DAff
 /// What [`distance`](distance()) says, where nothing was said yet.
 #[inline(never)]
 fn distance_at_length(a: Placed, b: Placed) -> Result<Distance> {
-    let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
+    let (a, b) = (placed("placement_a", a.shape, a.placement)?, placed("placement_b", b.shape, b.placement)?);
     let closest = pair::convex_closest_within(a, b, f64::INFINITY).flatten();
     let closest = closest.unwrap_or_else(|| Scratch::with(|scratch| pair::closest(a, b, scratch)));
     Ok(Distance::new(a, b, &closest))
@@ -269,7 +269,7 @@ pub fn intersection_curve(
     b: &Shape,
     placement_b: &DAffine3,
 ) -> Result<IntersectionCurve> {
-    let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+    let (a, b) = (placed("placement_a", a, placement_a)?, placed("placement_b", b, placement_b)?);
     Scratch::with(|scratch| pair::intersection_curve(a, b, scratch))
 }
 
@@ -297,7 +297,7 @@ pub fn bounds(shape: &Shape, placement: &DAffine3) -> Result<Aabb> {
 /// The same of a placement that takes a closer look.
 #[inline(never)]
 fn bounds_at_length(shape: &Shape, placement: &DAffine3) -> Result<Aabb> {
-    Ok(pair::world_bounds(placed(shape, placement)?))
+    Ok(pair::world_bounds(placed("placement", shape, placement)?))
 }
 
 /// For a look that answers only where both placements are good.
@@ -306,6 +306,6 @@ fn unchecked<'a>(shape: &'a Shape, placement: &'a DAffine3) -> Placed<'a> {
 }
 
 #[inline]
-fn placed<'a>(shape: &'a Shape, placement: &'a DAffine3) -> Result<Placed<'a>> {
-    Ok(Placed { shape, placement: placement::checked(placement)? })
+fn placed<'a>(argument: &'static str, shape: &'a Shape, placement: &'a DAffine3) -> Result<Placed<'a>> {
+    Ok(Placed { shape, placement: placement::checked(argument, placement)? })
 }

@@ -82,8 +82,8 @@ impl PairCache {
         seen: Glance,
     ) -> Result<bool> {
         if seen == Glance::Unusual {
-            placement::checked(placement_a)?;
-            placement::checked(placement_b)?;
+            placement::checked("placement_a", placement_a)?;
+            placement::checked("placement_b", placement_b)?;
         }
         let Self { a, b, memory, scratch } = self;
         let (a, b) = (unchecked(a, placement_a), unchecked(b, placement_b));
@@ -116,7 +116,7 @@ impl PairCache {
         if let Some(closest) = pair::quickly_closest(on_a, on_b) {
             return Ok(Distance::new(on_a, on_b, &closest));
         }
-        let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+        let (a, b) = (placed("placement_a", a, placement_a)?, placed("placement_b", b, placement_b)?);
         Ok(Distance::new(a, b, &pair::closest_again(a, b, memory, scratch)))
     }
 
@@ -140,7 +140,7 @@ impl PairCache {
         placement_b: &DAffine3,
     ) -> Result<Option<Penetration>> {
         let Self { a, b, memory, scratch } = self;
-        let (a, b) = (placed(a, placement_a)?, placed(b, placement_b)?);
+        let (a, b) = (placed("placement_a", a, placement_a)?, placed("placement_b", b, placement_b)?);
         let found = pair::penetration_again(a, b, memory, scratch);
         Ok(found.map(|found| Penetration::new(a, b, &found)))
     }

@@ -77,7 +77,7 @@ pub fn penetration(
 /// What [`penetration`] says, where nothing was said yet.
 #[inline(never)]
 fn penetration_at_length(a: Placed, b: Placed) -> Result<Option<Penetration>> {
-    let (a, b) = (placed(a.shape, a.placement)?, placed(b.shape, b.placement)?);
+    let (a, b) = (placed("placement_a", a.shape, a.placement)?, placed("placement_b", b.shape, b.placement)?);
     let found = Scratch::with(|scratch| pair::penetration(a, b, scratch));
     Ok(found.map(|found| Penetration::new(a, b, &found)))
 }

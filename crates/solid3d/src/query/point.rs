@@ -74,7 +74,7 @@ fn at_length(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<Closes
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 pub fn winding_number(mesh: &Shape, placement: &DAffine3, point: DVec3) -> Result<f64> {
-    let placed = placed(mesh, placement)?;
+    let placed = placed("placement", mesh, placement)?;
     bounded("point", point)?;
     let (Some(vertices), Some(triangles), ShapeKind::Mesh) = (mesh.vertices(), mesh.triangles(), mesh.kind())
     else {

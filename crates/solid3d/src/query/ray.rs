@@ -108,7 +108,7 @@ fn cast<'r>(
     wanted: Wanted,
 ) -> Result<Hits<'r>> {
     let mut hits = Hits::new(ray.checked()?, options, wanted);
-    let placed = placed(shape, placement)?;
+    let placed = placed("placement", shape, placement)?;
     Scratch::with(|scratch| pair::ray_hits(placed, &mut hits, scratch));
     Ok(hits)
 }

@@ -51,7 +51,7 @@ pub fn signed_distance(shape: &Shape, placement: &DAffine3, point: DVec3) -> Res
 /// The same, of whatever has no closed form.
 #[inline(never)]
 fn at_length(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<SignedDistance> {
-    let shape = placed(shape, placement)?;
+    let shape = placed("placement", shape, placement)?;
     let (of_point, at) = as_shape(point)?;
     let of_point = Placed { shape: of_point, placement: &at };
     Ok(Scratch::with(|scratch| pair::surface_point(shape, of_point, scratch)))

@@ -1,7 +1,7 @@
 //! Contacts of objects.
 
 use super::{ObjectId, World};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::pair::{self, ContactOptions, Manifold, Scratch};
 
 impl World {
@@ -13,19 +13,16 @@ impl World {
     /// let (mut world, block) = (World::new(), Shape::cuboid([1.0, 1.0, 1.0])?);
     /// world.add(&block, DAffine3::IDENTITY)?;
     /// world.add(&block, DAffine3::from_translation(DVec3::Y * 0.75))?;
-    /// for collision in world.test().to_vec() {
+    /// for collision in world.test() {
     ///     let contacts = world.contacts(collision.a, collision.b, &ContactOptions::default())?;
     ///     assert_eq!((contacts[0].normal, contacts[0].points.len()), (DVec3::NEG_Y, 4));
     /// }
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn contacts(&self, a: ObjectId, b: ObjectId, options: &ContactOptions) -> Result<Vec<Manifold>> {
-        if a == b {
-            return Err(Error::SameObject { id: a });
-        }
-        let known = |argument, id| self.objects.get(id).ok_or(Error::UnknownObject { argument, id });
-        let (of_a, of_b) = (known("a", a)?.placed(), known("b", b)?.placed());
+        self.check_pair(a, b)?;
         let options = options.checked()?;
+        let [of_a, of_b] = [a, b].map(|id| self.objects[id].placed());
         Ok(Scratch::with(|scratch| pair::contacts(of_a, of_b, options, scratch)))
     }
 }

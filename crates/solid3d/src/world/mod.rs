@@ -162,7 +162,7 @@ impl World {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn add_ranked(&mut self, shape: &Shape, placement: DAffine3, rank: u8) -> Result<ObjectId> {
-        placement::checked(&placement)?;
+        placement::checked("placement", &placement)?;
         if self.objects.len() >= OBJECTS_MAX {
             return Err(Error::TooMany {
                 argument: "objects",
@@ -228,7 +228,7 @@ impl World {
 
     /// Places an object: any affine map that is finite and not singular.
     pub fn set_placement(&mut self, id: ObjectId, placement: DAffine3) -> Result<()> {
-        placement::checked(&placement)?;
+        placement::checked("placement", &placement)?;
         let object = self.object_mut(id)?;
         // To the bit, for the sign of a zero may show in an answer.
         if !placement::is_same(&object.placement, &placement) {

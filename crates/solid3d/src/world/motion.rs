@@ -2,7 +2,7 @@
 
 use super::stirred::Staleness;
 use super::{ObjectId, World};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::pair::Scratch;
 use crate::query::{Impact, ImpactOptions, impact_of};
 
@@ -93,11 +93,8 @@ impl World {
         b: ObjectId,
         options: &ImpactOptions,
     ) -> Result<Option<Impact>> {
-        if a == b {
-            self.object(a)?;
-            return Err(Error::SameObject { id: a });
-        }
-        let [a, b] = [self.object(a)?.moving(), self.object(b)?.moving()];
+        self.check_pair(a, b)?;
+        let [a, b] = [a, b].map(|id| self.objects[id].moving());
         impact_of(&a, &b, options, &mut Scratch::default())
     }
 

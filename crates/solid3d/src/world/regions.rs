@@ -29,7 +29,7 @@ impl World {
     /// # Ok::<(), solid3d::Error>(())
     /// ```
     pub fn objects_in(&self, region: &Shape, at: &DAffine3) -> Result<Vec<ObjectId>> {
-        let region = Placed { shape: region, placement: placement::checked(at)? };
+        let region = Placed { shape: region, placement: placement::checked("at", at)? };
         let bounds = world_bounds(region);
         let mut found = Vec::new();
         Scratch::with(|scratch| {

@@ -74,7 +74,7 @@ pub(super) fn stretch<S: Simd>(simd: S, at: &DAffine3) -> Option<f64> {
 /// The scale of a good placement of any size: that of the same one near the size 1, whose digits are the same.
 #[inline(never)]
 fn stretch_at_length(at: &DAffine3) -> Option<f64> {
-    let linear = &placement::checked(at).ok()?.matrix3;
+    let linear = &placement::checked("placement", at).ok()?.matrix3;
     let scale = unit_scale(linear.x_axis.abs().max_element());
     let near = DAffine3 { matrix3: *linear * scale, translation: DVec3::ZERO };
     Some(dispatch!(simd => plain_square(simd, &near))?.sqrt() / scale)
