@@ -91,6 +91,55 @@ fn a_world_sees_what_its_objects_show() {
     }
 }
 
+/// The same of a shape that moves: it meets first what the earliest of all its casts meets.
+#[test]
+fn a_shape_meets_first_what_the_earliest_cast_meets() {
+    for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+        let mut rng = seeded(113);
+        let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
+        let (mut met, mut cases, mut at_start) = (0, 0, 0);
+        for round in 0..10 {
+            for i in 0..4 {
+                let shape = match i % 3 {
+                    0 => random_mesh(&mut rng, 40).shape(),
+                    _ => shape_of(&random_shape(&mut rng, 1.0)),
+                };
+                world.add_ranked(&shape, placement(&mut rng, 4.5), i % 2).unwrap();
+            }
+            if round % 3 > 0 {
+                world.refresh();
+            }
+            let objects = world.objects();
+            world.set_placement(objects[round], placement(&mut rng, 4.5)).unwrap();
+            for case in 0..20 {
+                let (shape, mut at) = (shape_of(&random_shape(&mut rng, 1.0)), placement(&mut rng, 1.0));
+                let from = direction(&mut rng) * rng.random_range(4.0..16.0);
+                let motion = (in_cube(&mut rng) * 4.0 - from) * rng.random_range(0.0..1.5);
+                at.translation += from;
+                let counts = |id: ObjectId| {
+                    case % 2 == 0 || objects.iter().position(|other| *other == id).unwrap() % 2 == 0
+                };
+                let cast = |object: ObjectId| {
+                    let (other, placed) = (world.shape(object).unwrap(), world.placement(object).unwrap());
+                    query::cast_shape(&shape, &at, motion, other, &placed, DVec3::ZERO).unwrap()
+                };
+                let casts = objects.iter().filter(|id| counts(**id)).filter_map(|&id| cast(id));
+                let earliest = casts.map(|cast| cast.time).min_by(f64::total_cmp);
+                let first = world.cast_shape(&shape, &at, motion, counts).unwrap();
+                assert_eq!(first.is_some(), earliest.is_some());
+                cases += 1;
+                let (Some(first), Some(earliest)) = (first, earliest) else { continue };
+                assert_eq!(Some(first.cast), cast(first.object));
+                assert!(counts(first.object) && first.cast.time <= earliest + 1e-8);
+                met += 1;
+                at_start += u32::from(first.cast.time == 0.0);
+            }
+        }
+        println!("{met} of {cases} shapes meet something, {at_start} where they start");
+        assert!((0.3..=0.7).contains(&(f64::from(met) / f64::from(cases))) && at_start > 5);
+    }
+}
+
 /// Law: of objects that are met at the same `t` the first in the order of pairs is told, by either broad phase, whether they were placed in it or not;
 /// also from so far that rounding leaves few values of `t` for all of a shape.
 #[test]
@@ -198,5 +247,11 @@ fn bad_input_is_refused() {
     assert!(world.cast_ray_all(&ray, &RayOptions::default(), |_| true).is_err());
     assert!(world.ray_meets(&ray, &RayOptions::default(), |_| true).is_err());
     let region = solid3d::Shape::sphere(1.0).unwrap();
-    assert!(world.objects_in(&region, &DAffine3::from_scale(glam::DVec3::ZERO)).is_err());
+    let flat = DAffine3::from_scale(glam::DVec3::ZERO);
+    assert!(world.objects_in(&region, &flat).is_err());
+    let cast = |at: &DAffine3, motion| world.cast_shape(&region, at, motion, |_| true);
+    assert_eq!(cast(&DAffine3::IDENTITY, glam::DVec3::ZERO), Ok(None));
+    assert!(cast(&flat, glam::DVec3::X).unwrap_err().to_string().starts_with("placement is singular"));
+    let error = cast(&DAffine3::IDENTITY, glam::DVec3::NAN).unwrap_err().to_string();
+    assert!(error.starts_with("motion is (NaN, NaN, NaN)"), "{error}");
 }

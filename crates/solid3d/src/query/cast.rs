@@ -71,6 +71,13 @@ fn cast_at_length(a: Placed, b: Placed, motions: [DVec3; 2]) -> Result<Option<Sh
     Ok(impact.map(|impact| ShapeCast::new(a, b, motions, &impact)))
 }
 
+/// The same of a shape that moves and one that stands still, whose placements were checked.
+pub(crate) fn cast_of(a: Placed, motion: DVec3, b: Placed, scratch: &mut Scratch) -> Option<ShapeCast> {
+    let impact = pair::by_cast(a, motion, b, Some, || None);
+    let impact = impact.unwrap_or_else(|| pair::cast(a, motion, b, scratch));
+    impact.map(|impact| ShapeCast::new(a, b, [motion, DVec3::ZERO], &impact))
+}
+
 impl ShapeCast {
     #[inline(always)]
     fn new(a: Placed, b: Placed, [motion_a, motion_b]: [DVec3; 2], impact: &Impact) -> ShapeCast {

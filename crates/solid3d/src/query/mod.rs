@@ -38,7 +38,7 @@ pub use crate::pair::{IntersectionCurve, Path, Polyline, PrimitivePair, Segment}
 use crate::placement;
 use crate::shape::Shape;
 pub use cast::{ShapeCast, cast_shape};
-pub(crate) use cast::bounded;
+pub(crate) use cast::{bounded, cast_of};
 pub use contacts::contacts;
 pub use distance::distance_within;
 pub(crate) use impact::impact_of;

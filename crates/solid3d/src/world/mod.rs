@@ -4,6 +4,7 @@
 
 mod arena;
 mod candidates;
+mod casts;
 mod clearance;
 mod collision;
 mod contacts;
@@ -28,6 +29,7 @@ mod threads;
 
 use glam::{DAffine3, DVec3};
 
+pub use casts::ObjectCast;
 pub use collision::{Collision, Contact};
 pub use event::{Event, EventKind};
 pub use motion::{Motion, When};

@@ -18,6 +18,11 @@ pub struct ObjectHit {
     pub hit: RayHit,
 }
 
+/// The way of a ray.
+fn path(ray: &Ray) -> TreeRay {
+    TreeRay { origin: ray.origin, direction: ray.direction, half_extents: DVec3::ZERO }
+}
+
 impl World {
     /// What a ray or segment meets first, among the objects that `counts` lets through; `None` when it meets nothing.
     /// Of objects that are met at the same `t`, the one that comes first in the order of pairs.
@@ -45,7 +50,7 @@ impl World {
         mut counts: impl FnMut(ObjectId) -> bool,
     ) -> Result<Option<ObjectHit>> {
         let (ray, mut best) = (ray.checked()?, None::<ObjectHit>);
-        self.along(ray, |object, until, scratch| {
+        self.along(&path(ray), ray.max, |object, until, scratch| {
             if counts(object) {
                 let mut hits = Hits::new(ray, options, Wanted::First);
                 hits.until = until;
@@ -73,7 +78,7 @@ impl World {
         mut counts: impl FnMut(ObjectId) -> bool,
     ) -> Result<Vec<ObjectHit>> {
         let (ray, mut all) = (ray.checked()?, Vec::new());
-        self.along(ray, |object, until, scratch| {
+        self.along(&path(ray), ray.max, |object, until, scratch| {
             if counts(object) {
                 let mut hits = Hits::new(ray, options, Wanted::All);
                 ray_hits(self.objects[object].placed(), &mut hits, scratch);
@@ -96,7 +101,7 @@ impl World {
         mut counts: impl FnMut(ObjectId) -> bool,
     ) -> Result<bool> {
         let (ray, mut met) = (ray.checked()?, false);
-        self.along(ray, |object, until, scratch| {
+        self.along(&path(ray), ray.max, |object, until, scratch| {
             if !met && counts(object) {
                 let mut hits = Hits::new(ray, options, Wanted::Any);
                 ray_hits(self.objects[object].placed(), &mut hits, scratch);
@@ -107,19 +112,22 @@ impl World {
         Ok(met)
     }
 
-    /// Visits the objects whose boxes a ray meets, about from the nearest on, each with the greatest `t` that is of interest; each
-    /// visit gives the new one.
-    fn along(&self, ray: &Ray, mut visit: impl FnMut(ObjectId, f64, &mut Scratch) -> f64) {
-        let mut until = ray.max;
-        let ray = TreeRay { origin: ray.origin, direction: ray.direction, half_extents: DVec3::ZERO };
-        let bound = bound_along(&ray);
+    /// Visits the objects whose boxes a ray, or a box that moves along one, meets up to `until`, about from the nearest on, each with the
+    /// greatest `t` that is of interest; each visit gives the new one.
+    pub(super) fn along(
+        &self,
+        path: &TreeRay,
+        mut until: f64,
+        mut visit: impl FnMut(ObjectId, f64, &mut Scratch) -> f64,
+    ) {
+        let bound = bound_along(path);
         Scratch::with(|scratch| {
             for (id, bounds) in self.elsewhere() {
                 if matters(bound(&bounds), until) {
                     until = visit(id, until, scratch);
                 }
             }
-            self.broad.for_each_along(&ray, until, &mut |proxy| {
+            self.broad.for_each_along(path, until, &mut |proxy| {
                 if let Some(id) = self.in_place(proxy) {
                     until = visit(id, until, scratch);
                 }
