@@ -7,6 +7,7 @@ mod enclosed;
 mod facets;
 mod hulled;
 mod kind;
+mod measures;
 mod parts;
 mod radius;
 mod simple;
