@@ -83,13 +83,13 @@ fn programs_pass() {
 fn headers_suit_every_dialect() {
     if has("cc") {
         for dialect in ["-std=c89", "-std=c99", "-std=c11"] {
-            run(compile("header.c", Linking::Shared, &[dialect, "-pedantic"]));
+            run(compile("header.c", Linking::Shared, &[dialect, "-pedantic", "-Wshadow", "-Wconversion"]));
         }
     }
     if has("c++") {
         for dialect in ["-std=c++98", "-std=c++11", "-std=c++14", "-std=c++17", "-std=c++20", "-std=c++2b"] {
             for program in ["header.c", "classes.cpp", "original.cpp"] {
-                run(compile(program, Linking::Shared, &[dialect, "-pedantic"]));
+                run(compile(program, Linking::Shared, &[dialect, "-pedantic", "-Wshadow", "-Wconversion"]));
             }
         }
         for program in ["classes.cpp", "original.cpp"] {

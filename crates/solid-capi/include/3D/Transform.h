@@ -9,8 +9,8 @@ class Transform {
 public:
     // The identity.
     Transform() {}
-    explicit Transform(const Matrix& basis, const Point& origin = Point()) : basis(basis), origin(origin) {}
-    explicit Transform(const Quaternion& rotation, const Point& origin = Point()) : basis(rotation), origin(origin) {}
+    explicit Transform(const Matrix& m, const Point& p = Point()) : basis(m), origin(p) {}
+    explicit Transform(const Quaternion& q, const Point& p = Point()) : basis(q), origin(p) {}
     // From a 4x4 matrix by columns, as in OpenGL; the bottom row is ignored.
     explicit Transform(const float m[16]) { setValue(m); }
     explicit Transform(const double m[16]) { setValue(m); }
