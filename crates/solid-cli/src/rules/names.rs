@@ -32,7 +32,13 @@ impl<'a> NameIndex<'a> {
         found
     }
 
-    /// What matched nothing, in words, a line each.
+    /// Notes that both sides of a rule for pairs name one object.
+    pub fn note_one_object(&mut self, name: &Names) {
+        self.warnings
+            .push(format!("{}: a and b are both {:?}; a pair needs two objects", name.place, name.text));
+    }
+
+    /// What matched nothing, or no pair, in words, a line each.
     pub fn into_warnings(self) -> Vec<String> {
         self.warnings
     }

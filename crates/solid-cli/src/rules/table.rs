@@ -100,7 +100,11 @@ struct Paired<'a> {
 
 impl<'a> Paired<'a> {
     fn find(rule: &'a PairRule, index: &mut NameIndex) -> Self {
-        Paired { rule, these: index.matching(&rule.a), those: index.matching(&rule.b) }
+        let (these, those) = (index.matching(&rule.a), index.matching(&rule.b));
+        if rule.a.pattern.is_name() && rule.a.text == rule.b.text && !these.is_empty() {
+            index.note_one_object(&rule.a);
+        }
+        Paired { rule, these, those }
     }
 
     /// The pairs of objects, unless they make too many.
@@ -277,5 +281,14 @@ mod tests {
             "r.toml:5: \"x*\" matches no object",
         ];
         assert_eq!(case.warnings, expected);
+    }
+
+    #[test]
+    fn a_pair_of_one_object_is_named() {
+        let of = |a: &str, b: &str| {
+            case(&format!("[[pair]]\na = \"{a}\"\nb = \"{b}\"\nresponse = \"ignore\""), None, &[]).warnings
+        };
+        assert_eq!(of("ship", "ship"), ["r.toml:2: a and b are both \"ship\"; a pair needs two objects"]);
+        assert_eq!(of("ship*", "ship*"), [""; 0]); // there may be others in another scene
     }
 }
