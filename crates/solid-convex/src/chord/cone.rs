@@ -28,7 +28,8 @@ impl Quadratic {
         // No difference of nearly equal numbers (Press et al., *Numerical Recipes*, section 5.6).
         let q = -(b + discriminant.max(0.0).sqrt().copysign(b));
         if q == 0.0 {
-            return Some([0.0, 0.0]);
+            // Where `a` is 0 too, it has the sign of `c` everywhere.
+            return (a != 0.0 || c <= 0.0).then_some([0.0, 0.0]);
         }
         let (x, y) = (q / a, c / q);
         Some([x.min(y), x.max(y)])
@@ -46,7 +47,8 @@ fn endless_cone(foot: DVec3, along: DVec3, apex: f64, radius: f64, height: f64) 
     let turn = foot.x * along.z - foot.z * along.x;
     let quadratic = Quadratic {
         discriminant: h * (r * (at_apex.x * at_apex.x + at_apex.z * at_apex.z) - h * turn * turn),
-        a: h * (along.x * along.x + along.z * along.z) - r * along.y * along.y,
+        // -0 of a line that is parallel to the side: its endless root is then that of those a little steeper.
+        a: -(r * along.y * along.y - h * (along.x * along.x + along.z * along.z)),
         b: h * (foot.x * along.x + foot.z * along.z) + r * depth * along.y,
         c: h * (foot.x * foot.x + foot.z * foot.z) - r * depth * depth,
     };
@@ -63,13 +65,11 @@ fn endless_cone(foot: DVec3, along: DVec3, apex: f64, radius: f64, height: f64) 
         let below = depth_at(0.5 * first + 0.5 * last) >= 0.0;
         return below.then(|| Chord { enter: end(first), leave: end(last) });
     }
-    // Steeper: from one end on downward. Parallel to the side, one root is endless.
+    // Steeper: from one end on downward; which is endless where the line is parallel to the side, in the upper half.
     Some(if along.y < 0.0 {
-        let from = if last.is_finite() { last } else { first };
-        Chord { enter: end(from), ..Chord::WHOLE }
+        Chord { enter: end(last), ..Chord::WHOLE }
     } else {
-        let to = if first.is_finite() { first } else { last };
-        Chord { leave: end(to), ..Chord::WHOLE }
+        Chord { leave: end(first), ..Chord::WHOLE }
     })
 }
 

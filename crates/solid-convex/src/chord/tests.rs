@@ -173,6 +173,13 @@ fn special_lines() {
         assert!((enter - expected).abs() < 1e-15 && (leave - 1.5).abs() < 1e-15, "{enter} {leave}");
     }
     assert_eq!(slanted(-2.6), None);
+    // In the half above the apex, and beside the side in the plane that touches it, there is nothing, whichever way they run.
+    for (origin, direction) in [
+        (DVec3::new(2.0, 2.0, 0.0), DVec3::new(1.0, -2.0, 0.0)),
+        (DVec3::new(0.0, 1.0, 0.25), DVec3::new(1.0, -2.0, 0.0)),
+    ] {
+        assert_eq!([direction, -direction].map(|direction| through(&cone, origin, direction)), [None; 2]);
+    }
     let block = Cuboid::new(DVec3::splat(2.0)).unwrap();
     let block = |line: &Line| block.chord(line);
     // Along a face, and beside it.
