@@ -522,6 +522,30 @@ fn internal_edges_have_no_normals() {
     }
 }
 
+/// Triangles of which two corners are one change no contact: they are but edges and corners of others.
+#[test]
+fn collapsed_triangles_have_no_normals() {
+    let mut rng = seeded(SEED);
+    let collapsed = |mesh: &Shape| {
+        let triangles = mesh.triangles().unwrap();
+        let more = triangles.iter().flat_map(|&[i, j, k]| [[i, i, j], [j, k, j], [k; 3]]);
+        let all: Vec<_> = triangles.iter().copied().chain(more).collect();
+        Shape::mesh(mesh.vertices().unwrap(), all).unwrap()
+    };
+    let (floor, mesh) = (collapsed(&floor(10)), collapsed(&cube_mesh()));
+    let sphere = Shape::sphere(0.5).unwrap();
+    for step in 0..60 {
+        let depth = if step % 3 == 0 { 0.2 } else { 0.001 };
+        let place = at(rng.random_range(-2.0..2.0), 0.5 - depth, rng.random_range(-2.0..2.0))
+            * DAffine3::from_rotation_y(rng.random_range(0.0..TAU));
+        for (shape, count) in [(&cube(), 4), (&mesh, 4), (&sphere, 1)] {
+            assert_flat(&only(shape, &place, &floor, &DAffine3::IDENTITY), DVec3::Y, depth, count);
+        }
+        let above = at(0.0, 1.0 - depth, 0.0) * place;
+        assert_flat(&only(&cube(), &above, &mesh, &place), DVec3::Y, depth, 4);
+    }
+}
+
 /// A convex edge of a mesh is no internal one.
 #[test]
 fn ridges_have_normals() {

@@ -11,7 +11,7 @@ use crate::bounds::Aabb;
 /// How far a neighbour may rise above the plane of a triangle in a surface that is convex, relative to its extent.
 const FLATNESS: f64 = 1e-9;
 
-/// What was found out about a mesh of which each edge has one triangle on either side.
+/// What was found out about a mesh of which each edge has one triangle on either side. Triangles with two corners at one position do not count.
 #[derive(Debug, Default)]
 pub(crate) struct Enclosed {
     /// Of a solid, and of what is convex: 1 when the triangles run around counter-clockwise seen from outside, -1 when clockwise. Else 0.
@@ -32,15 +32,11 @@ impl Enclosed {
     /// O(n log n) of what is convex.
     pub fn of(topology: &Topology, mesh: Positioned, bounds: &Aabb, is_solid: bool) -> Option<Enclosed> {
         let Positioned { vertices, triangles } = mesh;
-        let welded = || triangles.iter().map(|triangle| triangle.map(|i| topology.welded(i)));
         let (center, scale) = (bounds.center(), unit_scale(bounds.half_extents().max_element()));
         let at = |i: u32| (vertices[i as usize] - center) * scale;
         // Whether some neighbour is above the plane of a triangle, and some below, on the side from which its corners run clockwise.
         let [mut above, mut below] = [false; 2];
-        for [i, j, k] in welded() {
-            if i == j || j == k || k == i {
-                return None;
-            }
+        for [i, j, k] in triangles.iter().filter_map(|&triangle| topology.spread(triangle)) {
             let normal = (at(j) - at(i)).cross(at(k) - at(i)).normalize_or_zero();
             for edge in [[i, j], [j, k], [k, i]] {
                 let third = topology.beyond(triangles, edge)?;
@@ -62,13 +58,18 @@ impl Enclosed {
 
 /// The body that a closed surface which nowhere rises bounds, if it is of one part that is a sphere. Euler's formula tells the sphere.
 fn convex(topology: &Topology, Positioned { vertices, triangles }: Positioned) -> Option<(Hulled, Vec<u32>)> {
-    let mut corners: Vec<u32> = triangles.as_flattened().iter().map(|&i| topology.welded(i)).collect();
+    let spread: Vec<[u32; 3]> = triangles.iter().filter_map(|&triangle| topology.spread(triangle)).collect();
+    let mut corners = spread.as_flattened().to_vec();
     corners.sort_unstable();
     corners.dedup();
-    let edges = 3 * triangles.len() / 2;
+    let edges = 3 * spread.len() / 2;
     let twins: Vec<_> = (0..vertices.len() as u32).map(|i| [i, topology.welded(i)]).collect();
     let is_one = || parts(vertices.len(), triangles.iter().map(|t| t.as_slice()), &twins).len() == 1;
-    if corners.len() + triangles.len() != edges + 2 || !is_one() {
+    let is_corner = |&i: &u32| corners.binary_search(&topology.welded(i)).is_ok();
+    if corners.len() + spread.len() != edges + 2
+        || !is_one()
+        || !triangles.as_flattened().iter().all(is_corner)
+    {
         return None;
     }
     let points: Vec<DVec3> = corners.iter().map(|&i| vertices[i as usize]).collect();
@@ -108,6 +109,13 @@ mod tests {
             assert_eq!(found(&points, &triangles, false), (1.0, true), "case {case}");
             assert_eq!(found(&points, &turned, case % 2 == 0), (-1.0, true), "case {case}");
             assert_eq!(found(&split, &of_split, case % 2 == 0), (1.0, true), "case {case}");
+            let [i, j, _] = triangles[0];
+            let collapsed = [&triangles[..], &[[i, i, j], [i, j, i], [j; 3]]].concat();
+            assert_eq!(found(&points, &collapsed, case % 2 == 0), (1.0, true), "collapsed, case {case}");
+            let spiked =
+                [&triangles[..], &[[i, i, points.len() as u32], [i, points.len() as u32, i]]].concat();
+            let beyond = [&points[..], &[points[i as usize] * 3.0]].concat();
+            assert!(!found(&beyond, &spiked, case % 2 == 0).1, "with a spike, case {case}");
 
             assert_eq!(found(&points, &triangles[1..], false), (0.0, false), "open, case {case}");
             let one_turned: Vec<_> = turned[..1].iter().chain(&triangles[1..]).copied().collect();

@@ -116,7 +116,7 @@ impl Topology {
         let (mut before, mut after) = (SmallVec::<[u32; 8]>::new(), SmallVec::<[u32; 8]>::new());
         let mut plane = None;
         for &triangle in self.around(vertex) {
-            let corners = triangles[triangle as usize].map(|i| self.welded(i));
+            let Some(corners) = self.spread(triangles[triangle as usize]) else { continue };
             // The triangle from this vertex on.
             let Some(first) = corners.iter().position(|&corner| corner == vertex) else { return false };
             let [next, last] = [1, 2].map(|step| corners[(first + step) % 3]);
@@ -136,13 +136,18 @@ impl Topology {
         before == after && before.windows(2).all(|pair| pair[0] != pair[1])
     }
 
+    /// The corners of a triangle, welded; `None` where two of them are one.
+    pub(super) fn spread(&self, triangle: [u32; 3]) -> Option<[u32; 3]> {
+        let [i, j, k] = triangle.map(|i| self.welded(i));
+        (i != j && j != k && k != i).then_some([i, j, k])
+    }
+
     /// The third corner of the triangle on the other side of an edge, where there is one on each side, and the one runs through it as the other
     /// does not. Cost: follows the triangles around the end that has fewer.
     pub(super) fn beyond(&self, triangles: &[[u32; 3]], [from, to]: [u32; 2]) -> Option<u32> {
         let star = [self.around(from), self.around(to)].into_iter().min_by_key(|star| star.len())?;
         let (mut along, mut against, mut third) = (0, 0, None);
-        for &triangle in star {
-            let [i, j, k] = triangles[triangle as usize].map(|i| self.welded(i));
+        for [i, j, k] in star.iter().filter_map(|&triangle| self.spread(triangles[triangle as usize])) {
             for (edge, other) in [([i, j], k), ([j, k], i), ([k, i], j)] {
                 along += i32::from(edge == [from, to]);
                 if edge == [to, from] {

@@ -131,9 +131,9 @@ impl<'a> Side<'a> {
     }
 
     /// The normal, which may be off by a tilt, if the surface has it where it is touched; else that of the triangle, or of a face next to it.
-    /// `None` where there is no contact along any of these: a ball that is not over the triangle.
+    /// `None` where there is no contact along any of these: a ball that is not over the triangle, or what is no triangle and left to those around it.
     pub fn corrected(&self, out: DVec3, tilt: f64) -> Option<Corrected> {
-        let Some(normal) = self.body.plane else { return Some(Corrected::Kept(out)) };
+        let Some(normal) = self.body.plane else { return self.without_plane(out, tilt) };
         let cosine = normal.dot(out);
         if is_parallel(normal, out) {
             return Some(Corrected::Kept(normal * cosine.signum()));
@@ -153,6 +153,15 @@ impl<'a> Side<'a> {
         };
         let own = normal * side.signum();
         Some(self.shorter_around(own).map_or(Corrected::Replaced(own), Corrected::Adopted))
+    }
+
+    /// The same of what has no plane. A triangle of which two corners are one is but an edge of others: normals that the surface does not have
+    /// there are theirs to correct.
+    #[cold]
+    fn without_plane(&self, out: DVec3, tilt: f64) -> Option<Corrected> {
+        let vertices = self.stars.welded(self.body.primitive);
+        let is_body = vertices.len() > 3 || !self.stars.have_triangles(&vertices);
+        (is_body || self.stars.have(out, tilt, &vertices)).then_some(Corrected::Kept(out))
     }
 
     /// The normal of a face next to the triangle that the surface has where they meet, when the way out along it is shorter

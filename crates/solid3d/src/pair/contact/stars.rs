@@ -299,6 +299,15 @@ impl<'a> Stars<'a> {
         Some((face::triangle_normal(placed)?, placed[0]))
     }
 
+    /// Whether a triangle that has a normal is at an edge between some of the vertices, or at the only one.
+    pub fn have_triangles(&self, vertices: &[u32]) -> bool {
+        let is_one = vertices.iter().all(|vertex| *vertex == vertices[0]);
+        let edges = vertices.iter().flat_map(|&i| vertices.iter().map(move |&j| [i, j]));
+        edges
+            .filter(|[i, j]| is_one || i < j)
+            .any(|edge| self.around_all(&edge).any(|primitive| self.normal_and_point(primitive).is_some()))
+    }
+
     /// The vertices that stand for those of a primitive and all at their positions.
     pub fn welded(&self, primitive: u32) -> SmallVec<[u32; 4]> {
         self.complex.welded(primitive).collect()
