@@ -16,7 +16,7 @@ use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{Pair, Regime, direction, in_cube, random_pair, seeded};
 use solid3d::query::{self, ContactOptions, ContactPoint, Feature, Manifold};
-use solid3d::{Motion, Response, Shape, When, World, WorldOptions, glam};
+use solid3d::{ComplexShapeBuilder, Motion, Response, Shape, When, World, WorldOptions, glam};
 
 const SEED: u64 = 20_262;
 
@@ -427,6 +427,22 @@ fn what_is_nearer_than_the_margin_has_a_contact() {
     }
     println!("{apart} of {cases} are apart");
     assert!(apart * 10 > cases * 9, "{apart} of {cases}");
+}
+
+/// A needle stands on its end, also over a floor that it does not meet yet.
+#[test]
+fn a_needle_over_a_floor_is_within_the_margin() {
+    let needle = Shape::convex_hull(&[DVec3::Y, -DVec3::Y]).unwrap();
+    let segment = ComplexShapeBuilder::new([DVec3::Y, -DVec3::Y]).segment([0, 1]).build().unwrap();
+    for tilt in [0.0, 1e-9, 1e-7, 1e-6, 1e-3] {
+        let place = at(0.3, 1e-4 + f64::cos(tilt), 0.2) * DAffine3::from_rotation_z(tilt);
+        for shape in [&needle, &segment] {
+            let found =
+                query::contacts(shape, &place, &floor(8), &DAffine3::IDENTITY, &within(1e-3)).unwrap();
+            assert_eq!(found.len(), 1, "tilted by {tilt}");
+            assert_flat(&found[0], DVec3::Y, -1e-4, 1);
+        }
+    }
 }
 
 /// Two unit cubes of triangles, 0.30 in each other: that deep, everywhere.

@@ -72,6 +72,17 @@ impl Face {
         self.corners.len() < 3 || self.cosine >= FACING_COSINE
     }
 
+    /// A body that is a segment or a point; of a segment seen from its end, that.
+    fn slight(corners: Corners, direction: DVec3) -> Face {
+        let mut face = Face { corners, normal: direction, number: 0, cosine: 1.0 };
+        if let [from, to] = face.corners[..]
+            && is_aligned((to.point - from.point).normalize_or_zero().dot(direction).abs())
+        {
+            face.slim(direction);
+        }
+        face
+    }
+
     /// What a point within it is of.
     pub fn feature(&self) -> Feature {
         match self.corners[..] {
@@ -333,8 +344,7 @@ impl<'a> Placed<'a> {
         let named = |i: u32| names.map_or(i, |names| names[i as usize]);
         let corner = |&i: &u32| self.corner(points[i as usize], named(i));
         let Some(number) = self.best_facet(hull, direction, hull.polytope().support_index(local)) else {
-            let corners = facets.extreme().iter().map(corner).collect();
-            return Face { corners, normal: direction, number: 0, cosine: 1.0 };
+            return Face::slight(facets.extreme().iter().map(corner).collect(), direction);
         };
         let facet = facets.get(number);
         let normal = self.map.normal(facet.normal);
@@ -378,7 +388,7 @@ impl<'a> Placed<'a> {
             corners = longest.expect("a triangle has edges")[..].into();
         }
         corners.dedup_by(|x, y| x.point == y.point);
-        Face { corners, normal: direction, number: 0, cosine: 1.0 }
+        Face::slight(corners, direction)
     }
 }
 
