@@ -163,8 +163,8 @@ fn weighed<S: Simd>(simd: S, gaps: [f32x8<S>; 3], weights: &Weights) -> f32x8<S>
     let [x, y, z] = three(
         #[inline(always)]
         |axis| {
-            // What is not a number is not greater, and counts nothing.
-            let positive = gaps[axis].simd_gt(zero).select(gaps[axis], zero).min(splat(simd, GAP_MAX));
+            // What is not a number counts nothing.
+            let positive = gaps[axis].max_precise(zero).min(splat(simd, GAP_MAX));
             positive * positive
         },
     );

@@ -84,7 +84,7 @@ impl Tree {
                 |bounds| self.normal.pack_any(&bounds),
             ),
             weights,
-            per_unit: units / (1.0 - ROUNDING),
+            per_unit: units * (1.0 + 2.0 * ROUNDING),
             reach: round_down((radius * units).min(f64::from(f32::MAX))),
             units: round_down(units.min(f64::from(f32::MAX))),
         }
