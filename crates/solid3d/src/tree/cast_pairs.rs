@@ -66,7 +66,7 @@ pub(crate) fn first_pairs<A, B>(
     let duel = Duel::one_by_one(a, b, relative);
     let box_a = |place: Place| moving_a(&a.normal.unpack(&a.box_at(place)));
     let box_b = |place: Place| moving_b(&b.normal.unpack(&b.box_at(place)));
-    let Traversal { counters, near_pairs: stack, .. } = traversal;
+    let Traversal { counters, pairs_ahead: stack, .. } = traversal;
     stack.clear();
     stack.push((0.0, duel.roots()));
     while let Some((first, pair)) = stack.pop() {

@@ -10,9 +10,9 @@ use solid_convex::simd::part;
 
 use super::crossing::rows;
 use super::lanes::splat;
-use super::node::WIDTH;
 use super::patch::{Patch, Vector, dot, transposed_product};
 use super::slabs::{Eight, Slabs};
+use super::squares::{raised, reaching};
 use super::{Place, Tree};
 
 /// Two trees, in a space in which distances count.
@@ -26,7 +26,7 @@ pub(crate) struct Facing<'t> {
 /// reach: the direction has a norm of 1, so a sum of coordinates of 1.74. Then the distance of the centres along it is off by
 /// 14u; a support point's height by 60u at most for each of both, in proportion to their share of the reach (8.7u from the direction taken
 /// to tree coordinates, 27u from the box, 24u from the slab); and the two subtractions add 25u. This is 128u.
-const MARGIN: f64 = 64.0 * f32::EPSILON as f64;
+const MARGIN: f32 = 64.0 * f32::EPSILON;
 
 /// Pays for a direction's norm that is 1 up to rounding only.
 const NORM: f64 = 1.0 - 8.0 * f32::EPSILON as f64;
@@ -51,7 +51,6 @@ pub(super) struct Faces<'t> {
     /// From the origin of the tree coordinates of `b` to that of `a`.
     offset: DVec3,
     unit: f64,
-    margin: f64,
 }
 
 impl<'t> Faces<'t> {
@@ -79,56 +78,47 @@ impl<'t> Faces<'t> {
             sides: [side(a, of_a, slabs_a), side(b, of_b, slabs_b)],
             offset: offset * unit.recip(),
             unit,
-            margin: MARGIN * unit,
         })
     }
 
-    /// Raises lower bounds of the distances of the lanes of a node and what hangs at a place of the other tree, until none is below `best`; the
-    /// node is of the first tree for `OF` = 0, of the second for 1. What was near was apart along `kept`, of length one, or zero.
+    /// Squares of the distances of the lanes of a node and what hangs at a place of the other tree, raised until none is below a limit; the node is of the
+    /// first tree for `OF` = 0, of the second for 1. A length of one in the world is so many `units`. What was near was apart along `kept`, of length one, or
+    /// zero.
     #[inline(always)]
-    pub fn raise<S: Simd, const OF: usize>(
+    pub fn raised<S: Simd, const OF: usize>(
         &self,
         simd: S,
-        node: usize,
-        place: Place,
+        (node, place): (usize, Place),
         kept: DVec3,
-        best: f64,
-        bounds: &mut [f64; WIDTH],
-    ) {
+        units: f32,
+        limit: f32,
+        squares: f32x8<S>,
+    ) -> f32x8<S> {
         let (many, one) = (&self.sides[OF], &self.sides[1 - OF]);
         let offset = if OF == 0 { -self.offset } else { self.offset };
+        let units = splat(simd, (self.unit * f64::from(units) * NORM) as f32);
+        let by = {
+            #[inline(always)]
+            |squares: f32x8<S>, gap: f32x8<S>| raised(simd, squares, (gap - splat(simd, MARGIN)) * units)
+        };
         part!(simd => {
             let lanes = Patch::lanes(simd, many.tree, many.slabs, node);
             let single = Patch::one(simd, one.tree, one.slabs, place);
             let gaps = Gaps::new(simd, many, lanes, one, single, offset);
-            let zero = splat(simd, 0.0);
             let kept = [splat(simd, kept.x as f32), splat(simd, kept.y as f32), splat(simd, kept.z as f32)];
-            if !self.take(gaps.along(simd, &kept).max(zero).to_array(), best, bounds) {
-                return;
+            let squares = by(squares, gaps.along(simd, &kept));
+            if reaching(simd, squares, limit) == u32::MAX {
+                return squares;
             }
-            let mut gap = zero;
+            let mut gap = splat(simd, 0.0);
             for direction in &gaps.directions(simd) {
                 let squared = dot(direction, direction);
                 let per_length = splat(simd, 1.0) / squared.max(splat(simd, TINY)).sqrt();
                 let unit = [direction[0] * per_length, direction[1] * per_length, direction[2] * per_length];
                 gap = gap.max(gaps.along(simd, &unit));
             }
-            self.take(gap.to_array(), best, bounds);
-        });
-    }
-
-    /// Raises bounds by gaps; whether any is below `best` then.
-    #[inline(always)]
-    fn take(&self, gaps: [f32; WIDTH], best: f64, bounds: &mut [f64; WIDTH]) -> bool {
-        let mut some_below = false;
-        for (bound, gap) in bounds.iter_mut().zip(gaps) {
-            let raised = (f64::from(gap) * self.unit - self.margin) * NORM;
-            if raised > *bound {
-                *bound = raised;
-            }
-            some_below |= *bound < best;
-        }
-        some_below
+            by(squares, gap)
+        })
     }
 }
 

@@ -1,11 +1,10 @@
 //! What distances in two local spaces are worth in the world.
 
-use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x8, f64x4};
 use solid_convex::simd::each;
 
 use super::lanes::Weights;
-use super::normal::Normal;
+use super::normal::{Normal, round_down};
+use super::squares::limit;
 use glam::DVec3;
 
 /// How the placements of two trees stretch distances; all are lower bounds, and zero is always valid.
@@ -49,15 +48,17 @@ impl PairMetric {
     }
 }
 
-/// Pays for the rounding of all weighing, about ten operations in `f32` and the root of what they gave, with sixteen times 2^-24.
-pub(super) const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
+/// Pays for the rounding of all weighing, about ten operations in `f32` on squares, and of some five on what raises them, with sixteen times 2^-24.
+const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
 /// A metric in tree coordinates.
 pub(super) struct Folded {
     pub a: Weights,
     pub b: Weights,
-    /// World distance of one unit, so chosen that no weight exceeds 1.
-    pub unit: f64,
+    /// A length in the world times this is at least that many units; these are so chosen that no weight exceeds 1.
+    pub per_unit: f64,
+    /// As an `f32`, it is at most that many, less what rounding may add to squares.
+    pub units: f32,
 }
 
 impl Folded {
@@ -76,15 +77,17 @@ impl Folded {
             #[inline(always)]
             |axes: DVec3, norm: f64| Weights { axes: each(axes.to_array(), squared), norm: squared(norm) }
         };
-        let unit = if inverse > 0.0 { unit } else { 0.0 };
-        Folded { a: weights(axes_a, norm_a), b: weights(axes_b, norm_b), unit }
+        Folded {
+            a: weights(axes_a, norm_a),
+            b: weights(axes_b, norm_b),
+            per_unit: if inverse > 0.0 { inverse * (1.0 + 2.0 * ROUNDING) } else { f64::INFINITY },
+            units: round_down(inverse.min(f64::from(f32::MAX))),
+        }
     }
 
-    /// The lower bounds in the world of eight squared distances in units.
+    /// What has a square of at least this is no nearer in the world than a distance.
     #[inline(always)]
-    pub fn world<S: Simd>(&self, simd: S, squared: f32x8<S>) -> [f64x4<S>; 2] {
-        let (low, high) = simd.widen_f32x8(squared.sqrt());
-        let unit = f64x4::splat(simd, self.unit * (1.0 - ROUNDING));
-        [low * unit, high * unit]
+    pub fn limit(&self, distance: f64) -> f32 {
+        limit(distance * self.per_unit)
     }
 }

@@ -76,6 +76,7 @@ mod relative;
 mod siblings;
 mod slabs;
 mod split;
+mod squares;
 mod traversal;
 mod validate;
 

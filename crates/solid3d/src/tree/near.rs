@@ -1,20 +1,18 @@
 //! Branch and bound for one query: what it asks, and the walk down the tree, the nearest child first.
 //!
-//! # Squares
-//!
-//! Subtrees are compared by squares: lower bounds of the squared distance of their boxes from that of the query, in units of the metric. With a
-//! radius r around that box, nothing in a box of square s is nearer than `unit * sqrt(s) - r`: so what is at most as near as `d` has a square of at
-//! least ((d + r) / unit)². This is found once for each `d`; a root of each square would be waited for, as it tells where the walk goes on.
+//! Subtrees are compared by [squares](super::squares) of the distance of their boxes from that of the query. With a radius r around that, what is at a
+//! distance d is d + r from it.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
 use solid_convex::simd::{Level, dispatch};
 
-use super::lanes::{LANES, Weights, bits, distances_squared_to_box, lanes};
-use super::metric::{Folded, PairMetric, ROUNDING};
+use super::lanes::{bits, distances_squared_to_box, lanes};
+use super::metric::{Folded, PairMetric};
 use super::node::{Child, Kind, Node};
 use super::normal::round_down;
 use super::packed::PackedBox;
+use super::squares::{limit, raised, reaching};
 use super::{Leaf, Place, Traversal, Tree};
 use crate::Aabb;
 
@@ -30,12 +28,9 @@ pub(crate) struct NearQuery {
     around: PackedBox,
     radius: f64,
     within: Option<PackedBox>,
-    weights: Weights,
-    /// A length in the world times this is at least that many units.
-    per_unit: f64,
-    /// The radius in units, and a unit in the world, by which squares are raised.
+    metric: Folded,
+    /// The radius in units, by which squares are raised: no more than that.
     reach: f32,
-    units: f32,
 }
 
 /// The boxes of a node.
@@ -74,8 +69,8 @@ impl Tree {
     /// order.
     #[inline(always)] // into kernels, where nothing of it need be written before it is read
     pub(crate) fn near_query(&self, within: Option<Aabb>, around: Around, metric: &PairMetric) -> NearQuery {
-        let Folded { a: weights, unit, .. } = Folded::new(metric, &self.normal, &self.normal);
-        let (units, Around { bounds, radius }) = (unit.recip(), around);
+        let metric = Folded::new(metric, &self.normal, &self.normal);
+        let Around { bounds, radius } = around;
         NearQuery {
             around: self.normal.pack_any(&bounds),
             radius,
@@ -83,10 +78,8 @@ impl Tree {
                 #[inline(always)]
                 |bounds| self.normal.pack_any(&bounds),
             ),
-            weights,
-            per_unit: units * (1.0 + 2.0 * ROUNDING),
-            reach: round_down((radius * units).min(f64::from(f32::MAX))),
-            units: round_down(units.min(f64::from(f32::MAX))),
+            reach: round_down((radius * f64::from(metric.units)).min(f64::from(f32::MAX))),
+            metric,
         }
     }
 
@@ -172,41 +165,26 @@ impl NearQuery {
     /// What has a square of at least this is no nearer than a distance.
     #[inline(always)]
     fn limit(&self, distance: f64) -> f32 {
-        let units = (distance + self.radius) * self.per_unit;
-        // Without a unit or a radius it is no number: nothing is skipped then. It is rounded up, also what underflows.
-        ((units * units).min(f64::INFINITY) as f32).next_up()
+        limit((distance + self.radius) * self.metric.per_unit)
     }
 
     /// Those of the lanes of a node. Empty lanes are far off, or do no harm.
     #[inline(always)]
     fn squares<S: Simd>(&self, simd: S, node: &Node) -> f32x8<S> {
-        let squares = distances_squared_to_box(simd, node, &self.around, &self.weights);
+        let squares = distances_squared_to_box(simd, node, &self.around, &self.metric.a);
         let Some(within) = &self.within else { return squares };
         let zero = f32x8::splat(simd, 0.0);
-        let apart = distances_squared_to_box(simd, node, within, &self.weights);
+        let apart = distances_squared_to_box(simd, node, within, &self.metric.a);
         let units = apart.simd_gt(zero).select(apart.sqrt() + f32x8::splat(simd, self.reach), zero);
-        greater_square(simd, squares, units)
+        raised(simd, squares, units)
     }
 
     /// Squares, raised by lower bounds of distances in the world.
     #[inline(always)]
     fn raised<S: Simd>(&self, simd: S, squares: f32x8<S>, bounds: f32x8<S>) -> f32x8<S> {
-        let [units, reach] = [f32x8::splat(simd, self.units), f32x8::splat(simd, self.reach)];
-        greater_square(simd, squares, bounds * units + reach)
+        let [units, reach] = [f32x8::splat(simd, self.metric.units), f32x8::splat(simd, self.reach)];
+        raised(simd, squares, bounds * units + reach)
     }
-}
-
-/// The greater of squares and those of numbers above zero; finite, as no limit may be less.
-#[inline(always)]
-fn greater_square<S: Simd>(simd: S, squares: f32x8<S>, roots: f32x8<S>) -> f32x8<S> {
-    let square = (roots * roots).min(f32x8::splat(simd, f32::MAX));
-    (roots.simd_gt(f32x8::splat(simd, 0.0)) & square.simd_gt(squares)).select(square, squares)
-}
-
-/// The lanes whose square is at least a limit, as bits.
-#[inline(always)]
-fn reaching<S: Simd>(simd: S, squares: f32x8<S>, limit: f32) -> u32 {
-    squares.simd_ge(f32x8::splat(simd, limit)).to_bitmask() as u32 | !LANES
 }
 
 #[cfg(test)]

@@ -8,11 +8,11 @@ use solid_convex::simd::{Level, dispatch, level};
 use super::beam::seek;
 use super::facing::{Faces, Facing};
 use super::insertion::push_unless_far;
-use super::lanes::{distances_squared, extents};
+use super::lanes::{bits, distances_squared, extents};
 use super::metric::{Folded, PairMetric};
-use super::node::WIDTH;
 use super::pairs::{Duel, Pair, Step, Tested};
 use super::relative::Relative;
+use super::squares::reaching;
 use super::traversal::STACK_USUAL;
 use super::{Traversal, Tree};
 
@@ -112,22 +112,24 @@ fn walk<S: Simd>(
         stack.extend(seek(simd, duel, counters).map(|pair| (0.0, pair)));
     }
     let mut opening = Opening { duel, metric, faces, tested: Default::default() };
-    while let Some((least, pair)) = stack.pop() {
-        if least >= *best {
+    let mut limit = metric.limit(*best);
+    while let Some((square, pair)) = stack.pop() {
+        if square >= limit {
             continue;
         }
         match duel.step(&pair) {
             Step::Leaves(leaf_a, leaf_b) => {
                 counters.leaf_visits += 1;
                 visitor.visit(simd, leaf_a, leaf_b, best);
+                limit = metric.limit(*best);
             }
             Step::OpenA(node) => {
                 counters.box_tests += 1;
-                opening.push::<_, 0>(simd, pair, node, visitor.axis(), *best, stack);
+                opening.push::<_, 0>(simd, pair, node, visitor.axis(), limit, stack);
             }
             Step::OpenB(node) => {
                 counters.box_tests += 1;
-                opening.push::<_, 1>(simd, pair, node, visitor.axis(), *best, stack);
+                opening.push::<_, 1>(simd, pair, node, visitor.axis(), limit, stack);
             }
             Step::OpenBoth(..) => unreachable!("nodes are opened one by one"),
             Step::Nothing => {}
@@ -144,7 +146,7 @@ struct Opening<'w, 't> {
 }
 
 impl Opening<'_, '_> {
-    /// Puts the lanes of a node of a pair on the stack that may hold something nearer than `best`; of the first tree for `OF` = 0, of the
+    /// Puts the lanes of a node of a pair on the stack that may hold something nearer than the limit is; of the first tree for `OF` = 0, of the
     /// second for 1.
     #[inline(always)]
     fn push<S: Simd, const OF: usize>(
@@ -153,8 +155,8 @@ impl Opening<'_, '_> {
         pair: Pair,
         node: usize,
         axis: DVec3,
-        best: f64,
-        stack: &mut Vec<(f64, Pair)>,
+        limit: f32,
+        stack: &mut Vec<(f32, Pair)>,
     ) {
         let Opening { duel, metric, faces, tested } = self;
         let other = 1 - OF;
@@ -162,24 +164,20 @@ impl Opening<'_, '_> {
         let (lanes, beside) = (&trees[OF].nodes[node], [pair.b, pair.a][OF]);
         let crossing = if OF == 0 { duel.b_to_a() } else { duel.a_to_b() };
         let probe = tested[other].probe(simd, crossing, trees[other], beside);
-        let squared = distances_squared(simd, lanes, crossing, probe, weights[OF], weights[other]);
-        let mut bounds = [0.0; WIDTH];
-        for (some, bounds) in bounds.chunks_exact_mut(4).zip(metric.world(simd, squared)) {
-            bounds.store_slice(some);
+        let mut squares = distances_squared(simd, lanes, crossing, probe, weights[OF], weights[other]);
+        let mut near = !reaching(simd, squares, limit);
+        if near == 0 {
+            return;
         }
-        if let Some(faces) = faces.filter(|_| some_below(&bounds, best)) {
-            faces.raise::<S, OF>(simd, node, beside, axis, best, &mut bounds);
+        if let Some(faces) = faces {
+            squares = faces.raised::<S, OF>(simd, (node, beside), axis, metric.units, limit, squares);
+            near = !reaching(simd, squares, limit);
         }
-        let (extents, from) = (extents(simd, lanes), stack.len());
-        for (lane, least) in bounds.into_iter().enumerate() {
+        let (squares, extents, from) = (squares.to_array(), extents(simd, lanes), stack.len());
+        for lane in bits(near) {
             let below =
                 if OF == 0 { pair.with_a(node, lane, &extents) } else { pair.with_b(node, lane, &extents) };
-            push_unless_far((least, below), best, stack, from);
+            push_unless_far((squares[lane], below), limit, stack, from);
         }
     }
-}
-
-#[inline(always)]
-fn some_below(bounds: &[f64; WIDTH], best: f64) -> bool {
-    bounds.iter().any(|&bound| bound < best)
 }

@@ -53,19 +53,22 @@ pub struct Traversal {
     pub(super) nearest: Vec<(f64, Place)>,
     /// Subtrees to visit along a ray, with the parameter at which it enters them; of each node, the nearest last.
     pub(super) ahead: Vec<(f32, (Child, Place))>,
-    /// The same for pairs of subtrees, by lower bounds of their distances.
-    pub(super) near_pairs: Vec<(f64, Pair)>,
+    /// The same for pairs of subtrees.
+    pub(super) pairs_ahead: Vec<(f64, Pair)>,
+    /// Pairs of subtrees, by squares of their distances; of the children of a node, the nearest last.
+    pub(super) near_pairs: Vec<(f32, Pair)>,
 }
 
 impl Traversal {
     /// The memory that it owns, in bytes.
     pub(crate) fn bytes(&self) -> usize {
-        let Traversal { counters: _, nodes, pairs, near, nearest, ahead, near_pairs } = self;
+        let Traversal { counters: _, nodes, pairs, near, nearest, ahead, pairs_ahead, near_pairs } = self;
         nodes.capacity() * size_of::<u32>()
             + pairs.bytes()
             + near.bytes()
             + nearest.capacity() * size_of::<(f64, Place)>()
             + ahead.capacity() * size_of::<(f32, (Child, Place))>()
-            + near_pairs.capacity() * size_of::<(f64, Pair)>()
+            + pairs_ahead.capacity() * size_of::<(f64, Pair)>()
+            + near_pairs.capacity() * size_of::<(f32, Pair)>()
     }
 }
