@@ -7,6 +7,7 @@ use vrml97::fields::{FieldValue, access};
 use vrml97::scene::{FieldLoc, FieldRef, NodeKind, ProtoRef, ROOT, Scene};
 
 use super::scan::{Mark, scan};
+use super::wide;
 use crate::error::SceneError;
 use crate::text::{quoted, with_words_cut};
 
@@ -70,9 +71,11 @@ impl Document {
     /// Parses a file's text; also what the parser passed over.
     pub fn parse(file: &Path, text: &str) -> Result<(Document, Vec<String>), SceneError> {
         let scanned = scan(file, text)?;
-        let parsed = vrml97::Parser::new(&scanned.text, "").parse();
-        let mut scene = parsed.map_err(|error| {
-            let message = with_words_cut(&in_our_words(&error.message));
+        let parse = |text: &str| vrml97::Parser::new(text, "").parse();
+        let mut scene = parse(&scanned.text).map_err(|error| {
+            let stops_at = |text: &str| parse(text).err().map(|error| error.line);
+            let message = wide::message(&scanned, error.line, stops_at)
+                .unwrap_or_else(|| with_words_cut(&in_our_words(&error.message)));
             SceneError::new(file, Some(error.line), message)
         })?;
         let warnings = std::mem::take(&mut scene.warnings);
@@ -246,6 +249,37 @@ mod tests {
         );
         assert_eq!(message("Coordinate { point [ 1 2 x ] }"), "a.wrl:2: expected one more value or ']'");
         assert_eq!(message("\n7"), "a.wrl:3: expected a node, DEF, USE, PROTO or ROUTE");
+    }
+
+    #[test]
+    fn integers_of_more_than_32_bits_are_told_as_written() {
+        let message = |body: &str| parse(body).unwrap_err().to_string();
+        let most = "expected an integer of at most 2147483647";
+        assert_eq!(
+            message("ElevationGrid {\n xDimension 3000000000 zDimension 2 }"),
+            format!("a.wrl:3: xDimension holds 3000000000; {most}")
+        );
+        assert_eq!(
+            message("Shape { geometry IndexedFaceSet {\ncoordIndex [ 0, 1 2 -1\n 1 +4294967298 -1 ] } }"),
+            format!("a.wrl:4: coordIndex holds +4294967298; {most}")
+        );
+        assert_eq!(
+            message("Switch { whichChoice -2147483649 }"),
+            "a.wrl:2: whichChoice holds -2147483649; expected an integer of at least -2147483648"
+        );
+        let long = "9".repeat(1000);
+        assert_eq!(
+            message(&format!("Switch {{ whichChoice {long} }}")),
+            format!("a.wrl:2: whichChoice holds {}...; {most}", &long[..80])
+        );
+        // Of several in a line, the one at which an integer is wanted.
+        let point = "Coordinate { point [ 3000000000 -99999999999e2,5-3000000000 ";
+        assert_eq!(
+            message(&format!("Group {{}} {point} ] }} Switch {{ whichChoice 4000000000 }}")),
+            format!("a.wrl:2: whichChoice holds 4000000000; {most}")
+        );
+        assert_eq!(message(&format!("{point} x ] }}")), "a.wrl:2: expected one more value or ']'");
+        assert!(parse(&format!("{point} ] }}")).is_ok());
     }
 
     #[test]

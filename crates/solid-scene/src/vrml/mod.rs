@@ -2,7 +2,8 @@
 //!
 //! In the order of reading:
 //!
-//! 1. [`text`] reads a file, [`scan`] makes it safe to parse, [`document`] parses it (with the crate vrml97);
+//! 1. [`text`] reads a file, [`scan`] makes it safe to parse, [`document`] parses it (with the crate vrml97), [`wide`] tells
+//!    which integer is too large;
 //! 2. [`expand`] writes out the instances of PROTOs and Inlines into a [`graph`], with the files of a [`library`];
 //! 3. [`route`] collects the ROUTEs, [`signal`] follows them from [`sensor`]s through [`interpolator`]s;
 //! 4. [`walk`] goes from the root to every Shape, through [`transform`]s, and makes its [`geometry`] an object;
@@ -26,6 +27,7 @@ mod text;
 mod transform;
 mod walk;
 mod warnings;
+mod wide;
 
 use std::collections::BTreeSet;
 use std::path::Path;

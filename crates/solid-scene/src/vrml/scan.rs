@@ -5,8 +5,9 @@
 //! It also hands on a text of the same lines that means the same in VRML97 and in the parser's dialect:
 //!
 //! * comments are blank, because `#/*` opens a comment over several lines in the dialect;
-//! * a decimal integer below -2^31 or above 2^32 - 1 gets a decimal point: it is a legal float, but the parser takes an integer
-//!   by its lowest 32 bits, and one so low as the size of an image makes it panic. What is between may be a pixel.
+//! * a decimal integer below -2^31 or above 2^31 - 1, in an image above 2^32 - 1, gets a decimal point: it is a legal float, but
+//!   the parser takes an integer by its lowest 32 bits, and one so low as the size of an image makes it panic. Where an integer is
+//!   wanted the parser stops at the point, and [`super::wide`] says why.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::RangeInclusive;
@@ -16,8 +17,11 @@ use super::limits::*;
 use crate::error::SceneError;
 use crate::text::quoted;
 
-/// What 32 bits hold, with a sign or without.
-const INTEGERS: RangeInclusive<f64> = i32::MIN as f64..=u32::MAX as f64;
+/// What an integer may be.
+const INTEGERS: RangeInclusive<f64> = i32::MIN as f64..=i32::MAX as f64;
+
+/// What an integer of an image may be, of which a pixel has no sign.
+const PIXELS: RangeInclusive<f64> = i32::MIN as f64..=u32::MAX as f64;
 
 /// A text that is safe to parse.
 #[derive(Debug)]
@@ -26,6 +30,8 @@ pub(super) struct Scanned {
     pub text: String,
     /// Each node, in the order of the text.
     pub nodes: Vec<Mark>,
+    /// Where integers that got a point begin in `text`, in order.
+    pub wide: Vec<usize>,
 }
 
 /// Where a node stands.
@@ -41,7 +47,7 @@ pub(super) struct Mark {
 pub(super) fn scan(file: &Path, text: &str) -> Result<Scanned, SceneError> {
     let mut scanner = Scanner::new(file, text);
     scanner.run()?;
-    Ok(Scanned { text: scanner.out, nodes: scanner.nodes })
+    Ok(Scanned { text: scanner.out, nodes: scanner.nodes, wide: scanner.wide })
 }
 
 /// What an opening bracket opens.
@@ -80,6 +86,11 @@ struct Scanner<'a> {
     line: usize,
     out: String,
     nodes: Vec<Mark>,
+    wide: Vec<usize>,
+    /// The last name that was no other's: before a number, that of its field.
+    field: &'a str,
+    /// The fields that hold images.
+    images: HashSet<&'a str>,
     /// The name of a DEF whose node has not begun.
     def: Option<&'a str>,
     brackets: Vec<(Opened, usize)>,
@@ -105,6 +116,9 @@ impl<'a> Scanner<'a> {
             line: 1,
             out: String::with_capacity(text.len()),
             nodes: Vec::new(),
+            wide: Vec::new(),
+            field: "",
+            images: HashSet::from(["image"]),
             def: None,
             brackets: Vec::new(),
             names: vec![HashSet::new()],
@@ -249,8 +263,7 @@ impl<'a> Scanner<'a> {
         let end = rest.bytes().position(|byte| !is_word(byte)).unwrap_or(rest.len());
         let word = &rest[..end];
         if word.starts_with(|c: char| c.is_ascii_digit() || c == '+' || c == '-') {
-            self.number(word);
-            return Ok(());
+            return self.number(word);
         }
         self.name(word)?;
         self.copy(self.at + end);
@@ -258,20 +271,24 @@ impl<'a> Scanner<'a> {
     }
 
     /// Copies a number, or several without space between.
-    fn number(&mut self, word: &str) {
+    fn number(&mut self, word: &str) -> Result<(), SceneError> {
         let mut rest = word;
         // What follows a point is a fraction, no integer.
-        let mut integer = if self.out.ends_with('.') { rest.find('-') } else { Some(0) };
+        let is_fraction = self.out.ends_with('.');
+        let range = if self.images.contains(self.field) { PIXELS } else { INTEGERS };
+        let mut integer = if is_fraction { rest.find('-') } else { Some(0) };
         while let Some(start) = integer {
             let sign = usize::from(rest[start..].starts_with(['-', '+']));
             let digits = rest[start + sign..].bytes().take_while(u8::is_ascii_digit).count();
             let end = start + sign + digits;
+            let begin = self.out.len() + start;
             self.out.push_str(&rest[..end]);
-            if rest[start..end].parse::<f64>().is_ok_and(|value| !INTEGERS.contains(&value)) {
+            if rest[start..end].parse::<f64>().is_ok_and(|value| !range.contains(&value)) {
                 let next =
                     rest[end..].bytes().next().or(self.text.as_bytes().get(self.at + word.len()).copied());
                 if next != Some(b'.') {
                     self.out.push('.');
+                    self.wide.push(begin);
                 }
             }
             rest = &rest[end..];
@@ -280,6 +297,7 @@ impl<'a> Scanner<'a> {
         self.out.push_str(rest);
         self.at += word.len();
         self.expect = Expect::Anything;
+        Ok(())
     }
 
     fn name(&mut self, word: &'a str) -> Result<(), SceneError> {
@@ -303,6 +321,9 @@ impl<'a> Scanner<'a> {
     }
 
     fn keyword_or_name(&mut self, word: &'a str) -> Result<(), SceneError> {
+        if std::mem::replace(&mut self.field, word) == "SFImage" {
+            self.images.insert(word);
+        }
         match word {
             "DEF" => self.expect = Expect::DefName,
             "USE" => self.expect = Expect::UseName,
@@ -377,7 +398,7 @@ impl<'a> Scanner<'a> {
 }
 
 /// Whether a byte can be inside a name or a number without its point; all of any character outside of ASCII can.
-fn is_word(byte: u8) -> bool {
+pub(super) fn is_word(byte: u8) -> bool {
     !(byte <= 0x20
         || matches!(byte, b'"' | b'#' | b'\'' | b',' | b'.' | b'[' | b'\\' | b']' | b'{' | b'}' | 0x7f))
 }
@@ -435,10 +456,24 @@ mod tests {
             "#\na -2147483649. -2147483648 5-99999999999. -99999999999.5 A-99999999999 -9999999999.e2";
         assert_eq!(run(text).unwrap().text, expected);
         let text =
-            "#\na 4294967295 4294967296 +4294967298,4294967298.5 0.4294967298 99999999999e2 0x100000000";
+            "#\na 2147483647 2147483648 +4294967298,4294967298.5 0.4294967298 99999999999e2 0xFFFFFFFF";
         let expected =
-            "#\na 4294967295 4294967296. +4294967298.,4294967298.5 0.4294967298 99999999999.e2 0x100000000";
+            "#\na 2147483647 2147483648. +4294967298.,4294967298.5 0.4294967298 99999999999.e2 0xFFFFFFFF";
         assert_eq!(run(text).unwrap().text, expected);
+    }
+
+    #[test]
+    fn pixels_have_no_sign() {
+        let text = |image: &str, other: &str| {
+            format!(
+                "#\nPixelTexture {{ image 1 1 4 {image} }} A {{ b {other} }}
+                 PROTO P [ field SFImage a 1 1 4 {image} field SFFloat b {other} ] {{}} P {{ a 1 1 4 {image} b {other} }}"
+            )
+        };
+        let scanned = run(&text("4294967295", "4294967295")).unwrap().text;
+        assert_eq!(scanned, text("4294967295", "4294967295."));
+        let scanned = run(&text("4294967296", "1")).unwrap().text;
+        assert_eq!(scanned, text("4294967296.", "1"));
     }
 
     #[test]

@@ -111,8 +111,13 @@ fn indices_are_checked() {
     );
     assert!(message("0 1 -2").contains("coordIndex holds -2"));
     assert!(message("0 1 2147483647").contains("coordIndex holds 2147483647"));
-    // Not by its lowest 32 bits, which name the third point.
-    assert_eq!(message("0 1 4294967298 -1"), "expected one more value or ']'");
+    // Not by its lowest 32 bits, which name the third point, or end a face.
+    for index in ["4294967298", "4294967295"] {
+        assert_eq!(
+            message(&format!("0 1 {index} -1")),
+            format!("coordIndex holds {index}; expected an integer of at most 2147483647")
+        );
+    }
 }
 
 #[test]
