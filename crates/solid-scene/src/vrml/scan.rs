@@ -7,7 +7,7 @@
 //! * comments are blank, because `#/*` opens a comment over several lines in the dialect;
 //! * a decimal integer below -2^31 or above 2^31 - 1, in an image above 2^32 - 1, gets a decimal point: it is a legal float, but
 //!   the parser takes an integer by its lowest 32 bits, and one so low as the size of an image makes it panic. Where an integer is
-//!   wanted the parser stops at the point, and [`super::wide`] says why.
+//!   wanted the parser stops at the point, and [`super::wide`] says why. A hexadecimal one above 32 bits is refused here.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::RangeInclusive;
@@ -22,6 +22,9 @@ const INTEGERS: RangeInclusive<f64> = i32::MIN as f64..=i32::MAX as f64;
 
 /// What an integer of an image may be, of which a pixel has no sign.
 const PIXELS: RangeInclusive<f64> = i32::MIN as f64..=u32::MAX as f64;
+
+/// How many digits of a hexadecimal integer 32 bits hold.
+const HEX_DIGITS_MAX: usize = 8;
 
 /// A text that is safe to parse.
 #[derive(Debug)]
@@ -275,6 +278,10 @@ impl<'a> Scanner<'a> {
         let mut rest = word;
         // What follows a point is a fraction, no integer.
         let is_fraction = self.out.ends_with('.');
+        if !is_fraction && has_wide_hex(word) {
+            let message = format!("{} has more than 32 bits; expected at most 0xFFFFFFFF", quoted(word));
+            return self.fail(message);
+        }
         let range = if self.images.contains(self.field) { PIXELS } else { INTEGERS };
         let mut integer = if is_fraction { rest.find('-') } else { Some(0) };
         while let Some(start) = integer {
@@ -403,6 +410,13 @@ pub(super) fn is_word(byte: u8) -> bool {
         || matches!(byte, b'"' | b'#' | b'\'' | b',' | b'.' | b'[' | b'\\' | b']' | b'{' | b'}' | 0x7f))
 }
 
+/// Whether a hexadecimal integer that 32 bits do not hold begins here.
+fn has_wide_hex(word: &str) -> bool {
+    let Some(digits) = word.strip_prefix("0x").or_else(|| word.strip_prefix("0X")) else { return false };
+    let digits = digits.trim_start_matches('0').bytes();
+    digits.take_while(u8::is_ascii_hexdigit).count() > HEX_DIGITS_MAX
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -474,6 +488,17 @@ mod tests {
         assert_eq!(scanned, text("4294967295", "4294967295."));
         let scanned = run(&text("4294967296", "1")).unwrap().text;
         assert_eq!(scanned, text("4294967296.", "1"));
+    }
+
+    #[test]
+    fn hexadecimal_integers_have_32_bits() {
+        assert!(run("#\na 0x00000000FFFFFFFF 0XffffffffG 0.0x100000000 \"0x100000000\"").is_ok());
+        for word in ["0x100000000", "0X0123456789"] {
+            assert_eq!(
+                message(&format!("#\na [ 0\n{word} ]")),
+                format!("a.wrl:3: {word} has more than 32 bits; expected at most 0xFFFFFFFF")
+            );
+        }
     }
 
     #[test]
