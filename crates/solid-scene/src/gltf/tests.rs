@@ -257,6 +257,35 @@ fn a_scene_is_chosen() {
 }
 
 #[test]
+fn a_text_that_is_no_object_is_refused() {
+    let refused = |text: &str| {
+        parse(text.as_bytes(), Path::new(""), None).map(|_| ()).unwrap_err().message().to_owned()
+    };
+    let texts = [
+        ("[]", "an array"),
+        ("\n [{\"asset\": {\"version\": \"2.0\"}}]", "an array"),
+        ("null", "null"),
+        ("-1.5", "a number"),
+        ("7", "a number"),
+        ("true", "a truth value"),
+        ("false", "a truth value"),
+        ("\"glTF\"", "a string"),
+    ];
+    for (text, found) in texts {
+        let message = format!("not glTF 2.0: expected a JSON object, but the text is {found}");
+        assert_eq!(refused(text), message, "{text}");
+    }
+    // What is no JSON at all is told by its line.
+    for (text, message) in [
+        ("[1,\n2", "not glTF 2.0: EOF while parsing a list at line 2 column 1"),
+        ("nothing", "not glTF 2.0: expected ident at line 1 column 2"),
+        ("", "not glTF 2.0: EOF while parsing a value at line 1 column 0"),
+    ] {
+        assert_eq!(refused(text), message, "{text}");
+    }
+}
+
+#[test]
 fn broken_hierarchies_are_refused() {
     let mut file = File::new();
     file.triangle();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use gltf::json::Root;
 use serde::Deserialize;
-use serde::de::IgnoredAny;
+use serde::de::{Error, IgnoredAny};
 use serde_json::{Result, Value, from_slice, from_value, json};
 
 /// What the crate's types leave out.
@@ -77,6 +77,7 @@ impl Rest {
 
 /// Parses a text. In the crate's types a channel that names no node names node 0: ask [`Rest::has_target`].
 pub(super) fn parse(text: &[u8]) -> Result<(Root, Rest)> {
+    check_object(text)?;
     let rest: Rest = from_slice(text)?;
     if rest.without_target().next().is_none() {
         return Ok((from_slice(text)?, rest));
@@ -90,4 +91,18 @@ pub(super) fn parse(text: &[u8]) -> Result<(Root, Rest)> {
         }
     }
     Ok((from_value(value)?, rest))
+}
+
+/// What the types would say in words of their own: that the text, where it is JSON, is an object.
+fn check_object(text: &[u8]) -> Result<()> {
+    let found = match text.trim_ascii_start().first() {
+        Some(b'[') => "an array",
+        Some(b'"') => "a string",
+        Some(b'-' | b'0'..=b'9') => "a number",
+        Some(b't' | b'f') => "a truth value",
+        Some(b'n') => "null",
+        _ => return Ok(()),
+    };
+    from_slice::<IgnoredAny>(text)?;
+    Err(Error::custom(format!("expected a JSON object, but the text is {found}")))
 }
