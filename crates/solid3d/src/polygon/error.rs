@@ -65,15 +65,22 @@ pub enum PolygonError {
         hole: usize,
     },
     /// A sphere's centre or radius, or a corner of a box, that no query can be made of.
-    #[error(
-        "{argument} is {value:?}; it must be finite, at most {MAGNITUDE_MAX:e} in magnitude, and no radius is negative"
-    )]
+    #[error("{argument} is {value:?}; {}", limit(argument))]
     Argument {
         /// The argument's name.
         argument: &'static str,
         /// The value it had.
         value: f64,
     },
+}
+
+/// What the argument of a query must be.
+fn limit(argument: &str) -> String {
+    match argument {
+        "radius" => format!("it must be from 0 to {MAGNITUDE_MAX:e}"),
+        "bounds" => format!("each coordinate must be infinite, or at most {MAGNITUDE_MAX:e} in magnitude"),
+        _ => format!("each coordinate must be finite and at most {MAGNITUDE_MAX:e} in magnitude"),
+    }
 }
 
 /// A result whose error says why vertices make no polygon.

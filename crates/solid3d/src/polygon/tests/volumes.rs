@@ -87,11 +87,17 @@ fn spheres_agree_with_the_oracle() {
 fn bad_arguments_are_named() {
     let triangle = Polygon::new([DVec3::ZERO, DVec3::X, DVec3::Y]).unwrap();
     let error = triangle.meets_sphere(DVec3::new(0.0, f64::NAN, 0.0), 1.0).unwrap_err();
-    assert!(error.to_string().starts_with("center is NaN"), "{error}");
+    assert_eq!(
+        error.to_string(),
+        "center is NaN; each coordinate must be finite and at most 1e100 in magnitude"
+    );
     let error = triangle.meets_sphere(DVec3::ZERO, -2.0).unwrap_err();
-    assert!(error.to_string().starts_with("radius is -2.0;"), "{error}");
+    assert_eq!(error.to_string(), "radius is -2.0; it must be from 0 to 1e100");
     let error = triangle.meets_box(&Aabb::new(DVec3::ZERO, DVec3::splat(f64::NAN))).unwrap_err();
-    assert!(error.to_string().starts_with("bounds is NaN"), "{error}");
+    assert_eq!(
+        error.to_string(),
+        "bounds is NaN; each coordinate must be infinite, or at most 1e100 in magnitude"
+    );
     assert!(!triangle.meets_box(&Aabb::EMPTY).unwrap());
     assert!(triangle.meets_box(&Aabb::new(DVec3::NEG_INFINITY, DVec3::INFINITY)).unwrap());
     assert!(!triangle.meets_box(&Aabb::new(DVec3::NEG_INFINITY, DVec3::new(9.0, 9.0, -1e-9))).unwrap());
