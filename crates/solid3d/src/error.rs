@@ -46,7 +46,7 @@ pub enum Error {
         value: DVec3,
     },
     /// A primitive names a vertex that is not there.
-    #[error("primitive {primitive} names vertex {index}, but there are {vertices} vertices")]
+    #[error("primitive {primitive} names vertex {index}, but {}", there_are_vertices(*vertices))]
     VertexIndex {
         /// The primitive's place, in the order in which they were given.
         primitive: usize,
@@ -56,7 +56,7 @@ pub enum Error {
         vertices: usize,
     },
     /// A primitive has too few vertices.
-    #[error("primitive {primitive} has {count} vertices; it needs at least {least}")]
+    #[error("primitive {primitive} has {}; it needs at least {least}", counted_vertices(*count))]
     PrimitiveSize {
         /// The primitive's place, in the order in which they were given.
         primitive: usize,
@@ -76,7 +76,11 @@ pub enum Error {
         limit: usize,
     },
     /// A deformation with another number of vertices than the shape has.
-    #[error("positions has {count} elements, but the shape has {expected} vertices")]
+    #[error(
+        "positions has {}, but the shape has {}",
+        counted(*count, "element", "elements"),
+        counted_vertices(*expected)
+    )]
     PositionCount {
         /// How many were given.
         count: usize,
@@ -233,6 +237,21 @@ pub(crate) fn coordinates(v: &DVec3) -> String {
     format!("({:?}, {:?}, {:?})", v.x, v.y, v.z)
 }
 
+/// `1 element`, `2 elements`.
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// `1 vertex`, `2 vertices`.
+pub(crate) fn counted_vertices(count: usize) -> String {
+    counted(count, "vertex", "vertices")
+}
+
+/// `there is 1 vertex`, `there are 2 vertices`.
+pub(crate) fn there_are_vertices(count: usize) -> String {
+    format!("there {} {}", if count == 1 { "is" } else { "are" }, counted_vertices(count))
+}
+
 /// As many edges as fit a message.
 fn listed(edges: &[OpenEdge]) -> String {
     const LISTED_MAX: usize = 8;
@@ -247,3 +266,28 @@ fn listed(edges: &[OpenEdge]) -> String {
 
 /// A result whose error names what was wrong with the input.
 pub type Result<T> = std::result::Result<T, Error>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nouns_agree_with_their_number() {
+        let index = |vertices| Error::VertexIndex { primitive: 0, index: 4, vertices }.to_string();
+        assert_eq!(index(1), "primitive 0 names vertex 4, but there is 1 vertex");
+        assert_eq!(index(2), "primitive 0 names vertex 4, but there are 2 vertices");
+        let size = |count| Error::PrimitiveSize { primitive: 0, count, least: 3 }.to_string();
+        assert_eq!(size(1), "primitive 0 has 1 vertex; it needs at least 3");
+        assert_eq!(size(0), "primitive 0 has 0 vertices; it needs at least 3");
+        let positions = |count, expected| Error::PositionCount { count, expected }.to_string();
+        assert_eq!(positions(1, 2), "positions has 1 element, but the shape has 2 vertices");
+        assert_eq!(positions(2, 1), "positions has 2 elements, but the shape has 1 vertex");
+
+        let chain = || "outer".to_owned();
+        let index = |vertices| PolygonError::VertexIndex { chain: chain(), index: 4, vertices }.to_string();
+        assert_eq!(index(1), "outer names vertex 4, but there is 1 vertex");
+        let size = |count| PolygonError::TooFewVertices { chain: chain(), count }.to_string();
+        assert_eq!(size(1), "outer has 1 vertex; a closed chain needs at least 3");
+        assert_eq!(size(2), "outer has 2 vertices; a closed chain needs at least 3");
+    }
+}

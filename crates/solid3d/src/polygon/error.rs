@@ -3,14 +3,14 @@
 use glam::DVec3;
 use solid_convex::MAGNITUDE_MAX;
 
-use crate::error::coordinates;
+use crate::error::{coordinates, counted_vertices, there_are_vertices};
 
 /// Vertices that make no polygon. The message names what, where and the limit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PolygonError {
     /// Fewer than three vertices.
-    #[error("{chain} has {count} vertices; a closed chain needs at least 3")]
+    #[error("{chain} has {}; a closed chain needs at least 3", counted_vertices(*count))]
     TooFewVertices {
         /// Which chain: `polygon`, `outer`, or `hole 0`.
         chain: String,
@@ -29,7 +29,7 @@ pub enum PolygonError {
         value: DVec3,
     },
     /// A chain names a vertex that is not there.
-    #[error("{chain} names vertex {index}, but there are {vertices} vertices")]
+    #[error("{chain} names vertex {index}, but {}", there_are_vertices(*vertices))]
     VertexIndex {
         /// Which chain: `outer`, or `hole 0`.
         chain: String,
