@@ -128,7 +128,10 @@ fn ordered(a: ObjectId, b: ObjectId) -> (ObjectId, ObjectId) {
 /// world.reset_pair_response(a, b)?;
 /// assert_eq!(world.response(a, b)?, Response::Simple);
 /// world.reset_object_response(a)?;
-/// assert_eq!(world.response(a, b)?, Response::Witness); // the default
+/// assert_eq!(world.response(a, b)?, Response::Witness);
+/// assert_eq!(world.default_response(), Response::Witness);
+/// world.clear_default_response();
+/// assert_eq!(world.default_response(), Response::Ignore);
 /// # Ok::<(), solid3d::Error>(())
 /// ```
 impl World {
@@ -138,6 +141,11 @@ impl World {
         if std::mem::replace(&mut self.responses.default, response) != response {
             (self.stale, self.default_changed) = (true, true);
         }
+    }
+
+    /// The response for pairs that have none of their own.
+    pub fn default_response(&self) -> Response {
+        self.responses.default
     }
 
     /// Makes pairs without a response of their own be ignored.
