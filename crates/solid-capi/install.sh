@@ -20,8 +20,13 @@ version=$(sed -n '/^\[workspace.package\]/,/^$/s/^version = "\(.*\)"/\1/p' "$her
 if [ $# -eq 2 ]; then
     built=$2
 else
-    (cd "$here/../.." && cargo build --release -p solid-capi)
-    built=${CARGO_TARGET_DIR:-$here/../../target}/release
+    target=${CARGO_TARGET_DIR:-$here/../../target}
+    case $target in
+        /*) ;;
+        *) target=$PWD/$target ;;
+    esac
+    (cd "$here/../.." && cargo build --release -p solid-capi --target-dir "$target")
+    built=$target/release
 fi
 
 scratch=$(mktemp -d)

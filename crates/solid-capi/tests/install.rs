@@ -4,6 +4,8 @@
 
 mod common;
 
+use std::fs::{self, Permissions};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -12,7 +14,7 @@ use common::{crate_folder, has, library_folder, run, succeed, text};
 /// Installs the library that the tests were built with.
 fn install(name: &str) -> PathBuf {
     let prefix = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = std::fs::remove_dir_all(&prefix);
+    let _ = fs::remove_dir_all(&prefix);
     let mut script = Command::new("sh");
     script.arg(crate_folder().join("install.sh")).arg(&prefix).arg(library_folder()).env_remove("DESTDIR");
     succeed(&mut script);
@@ -76,4 +78,32 @@ fn cmake_builds_clients() {
     succeed(Command::new("cmake").arg("--build").arg(&build));
     run(build.join("client_solid"));
     run(build.join("client_solid_static"));
+}
+
+#[test]
+fn a_relative_target_folder_is_one_of_the_caller() {
+    /// In place of cargo, which would take minutes: puts the libraries where cargo does.
+    const CARGO: &str = r#"#!/bin/sh
+target=$CARGO_TARGET_DIR
+while [ $# -gt 0 ]; do
+    if [ "$1" = --target-dir ]; then target=$2; fi
+    shift
+done
+mkdir -p "$target/release"
+cp "$LIBRARIES/libsolid.so" "$LIBRARIES/libsolid.a" "$target/release/"
+"#;
+    let caller = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("caller");
+    let _ = fs::remove_dir_all(&caller);
+    fs::create_dir_all(caller.join("bin")).expect("the folder can be made");
+    fs::write(caller.join("bin/cargo"), CARGO).expect("the folder can be written");
+    fs::set_permissions(caller.join("bin/cargo"), Permissions::from_mode(0o755)).expect("it is ours");
+    let path = std::env::var("PATH").expect("there is a path");
+
+    let mut script = Command::new("sh");
+    script.arg(crate_folder().join("install.sh")).arg("prefix").current_dir(&caller);
+    script.env("PATH", format!("{}:{path}", caller.join("bin").display())).env("LIBRARIES", library_folder());
+    succeed(script.env("CARGO_TARGET_DIR", "target folder").env_remove("DESTDIR"));
+    for file in ["target folder/release/libsolid.so", "prefix/lib/libsolid.so", "prefix/lib/libsolid.a"] {
+        assert!(caller.join(file).is_file(), "{file}");
+    }
 }
