@@ -1,6 +1,6 @@
 //! Loading the scene that the command line names.
 
-use anyhow::{Result, ensure};
+use anyhow::{Result, anyhow, ensure};
 use solid_scene::{Format, LoadOptions, Scene};
 
 use crate::args::SceneArgs;
@@ -20,7 +20,8 @@ pub fn load(args: &SceneArgs) -> Result<Scene> {
     let mut options = LoadOptions::default();
     options.split = args.split;
     options.animation.clone_from(&args.animation);
-    let scene = progress::while_waiting("reading the scene", || Scene::load(&args.files, &options))?;
+    let loaded = progress::while_waiting("reading the scene", || Scene::load(&args.files, &options));
+    let scene = loaded.map_err(|error| anyhow!(words::printable(&error.to_string())))?;
     if scene.objects().is_empty() {
         // They say why, and nobody else will tell them.
         warnings(&scene).for_each(|warning| complain("warning", warning));

@@ -40,10 +40,18 @@ pub fn figure(x: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// A name from a file as it can be shown: control characters, which could move the cursor, escaped.
+/// A name from a file as it can be shown: characters that could move the cursor, or turn what stands around them, escaped.
 pub fn printable(name: &str) -> String {
-    let escape = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
+    let escape = |c: char| match c.is_control() || is_bidi_control(c) {
+        true => c.escape_default().collect(),
+        false => String::from(c),
+    };
     name.chars().map(escape).collect()
+}
+
+/// Whether a character changes the direction of writing (Unicode's property Bidi_Control).
+fn is_bidi_control(c: char) -> bool {
+    matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// A text from a file in quotes, escaped, as far as anybody would read it.
@@ -89,6 +97,19 @@ mod tests {
         assert_eq!(printable("a\x1b[2Jb\n"), "a\\u{1b}[2Jb\\n");
         assert_eq!(printable("Würfel 1"), "Würfel 1");
         assert_eq!(quoted("a\x1b[2Jb"), "\"a\\u{1b}[2Jb\"");
+    }
+
+    #[test]
+    fn characters_that_turn_the_text_do_not_reach_the_terminal() {
+        let controls = ['\u{61c}', '\u{200e}', '\u{200f}'].into_iter();
+        for c in controls.chain('\u{202a}'..='\u{202e}').chain('\u{2066}'..='\u{2069}') {
+            let escaped = format!("a\\u{{{:x}}}b", u32::from(c));
+            assert_eq!(printable(&format!("a{c}b")), escaped);
+            assert_eq!(quoted(&format!("a{c}b")), format!("\"{escaped}\""));
+        }
+        for name in ["שלום", "قطعة", "零件"] {
+            assert_eq!(printable(name), name);
+        }
     }
 
     #[test]

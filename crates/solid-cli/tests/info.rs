@@ -34,6 +34,18 @@ fn what_is_not_there_at_time_0_is_told() {
     assert!(run.assert_status(0).stdout.ends_with(warning), "{run:?}");
 }
 
+/// Neither what moves the cursor nor what turns the text around it reaches the terminal.
+#[test]
+fn names_are_shown_escaped() {
+    let named = BOX.replacen('v', "o a\u{202e}b\u{1b}[2J\nv", 1);
+    let run = Desk::new().file("named.obj", named).run("info named.obj --split");
+    assert!(run.assert_status(0).stdout.contains(r"a\u{202e}b\u{1b}[2J"), "{run:?}");
+    let broken = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+        "meshes": [{"name": "a\u202eb\u001b[2J", "primitives": [{"attributes": {"POSITION": 7}}]}]}"#;
+    let run = Desk::new().file("broken.gltf", broken).run("info broken.gltf");
+    run.assert_fails(&[r"mesh 0 (`a\u{202e}b\u{1b}[2J`)"]);
+}
+
 #[test]
 fn bad_files_make_status_2() {
     Desk::new().run("info missing.obj").assert_fails(&["missing.obj"]);
