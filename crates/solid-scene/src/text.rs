@@ -54,6 +54,16 @@ pub(crate) fn quoted(token: &str) -> String {
     }
 }
 
+/// `1 number`, `2 numbers`.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// `there is 1`, `there are 2`.
+pub(crate) fn there_are(count: usize) -> String {
+    format!("there {} {count}", if count == 1 { "is" } else { "are" })
+}
+
 /// A message of another program about the file, whose words may be the file's own.
 pub(crate) fn with_words_cut(message: &str) -> String {
     message.split(' ').map(quoted).collect::<Vec<_>>().join(" ")
@@ -73,6 +83,12 @@ mod tests {
     fn a_text_may_follow_a_byte_order_mark() {
         assert_eq!(without_mark(b"\xef\xbb\xbfv 1 2 3"), b"v 1 2 3");
         assert_eq!(without_mark(b"v 1 2 3"), b"v 1 2 3");
+    }
+
+    #[test]
+    fn nouns_agree_with_their_number() {
+        assert_eq!([0, 1, 2].map(|n| counted(n, "key")), ["0 keys", "1 key", "2 keys"]);
+        assert_eq!([0, 1, 2].map(there_are), ["there are 0", "there is 1", "there are 2"]);
     }
 
     #[test]

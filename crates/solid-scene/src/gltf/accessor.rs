@@ -6,6 +6,7 @@ use gltf::json::validation::Checked;
 
 use super::document::Document;
 use crate::fault::Result;
+use crate::text::counted;
 
 /// The numbers of an accessor, element by element.
 #[derive(Debug, PartialEq)]
@@ -100,10 +101,10 @@ impl Document {
         let size = component.size() * width;
         let stride = self.view(view)?.byte_stride.map_or(size, |stride| stride.0);
         if stride < size {
-            return Err(format!(
-                "has elements of {size} bytes, but bufferView {view} a byteStride of {stride}"
-            )
-            .into());
+            let size = counted(size, "byte");
+            return Err(
+                format!("has elements of {size}, but bufferView {view} a byteStride of {stride}").into()
+            );
         }
         let start = usize::try_from(offset).unwrap_or(usize::MAX);
         let length = count.checked_sub(1).map_or(0, |last| stride.saturating_mul(last).saturating_add(size));
@@ -159,7 +160,9 @@ fn scatter(places: &[f64], changes: &[f64], width: usize, values: &mut [f64]) ->
         let start = place as usize * width;
         match values.get_mut(start..start + width) {
             Some(element) => element.copy_from_slice(change),
-            None => return Err(format!("has the sparse index {place}, but {count} elements").into()),
+            None => {
+                return Err(format!("has the sparse index {place}, but {}", counted(count, "element")).into());
+            }
         }
     }
     Ok(())

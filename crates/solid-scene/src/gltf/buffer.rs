@@ -9,7 +9,7 @@ use gltf::json::Buffer;
 use super::uri::{Source, resolve};
 use crate::fault::Result;
 use crate::file::{IS_POINTER, is_pointer};
-use crate::text::quoted;
+use crate::text::{counted, quoted};
 
 /// The bytes of a buffer, `byteLength` of them. `binary` is the binary part of a `.glb`, which buffer 0 is when it has
 /// no URI. A file that it is in is added to `files`.
@@ -41,7 +41,7 @@ pub(super) fn load(
         return Err(format!("{name} {IS_POINTER}").into());
     }
     if (bytes.len() as u64) < needed {
-        return Err(format!("{name} has {} bytes; it should have {needed}", bytes.len()).into());
+        return Err(format!("{name} has {}; it should have {needed}", counted(bytes.len(), "byte")).into());
     }
     // The rest is padding.
     bytes.truncate(needed as usize);

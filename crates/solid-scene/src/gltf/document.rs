@@ -10,7 +10,7 @@ use gltf::json::{Accessor, Mesh, Node, Root, Skin, buffer};
 use super::buffer::load;
 use super::text::{self, Rest};
 use crate::fault::Result;
-use crate::text::{quoted, without_mark};
+use crate::text::{quoted, there_are, without_mark};
 
 /// How many numbers, of eight bytes and more each, may be read out of a file per byte of it and its buffers. A text can name one
 /// buffer any number of times, so that a small one could ask for any amount of memory. Of 37 files the one with most has 0.6; what
@@ -139,7 +139,7 @@ impl Document {
 
 /// The element that an index names.
 pub(super) fn find<'a, T>(kind: &str, all: &'a [T], index: usize) -> Result<&'a T> {
-    all.get(index).ok_or_else(|| format!("{kind} {index} is named, but there are {}", all.len()).into())
+    all.get(index).ok_or_else(|| format!("{kind} {index} is named, but {}", there_are(all.len())).into())
 }
 
 /// The text, and the binary part of a `.glb`.

@@ -14,7 +14,7 @@ use super::primitive;
 use super::skin::Influences;
 use crate::fault::Result;
 use crate::soup::Soup;
-use crate::text::quoted;
+use crate::text::{counted, quoted, there_are};
 
 /// A mesh of the file: all its primitives over one vertex buffer.
 #[derive(Debug, Default)]
@@ -122,7 +122,7 @@ impl Geometry {
         };
         for (place, index) in indices.iter_mut().enumerate() {
             if *index as usize >= count {
-                let message = format!("{what}: index {place} names vertex {index}, but there are {count}");
+                let message = format!("{what}: index {place} names vertex {index}, but {}", there_are(count));
                 return Err(message.into());
             }
             *index += first as u32;
@@ -165,5 +165,6 @@ fn expect_count(found: usize, expected: usize, what: &str) -> Result<()> {
     if found == expected {
         return Ok(());
     }
-    Err(format!("{what} has {found} elements; expected one for each of the {expected} vertices").into())
+    let found = counted(found, "element");
+    Err(format!("{what} has {found}; expected {expected}, one for each vertex").into())
 }

@@ -8,6 +8,7 @@ use gltf::json::validation::Checked;
 use super::document::Document;
 use super::local::unit;
 use crate::fault::Result;
+use crate::text::counted;
 
 /// Keys and what is between them. Invariants: there is a key; times do not decrease; there are `width` values a key, or
 /// three times as many for a spline (slope before, value, slope after); values of a rotation are not nearly 0.
@@ -44,7 +45,8 @@ impl Sampler {
             if kind == Type::Scalar { values.len() / (times.len() * per_key) } else { kind.multiplicity() };
         if values.len() != times.len() * per_key * width {
             let (keys, values) = (times.len(), values.len() / kind.multiplicity());
-            return Err(format!("{what} has {keys} keys, but {values} values").into());
+            let (keys, values) = (counted(keys, "key"), counted(values, "value"));
+            return Err(format!("{what} has {keys}, but {values}").into());
         }
         if let Some(value) = values.iter().find(|value| !value.is_finite()) {
             return Err(format!("{what} has the value {value}; expected finite numbers").into());

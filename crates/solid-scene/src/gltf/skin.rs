@@ -6,6 +6,7 @@ use gltf::json::accessor::Type;
 use super::document::Document;
 use super::local::affine_of;
 use crate::fault::Result;
+use crate::text::{counted, there_are};
 
 /// The joints of a skin.
 #[derive(Debug)]
@@ -40,7 +41,9 @@ impl Skin {
             document.numbers(accessor.value(), Type::Mat4, &format!("{what}, inverseBindMatrices"))?;
         if matrices.len() < joints.len() {
             let (has, needs) = (matrices.len(), joints.len());
-            return Err(format!("{what} has {needs} joints, but {has} inverseBindMatrices").into());
+            return Err(
+                format!("{what} has {}, but {has} inverseBindMatrices", counted(needs, "joint")).into()
+            );
         }
         for (joint, (matrix, (_, inverse_bind))) in matrices.elements().zip(&mut joints).enumerate() {
             let wrong = || format!("{what}: inverse bind matrix {joint} is not affine");
@@ -125,7 +128,9 @@ impl Influences {
     pub fn check(&self, skin: &Skin) -> Result<()> {
         let count = skin.joints.len();
         match self.influences.iter().find(|&&(joint, _)| joint as usize >= count) {
-            Some((joint, _)) => Err(format!("a vertex follows joint {joint}, but there are {count}").into()),
+            Some((joint, _)) => {
+                Err(format!("a vertex follows joint {joint}, but {}", there_are(count)).into())
+            }
             None => Ok(()),
         }
     }

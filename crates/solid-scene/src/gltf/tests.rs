@@ -293,8 +293,8 @@ fn broken_hierarchies_are_refused() {
         (json!([{"children": [0]}]), "node 0 is its own ancestor"),
         (json!([{}, {"children": [2]}, {"children": [1]}]), "node 2 is its own ancestor"),
         (json!([{"children": [2]}, {"children": [2]}, {}]), "node 2 is a child of both node 0 and node 1"),
-        (json!([{"children": [7]}]), "child of node 0: node 7 is named, but there are 1"),
-        (json!([{"mesh": 7}]), "node 0: mesh 7 is named, but there are 1"),
+        (json!([{"children": [7]}]), "child of node 0: node 7 is named, but there is 1"),
+        (json!([{"mesh": 7}]), "node 0: mesh 7 is named, but there is 1"),
         (json!([{"mesh": 0, "rotation": [0, 0, 0, 0]}]), "node 0 has a rotation of length 0"),
         (
             json!([{"mesh": 0, "scale": [1e39, 1, 1]}]),
@@ -351,7 +351,7 @@ fn accessors_stay_in_their_buffers() {
             "accessor 0: elements: 18446744073709551615 numbers are more",
         ),
         ("/accessors/0/byteOffset", json!(1), "accessor 0: goes to byte 37 of bufferView 0, which has 36"),
-        ("/accessors/0/bufferView", json!(9), "accessor 0: bufferView 9 is named, but there are 1"),
+        ("/accessors/0/bufferView", json!(9), "accessor 0: bufferView 9 is named, but there is 1"),
         ("/accessors/0/type", json!("VEC2"), "accessor 0 is of type Vec2; expected Vec3"),
         ("/accessors/0/type", json!("VEC9"), "accessor 0 is of an unknown type; expected Vec3"),
         ("/accessors/0/componentType", json!(1), "accessor 0 has an unknown componentType"),
@@ -366,13 +366,13 @@ fn accessors_stay_in_their_buffers() {
             json!(0),
             "has elements of 12 bytes, but bufferView 0 a byteStride of 0",
         ),
-        ("/bufferViews/0/buffer", json!(3), "buffer 3 is named, but there are 1"),
+        ("/bufferViews/0/buffer", json!(3), "buffer 3 is named, but there is 1"),
         ("/meshes/0/primitives/0/indices", json!(0), "indices: accessor 0 has no unsigned integers"),
         ("/meshes/0/primitives/0/mode", json!(7), "mesh 0 (`tri`), primitive 0 is of an unknown mode"),
         (
             "/meshes/0/primitives/0/attributes/POSITION",
             json!(5),
-            "primitive 0: accessor 5 is named, but there are 1",
+            "primitive 0: accessor 5 is named, but there is 1",
         ),
         ("/meshes/0/primitives/0/attributes/JOINTS_0", json!(0), "has only one of JOINTS_0 and WEIGHTS_0"),
     ];
@@ -686,9 +686,9 @@ fn a_mesh_that_follows_no_joint_is_warned_of() {
 fn skins_and_animations_are_checked() {
     let changes = [
         ("/skins/0/joints/1", json!(9), "skin 0: node 9 is named, but there are 4"),
-        ("/skins/0/joints", json!([1]), "a vertex follows joint 1, but there are 1"),
+        ("/skins/0/joints", json!([1]), "a vertex follows joint 1, but there is 1"),
         ("/skins/0/joints", json!([0, 1, 2]), "skin 0 has 3 joints, but 2 inverseBindMatrices"),
-        ("/nodes/3/skin", json!(2), "skin 2 is named, but there are 1"),
+        ("/nodes/3/skin", json!(2), "skin 2 is named, but there is 1"),
         ("/animations/0/channels/0/sampler", json!(3), "animation `all`, channel 0: sampler 3 is named"),
         ("/animations/0/channels/0/target/node", json!(4), "animation `all`, channel 0: node 4 is named"),
         (

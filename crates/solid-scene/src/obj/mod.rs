@@ -120,7 +120,7 @@ mod tests {
             ("v 0 0\n", 1, "expected a finite number for the vertex's z, but the line ends"),
             ("v 0 0 0\nf 1 2 x\n", 2, "expected a vertex index, but there is `x`"),
             ("v 0 0 0\nf 0 1 1\n", 2, "expected a vertex index, but there is `0`; indices count from 1"),
-            ("v 0 0 0\nf -2 1 1\n", 2, "the index -2 names no vertex; there are 1 before it"),
+            ("v 0 0 0\nf -2 1 1\n", 2, "the index -2 names no vertex; there is 1 before it"),
             (
                 "v 0 0 0\np 99999999999999999999\n",
                 2,

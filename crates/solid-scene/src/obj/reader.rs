@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::lines::statements;
 use crate::fault::{Fault, Result};
 use crate::polygon::short_warning;
-use crate::text::{quoted, vertex};
+use crate::text::{quoted, there_are, vertex};
 
 /// What the statements say, in their order.
 #[derive(Debug, Default)]
@@ -107,7 +107,10 @@ impl Reader {
                     usize::try_from(index.unsigned_abs()).ok().and_then(|back| count.checked_sub(back));
                 let vertex = back.and_then(|vertex| u32::try_from(vertex).ok());
                 vertex.ok_or_else(|| {
-                    Fault::at(line, format!("the index {index} names no vertex; there are {count} before it"))
+                    Fault::at(
+                        line,
+                        format!("the index {index} names no vertex; {} before it", there_are(count)),
+                    )
                 })
             }
             Ok(index) => {
@@ -143,7 +146,11 @@ impl Statements {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::from_iter(short_warning(self.short_faces));
         if self.free_forms > 0 {
-            warnings.push(format!("{} free-form curves or surfaces are passed over", self.free_forms));
+            let what = match self.free_forms {
+                1 => "1 free-form curve or surface is".to_owned(),
+                n => format!("{n} free-form curves or surfaces are"),
+            };
+            warnings.push(format!("{what} passed over"));
         }
         warnings
     }

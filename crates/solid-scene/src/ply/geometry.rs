@@ -8,7 +8,7 @@ use super::payload::Payload;
 use crate::fault::{Fault, Result};
 use crate::polygon::{Cut, folded_warning, short_warning, triangulate};
 use crate::soup::Soup;
-use crate::text::quoted;
+use crate::text::{quoted, there_are};
 
 /// The names that the list of a face's corners goes by.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -105,13 +105,15 @@ fn read_property(
     if !(first >= 0.0 && first.fract() == 0.0) {
         return Err(payload.fault(format!("{} has a list {} of length {first}", which(), name())));
     }
+    let numbers = if first == 1.0 { "number" } else { "numbers" };
+    let cut = || ends(format!("{first} {numbers} of {}", name()));
     if first > payload.left(property.scalar) as f64 {
-        return Err(payload.fault(ends(format!("{first} numbers of {}", name()))));
+        return Err(payload.fault(cut()));
     }
     for _ in 0..first as u64 {
         match payload.next(property.scalar)? {
             Some(value) => each(value),
-            None => return Err(payload.fault(ends(format!("{first} numbers of {}", name())))),
+            None => return Err(payload.fault(cut())),
         }
     }
     Ok(first)
@@ -162,7 +164,8 @@ impl Lists {
 fn corners(element: &str, place: Place, list: &[f64], vertices: usize) -> Result<Vec<u32>> {
     let corner = |&index: &f64| {
         let named = index.fract() == 0.0 && (0.0..vertices as f64).contains(&index);
-        let wrong = || format!("`{element}` {} names vertex {index}, but there are {vertices}", place.number);
+        let wrong =
+            || format!("`{element}` {} names vertex {index}, but {}", place.number, there_are(vertices));
         if named { Ok(index as u32) } else { Err(Fault::new(place.line, wrong())) }
     };
     list.iter().map(corner).collect()

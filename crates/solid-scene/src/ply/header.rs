@@ -150,7 +150,7 @@ impl Header {
             // The last number of a text needs no space after it.
             if needed > bytes as u128 + 1 {
                 let message =
-                    format!("the header tells {count} of `{}`, which take {needed} bytes", quoted(name));
+                    format!("the header tells {count} of `{}`, of {needed} bytes in all", quoted(name));
                 return Err(Fault::at(*line, format!("{message}; the file has {bytes} for them")));
             }
             bytes = bytes.saturating_sub(needed as usize);

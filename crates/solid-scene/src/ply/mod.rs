@@ -98,7 +98,7 @@ mod tests {
         let head = "ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty float y\n\
                     property float z\nend_header\n1 2 3\n";
         let message =
-            "the header tells 1000000000 of `vertex`, which take 6000000000 bytes; the file has 6 for them";
+            "the header tells 1000000000 of `vertex`, of 6000000000 bytes in all; the file has 6 for them";
         assert_eq!(refused(head.as_bytes()), (Some(3), message.to_owned()));
         let idle = "ply\nformat ascii 1.0\nelement idle 99999999999\nend_header\n1 2 3\n";
         assert_eq!(
@@ -152,12 +152,12 @@ mod tests {
             (
                 header(xyz, &format!("{face}0 0 0\n3 0 0 1\n")),
                 Some(11),
-                "`face` 0 names vertex 1, but there are 1",
+                "`face` 0 names vertex 1, but there is 1",
             ),
             (
                 header(xyz, &format!("{face}0 0 0\n3 0 0 -1\n")),
                 Some(11),
-                "`face` 0 names vertex -1, but there are 1",
+                "`face` 0 names vertex -1, but there is 1",
             ),
             (
                 header(xyz, &format!("{face}0 0 0\n-3 0 0\n")),

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::fault::Result;
+use crate::text::counted;
 
 const HEADER: usize = 80;
 const COUNT: usize = 4;
@@ -32,8 +33,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>> {
     };
     let (needed, present) = (length(count), bytes.len());
     if needed > present as u64 {
+        let triangles = counted(count as usize, "triangle");
         let message =
-            format!("the header tells {count} triangles, which take {needed} bytes; the file has {present}");
+            format!("the header tells {triangles}, a file of {needed} bytes; the file has {present}");
         return Err(message.into());
     }
     let triangles = bytes[HEADER + COUNT..].chunks_exact(TRIANGLE).take(count as usize);

@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn a_count_beyond_the_file_is_refused() {
-        let message = "the header tells 1000000000 triangles, which take 50000000084 bytes; the file has 134";
+        let message = "the header tells 1000000000 triangles, a file of 50000000084 bytes; the file has 134";
         assert_eq!(refused(&binary(b"\0", 1_000_000_000, 1)), (None, message.to_owned()));
         assert_eq!(
             refused(b"short").1,

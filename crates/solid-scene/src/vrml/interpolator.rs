@@ -6,6 +6,7 @@ use glam::{DQuat, DVec3};
 
 use super::graph::{Graph, Node};
 use crate::error::SceneError;
+use crate::text::counted;
 
 /// What an event carries.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,9 +69,9 @@ impl Interpolator {
         };
         if values.len() != keys.len() {
             let message = format!(
-                "keyValue holds {} values for {} keys; expected {per_key}",
-                values.raw_len(),
-                keys.len()
+                "keyValue holds {} for {}; expected {per_key}",
+                counted(values.raw_len(), "value"),
+                counted(keys.len(), "key")
             );
             return Err(graph.error(node, message));
         }

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use super::limits::WARNINGS_MAX;
+use crate::text::counted;
 
 /// Warnings in the order of their first appearance, each once.
 #[derive(Debug, Default)]
@@ -30,7 +31,7 @@ impl Warnings {
     /// All of them; the last one tells how many were dropped.
     pub fn into_vec(mut self) -> Vec<String> {
         if self.dropped > 0 {
-            self.list.push(format!("{} more warnings", self.dropped));
+            self.list.push(counted(self.dropped, "more warning"));
         }
         self.list
     }

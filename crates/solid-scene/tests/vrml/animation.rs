@@ -146,7 +146,7 @@ fn malformed_interpolators_and_sensors_name_the_node() {
     let message = |interpolator: &str| error(&moving(interpolator, "translation")).1;
     assert_eq!(
         message("PositionInterpolator { key [ 0 1 ] keyValue [ 0 0 0 ] }"),
-        "PositionInterpolator I: keyValue holds 1 values for 2 keys; expected one for each key"
+        "PositionInterpolator I: keyValue holds 1 value for 2 keys; expected one for each key"
     );
     assert_eq!(
         message("PositionInterpolator { key [ 0 1 .5 ] keyValue [ 0 0 0, 0 0 0, 0 0 0 ] }"),

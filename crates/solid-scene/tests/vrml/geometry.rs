@@ -107,7 +107,7 @@ fn indices_are_checked() {
     let message = |index: &str| error(&shape(&set(index))).1;
     assert_eq!(
         message("0 1 3 -1"),
-        "IndexedFaceSet F: coordIndex holds 3; expected -1 or less than the 3 points"
+        "IndexedFaceSet F: coordIndex holds 3; expected -1, or less than 3, the number of points"
     );
     assert!(message("0 1 -2").contains("coordIndex holds -2"));
     assert!(message("0 1 2147483647").contains("coordIndex holds 2147483647"));
@@ -145,7 +145,7 @@ fn an_elevation_grid_spreads_along_x_and_z() {
     let message = |fields: &str| error(&shape(&format!("ElevationGrid {{ {fields} }}"))).1;
     assert_eq!(
         message("xDimension 2147483647 zDimension 2147483647 height [ 1 ]"),
-        "ElevationGrid: height holds 1 numbers; expected 2147483647 by 2147483647"
+        "ElevationGrid: height holds 1 number; expected 2147483647 by 2147483647"
     );
     assert!(message("xDimension -1 zDimension 1").contains("xDimension is -1"));
     assert!(message("xDimension 2 zDimension 1 height [ 0 0 ] xSpacing 0").contains("xSpacing is 0"));

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::{Builder, Geometry};
 use crate::error::SceneError;
 use crate::soup::Soup;
+use crate::text::counted;
 use crate::vrml::graph::Node;
 
 /// How many points a grid has along x and z, and how far they are apart.
@@ -41,7 +42,7 @@ impl Builder<'_> {
         let (columns, rows) = (dimension("xDimension")?, dimension("zDimension")?);
         let count = graph.count(node, "height");
         if columns.checked_mul(rows) != Some(count) {
-            let message = format!("height holds {count} numbers; expected {columns} by {rows}");
+            let message = format!("height holds {}; expected {columns} by {rows}", counted(count, "number"));
             return Err(graph.error(node, message));
         }
         Ok(Grid { columns, rows, x_spacing: spacing("xSpacing")?, z_spacing: spacing("zSpacing")? })

@@ -5,6 +5,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 use super::{Builder, Geometry};
 use crate::error::SceneError;
 use crate::soup::Soup;
+use crate::text::counted;
 use crate::vrml::graph::Node;
 
 impl Builder<'_> {
@@ -40,7 +41,8 @@ impl Builder<'_> {
         default: T,
     ) -> Vec<T> {
         if values.len() > 1 && values.len() < count {
-            self.warn(node, format!("{name} holds {} values for {count} points of the spine", values.len()));
+            let values = counted(values.len(), "value");
+            self.warn(node, format!("{name} holds {values} for {count} points of the spine"));
         }
         let last = values.last().copied().unwrap_or(default);
         values.resize(count, last);

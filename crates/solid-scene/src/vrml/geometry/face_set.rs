@@ -24,7 +24,8 @@ impl Builder<'_> {
             }
         }
         if small > 0 {
-            self.warn(node, format!("{small} faces have fewer than three corners; passed over"));
+            let faces = if small == 1 { "1 face has".to_owned() } else { format!("{small} faces have") };
+            self.warn(node, format!("{faces} fewer than three corners; passed over"));
         }
         self.soup(node, soup, deformation)
     }

@@ -21,6 +21,7 @@ use super::warnings::Warnings;
 use crate::error::SceneError;
 use crate::polygon::{EARCUT_CORNERS_MAX, triangulate};
 use crate::soup::Soup;
+use crate::text::counted;
 
 /// The shape of a geometry node.
 #[derive(Clone, Debug)]
@@ -104,8 +105,12 @@ impl<'a> Builder<'a> {
         let Some(signal) = signal else { return Ok(Coordinates { points, deformation: None }) };
         let expected = self.signals.point_count(signal);
         if expected != Some(points.len()) {
-            let sent = expected.map_or("changing numbers of".to_owned(), |count| count.to_string());
-            let message = format!("has {} points, but {sent} points are sent to it", points.len());
+            let sent = match expected {
+                Some(1) => "1 point is".to_owned(),
+                Some(count) => format!("{count} points are"),
+                None => "changing numbers of points are".to_owned(),
+            };
+            let message = format!("has {}, but {sent} sent to it", counted(points.len(), "point"));
             return Err(self.graph.error(coord, message));
         }
         let deformation = Deformation { signal, rest: Arc::from(points.as_slice()) };
@@ -145,8 +150,9 @@ impl<'a> Builder<'a> {
         let vertex = |&index: &i32| match u32::try_from(index) {
             Ok(vertex) if (vertex as usize) < count => Ok(vertex),
             _ => {
-                let message =
-                    format!("coordIndex holds {index}; expected -1 or less than the {count} points");
+                let message = format!(
+                    "coordIndex holds {index}; expected -1, or less than {count}, the number of points"
+                );
                 Err(self.graph.error(node, message))
             }
         };
