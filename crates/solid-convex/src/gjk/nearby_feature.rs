@@ -50,9 +50,7 @@ pub(super) fn closest<S: Simd>(
     )?;
     let offset = at_b.translation - at_a.translation;
     // As much as any coordinate of the difference.
-    let size = (stretch_a * a.reach().length_squared()).sqrt()
-        + (stretch_b * b.reach().length_squared()).sqrt()
-        + offset.abs().max_element();
+    let size = stretch_a.sqrt() * a.farthest() + stretch_b.sqrt() * b.farthest() + offset.abs().max_element();
     if !PLAIN_SIZES.contains(&size) {
         return None;
     }

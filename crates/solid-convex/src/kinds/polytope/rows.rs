@@ -80,18 +80,14 @@ impl Rows {
         DVec3::new(xs[lane], ys[lane], zs[lane])
     }
 
-    /// The products of those points with their directions: of all [`FEW`] rows, since nothing is spared by asking how many do not hold the last
-    /// point alone.
+    /// The products of those points with their directions.
     #[inline(always)]
-    pub fn greatest_of_both<S: Simd>(simd: S, [a, b]: [&Rows; 2], along: [DVec3; 2]) -> [f64; 2] {
-        let (along_a, along_b) = (products(simd, along[0]), products(simd, along[1]));
-        let (a, b) = (a.first::<FEW>(), b.first::<FEW>());
-        let mut best = [along_a(&a[0]), along_b(&b[0])];
-        for k in 1..FEW {
-            best[0] = best[0].max(along_a(&a[k]));
-            best[1] = best[1].max(along_b(&b[k]));
+    pub fn greatest_of_both<S: Simd>(simd: S, both: [&Rows; 2], along: [DVec3; 2]) -> [f64; 2] {
+        if both[0].count.max(both[1].count) < FEW {
+            greatest_of_both::<S, { FEW - 1 }>(simd, both, along)
+        } else {
+            greatest_of_both::<S, FEW>(simd, both, along)
         }
-        [best[0].reduce_max(), best[1].reduce_max()]
     }
 
     /// The first rows, so many as there are at least.
@@ -181,6 +177,19 @@ fn furthest_of_both<S: Simd, const N: usize>(simd: S, [a, b]: [&Rows; 2], along:
         dots[1][k] = along_b(&b[k]);
     }
     [first_of_greatest(simd, &dots[0]), first_of_greatest(simd, &dots[1])]
+}
+
+/// See [`Rows::greatest_of_both`]. Of `N` rows of each.
+#[inline(always)]
+fn greatest_of_both<S: Simd, const N: usize>(simd: S, [a, b]: [&Rows; 2], along: [DVec3; 2]) -> [f64; 2] {
+    let (along_a, along_b) = (products(simd, along[0]), products(simd, along[1]));
+    let (a, b) = (a.first::<N>(), b.first::<N>());
+    let mut best = [along_a(&a[0]), along_b(&b[0])];
+    for k in 1..N {
+        best[0] = best[0].max(along_a(&a[k]));
+        best[1] = best[1].max(along_b(&b[k]));
+    }
+    [best[0].reduce_max(), best[1].reduce_max()]
 }
 
 /// The index of the greatest product, the first of equals; past the end when none is a number.
