@@ -8,13 +8,13 @@ use glam::{DAffine3, DVec3};
 use super::coherent::Memory;
 use super::pairs::{Pairs, Points, images, point, put};
 use super::{ClosestInWorld, DISTANCE_TOLERANCE};
+use crate::Polytope;
 use crate::difference::SUPPORT_ERROR;
 use crate::feature::{
     VOLUME_ERROR, Within, opposite_of_furthest, sides_of_origin, weights_of_origin, within_edge, within_face,
 };
 use crate::polytope_difference::is_plain;
 use crate::similarity::rough_squares;
-use crate::{Polytope, Support};
 
 /// Features that are looked at before it gives up. From one frame to the next nine of ten closest points stay on theirs, and nearly all of the
 /// others are on the second or third; more cost objects that jumped more than they spare others.
