@@ -55,9 +55,9 @@ const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 pub(super) struct Folded {
     pub a: Weights,
     pub b: Weights,
-    /// A length in the world times this is at least that many units; these are so chosen that no weight exceeds 1.
+    /// A length in the world times this is more units than it has, by what rounding may add to squares. Units are so chosen that no weight exceeds 1.
     pub per_unit: f64,
-    /// As an `f32`, it is at most that many, less what rounding may add to squares.
+    /// A length in the world times this is no more units than it has.
     pub units: f32,
 }
 

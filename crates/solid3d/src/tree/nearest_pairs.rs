@@ -114,6 +114,9 @@ fn walk<S: Simd>(
     let mut opening = Opening { duel, metric, faces, tested: Default::default() };
     let mut limit = metric.limit(*best);
     while let Some((square, pair)) = stack.pop() {
+        if *best == 0.0 {
+            return;
+        }
         if square >= limit {
             continue;
         }

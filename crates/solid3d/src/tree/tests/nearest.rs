@@ -39,6 +39,17 @@ fn nearest_ends_at_zero_and_needs_not_find() {
     tree.nearest(|_| 1.0, &mut limit, &mut traversal, |_, _| panic!("nothing is nearer than the limit"));
 }
 
+#[test]
+fn nearest_pairs_end_at_zero() {
+    let tree = Tree::build(&[Aabb::new(DVec3::ZERO, DVec3::ONE); 500]);
+    let relative = relative(DAffine3::IDENTITY, 2.0, 2.0);
+    let ones = PairMetric { facet_a: DVec3::ONE, facet_b: DVec3::ONE, sigma_min_a: 1.0, sigma_min_b: 1.0 };
+    let mut traversal = Traversal::default();
+    let mut best = f64::INFINITY;
+    nearest_pairs(&tree, &tree, &relative, &ones, &mut best, &mut traversal, |_, _, best| *best = 0.0);
+    assert_eq!(traversal.counters.leaf_visits, 1);
+}
+
 /// Four points: a primitive whose distance to another is simple.
 type Cloud = [DVec3; 4];
 
