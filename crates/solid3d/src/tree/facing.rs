@@ -28,7 +28,7 @@ pub(crate) struct Facing<'t> {
 /// to tree coordinates, 27u from the box, 24u from the slab); and the two subtractions add 25u. This is 128u.
 const MARGIN: f32 = 64.0 * f32::EPSILON;
 
-/// Pays for a direction's norm that is 1 up to rounding only.
+/// Pays for a direction's norm that is 1 up to rounding only; what rounds squares, the metric pays for.
 const NORM: f64 = 1.0 - 8.0 * f32::EPSILON as f64;
 
 /// What is divided by is at least this.
