@@ -10,9 +10,19 @@ mod common;
 use common::{cube, direction, in_cube, placement, random_mesh, shape_of};
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
+use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid3d::query::{self, FromInside, Ray, RayOptions};
 use solid3d::{BroadPhaseKind, ObjectHit, ObjectId, Shape, World, WorldOptions, glam};
+
+/// Adds a mesh or a convex shape, of one of two ranks.
+fn add_random(world: &mut World, rng: &mut StdRng, i: u8) -> ObjectId {
+    let shape = match i % 3 {
+        0 => random_mesh(rng, 40).shape(),
+        _ => shape_of(&random_shape(rng, 1.0)),
+    };
+    world.add_ranked(&shape, placement(rng, 4.5), i % 2).unwrap()
+}
 
 /// With either broad phase, and whatever the world knows already: nothing tested, all tested, some moved since, some removed.
 #[test]
@@ -25,11 +35,7 @@ fn a_world_sees_what_its_objects_show() {
         let (mut hits, mut cases, mut in_region) = (0, 0, 0);
         for round in 0..12 {
             for i in 0..12 {
-                let shape = match i % 3 {
-                    0 => random_mesh(&mut rng, 40).shape(),
-                    _ => shape_of(&random_shape(&mut rng, 1.0)),
-                };
-                ids.push(world.add_ranked(&shape, placement(&mut rng, 4.5), i % 2).unwrap());
+                ids.push(add_random(&mut world, &mut rng, i));
             }
             if round % 3 > 0 {
                 world.test();
@@ -100,11 +106,7 @@ fn a_shape_meets_first_what_the_earliest_cast_meets() {
         let (mut met, mut cases, mut at_start) = (0, 0, 0);
         for round in 0..10 {
             for i in 0..4 {
-                let shape = match i % 3 {
-                    0 => random_mesh(&mut rng, 40).shape(),
-                    _ => shape_of(&random_shape(&mut rng, 1.0)),
-                };
-                world.add_ranked(&shape, placement(&mut rng, 4.5), i % 2).unwrap();
+                add_random(&mut world, &mut rng, i);
             }
             if round % 3 > 0 {
                 world.refresh();

@@ -191,8 +191,8 @@ impl NearQuery {
 mod tests {
     use super::*;
     use crate::tree::node::WIDTH;
-    use crate::tree::tests::scenes::{affine, point, rng};
-    use glam::{DMat3, DVec3};
+    use crate::tree::tests::scenes::{affine, metric, point, rng, uniform};
+    use glam::{DAffine3, DVec3};
     use rand::Rng;
     use solid_convex::simd::alike;
 
@@ -231,22 +231,12 @@ mod tests {
             let tree = Tree::build(&points.iter().map(|&p| Aabb::new(p, p)).collect::<Vec<_>>());
             let query = if tells_nothing { points[case / 10 % 20] } else { point(&mut rng, 2.0 * size) };
             let (knows_bounds, knows_box) = (case % 3 == 1, case % 3 == 2);
-            let (stretch, metric) = if knows_bounds {
-                let all = DVec3::splat(scale);
-                (DMat3::from_diagonal(all), (all, scale))
+            let map = if knows_bounds {
+                DAffine3::from_scale(DVec3::splat(scale))
             } else {
-                let map = affine(&mut rng, scale, 0.0).matrix3;
-                let rows = map.inverse().transpose();
-                let facet = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length());
-                // One over the norm of Frobenius of the inverse is no more than the least singular value.
-                (map, ((1.0 - 1e-14) / facet, (1.0 - 1e-14) / facet.length()))
+                affine(&mut rng, scale, 0.0)
             };
-            let metric = PairMetric {
-                facet_a: metric.0,
-                facet_b: DVec3::ZERO,
-                sigma_min_a: metric.1,
-                sigma_min_b: 0.0,
-            };
+            let metric = if tells_nothing { uniform(0.0) } else { metric(&map, &map) };
             let is_ball = case % 3 == 0;
             let radius = match case / 3 % 5 {
                 _ if tells_nothing => 0.0,
@@ -257,7 +247,7 @@ mod tests {
             let within = knows_box.then_some(around.bounds);
             let near_query = tree.near_query(within, around, &metric);
             let distances: Vec<f64> = (points.iter())
-                .map(|&p| (stretch * (p - query)).length() - if is_ball { radius } else { 0.0 })
+                .map(|&p| map.transform_vector3(p - query).length() - if is_ball { radius } else { 0.0 })
                 .map(|distance| distance.max(0.0))
                 .collect();
             let bound =

@@ -1,9 +1,11 @@
 //! Branch and bound against brute force.
 
-use super::scenes::{affine, boxes_of, point, random_boxes, relative, rng, torus, torus_placement};
+use super::scenes::{
+    affine, boxes_of, metric, point, random_boxes, relative, rng, torus, torus_placement, uniform,
+};
 use crate::Aabb;
-use crate::tree::{PairMetric, Relative, Traversal, Tree, nearest_pairs};
-use glam::{DAffine3, DMat3, DVec3};
+use crate::tree::{Relative, Traversal, Tree, nearest_pairs};
+use glam::{DAffine3, DVec3};
 use rand::rngs::StdRng;
 
 #[test]
@@ -43,7 +45,7 @@ fn nearest_ends_at_zero_and_needs_not_find() {
 fn nearest_pairs_end_at_zero() {
     let tree = Tree::build(&[Aabb::new(DVec3::ZERO, DVec3::ONE); 500]);
     let relative = relative(DAffine3::IDENTITY, 2.0, 2.0);
-    let ones = PairMetric { facet_a: DVec3::ONE, facet_b: DVec3::ONE, sigma_min_a: 1.0, sigma_min_b: 1.0 };
+    let ones = uniform(1.0);
     let mut traversal = Traversal::default();
     let mut best = f64::INFINITY;
     nearest_pairs(&tree, &tree, &relative, &ones, &mut best, &mut traversal, |_, _, best| *best = 0.0);
@@ -70,28 +72,6 @@ fn placed(clouds: &[Cloud], map: &DAffine3) -> Vec<Cloud> {
 
 fn tree_of(clouds: &[Cloud]) -> Tree {
     Tree::build(&clouds.iter().map(|c| Aabb::of_points(*c)).collect::<Vec<_>>())
-}
-
-fn facet(linear: DMat3) -> DVec3 {
-    let rows = linear.inverse().transpose();
-    DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length()).recip() * (1.0 - 1e-14)
-}
-
-/// The inverse of the Frobenius norm of the inverse is at most the least singular value.
-fn sigma_min(linear: DMat3) -> f64 {
-    let inverse = linear.inverse();
-    let squared =
-        inverse.x_axis.length_squared() + inverse.y_axis.length_squared() + inverse.z_axis.length_squared();
-    squared.sqrt().recip() * (1.0 - 1e-14)
-}
-
-fn metric(a: &DAffine3, b: &DAffine3) -> PairMetric {
-    PairMetric {
-        facet_a: facet(a.matrix3),
-        facet_b: facet(b.matrix3),
-        sigma_min_a: sigma_min(a.matrix3),
-        sigma_min_b: sigma_min(b.matrix3),
-    }
 }
 
 #[test]
@@ -137,8 +117,7 @@ fn a_metric_that_knows_nothing_visits_everything() {
     let mut rng = rng(13);
     let tree = tree_of(&clouds(&mut rng, 100, 1.0));
     let far = relative(DAffine3::from_translation(DVec3::splat(10.0)), 2.0, 2.0);
-    let nothing =
-        PairMetric { facet_a: DVec3::ZERO, facet_b: DVec3::ZERO, sigma_min_a: 0.0, sigma_min_b: 0.0 };
+    let nothing = uniform(0.0);
     let mut seen = 0;
     nearest_pairs(&tree, &tree, &far, &nothing, &mut 1e-300, &mut Traversal::default(), |a, b, _| {
         seen += a.len() * b.len();
@@ -160,8 +139,7 @@ fn distance_in_units_of_any_size() {
             slack_in_a: 1e-14 * scale,
             slack_in_b: 1e-14 * scale,
         };
-        let ones =
-            PairMetric { facet_a: DVec3::ONE, facet_b: DVec3::ONE, sigma_min_a: 1.0, sigma_min_b: 1.0 };
+        let ones = uniform(1.0);
         let other = placed(&unit, &DAffine3::from_translation(shift));
         let mut best = f64::INFINITY;
         let mut traversal = Traversal::default();
@@ -183,7 +161,7 @@ fn the_work_on_separated_tori_is_modest() {
     let mut rng = rng(15);
     let triangles = torus(100, 25, |p| p);
     let tree = Tree::build(&boxes_of(&triangles));
-    let ones = PairMetric { facet_a: DVec3::ONE, facet_b: DVec3::ONE, sigma_min_a: 1.0, sigma_min_b: 1.0 };
+    let ones = uniform(1.0);
     let mut traversal = Traversal::default();
     let rounds = 200;
     for _ in 0..rounds {

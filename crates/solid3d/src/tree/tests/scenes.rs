@@ -1,7 +1,7 @@
 //! What the tests are run on.
 
 use crate::Aabb;
-use crate::tree::Relative;
+use crate::tree::{PairMetric, Relative};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -55,6 +55,35 @@ pub fn relative(b_to_a: DAffine3, radius_a: f64, radius_b: f64) -> Relative {
         a_to_b,
         slack_in_a: 1e-14 * reach(&b_to_a, radius_b),
         slack_in_b: 1e-13 * reach(&a_to_b, radius_a.max(b_to_a.translation.length())),
+    }
+}
+
+fn facet(linear: DMat3) -> DVec3 {
+    let rows = linear.inverse().transpose();
+    DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length()).recip() * (1.0 - 1e-14)
+}
+
+/// The inverse of the Frobenius norm of the inverse is at most the least singular value.
+fn sigma_min(linear: DMat3) -> f64 {
+    let inverse = linear.inverse();
+    let squared =
+        inverse.x_axis.length_squared() + inverse.y_axis.length_squared() + inverse.z_axis.length_squared();
+    squared.sqrt().recip() * (1.0 - 1e-14)
+}
+
+/// A distance of one in either space is worth so much.
+pub fn uniform(length: f64) -> PairMetric {
+    let facets = DVec3::splat(length);
+    PairMetric { facet_a: facets, facet_b: facets, sigma_min_a: length, sigma_min_b: length }
+}
+
+/// What distances in two placed spaces are worth, less some roundings.
+pub fn metric(a: &DAffine3, b: &DAffine3) -> PairMetric {
+    PairMetric {
+        facet_a: facet(a.matrix3),
+        facet_b: facet(b.matrix3),
+        sigma_min_a: sigma_min(a.matrix3),
+        sigma_min_b: sigma_min(b.matrix3),
     }
 }
 

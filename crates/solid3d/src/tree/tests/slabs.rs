@@ -6,16 +6,14 @@ use rand::Rng;
 use rand::rngs::StdRng;
 use solid_convex::simd::{alike, dispatch};
 
-use super::scenes::{affine, point, relative, rng, torus};
+use super::scenes::{affine, point, relative, rng, torus, uniform};
 use crate::Aabb;
 use crate::tree::crossing::Folded;
 use crate::tree::eights::Overlaps;
 use crate::tree::node::{Kind, WIDTH};
 use crate::tree::parting::Parting;
 use crate::tree::slabs::center;
-use crate::tree::{
-    Counters, Facing, NearLeafPairs, PairMetric, Place, Slabs, Traversal, Tree, nearest_pairs_on,
-};
+use crate::tree::{Counters, Facing, NearLeafPairs, Place, Slabs, Traversal, Tree, nearest_pairs_on};
 
 /// Primitives as hulls of vertices, which are all that is looked at.
 struct Soup {
@@ -152,13 +150,7 @@ fn slabs_lose_nothing() {
         let slabs = soups.each_ref().map(Soup::slabs);
         let facing = Facing { slabs: slabs.each_ref(), placements };
         // Boxes tell next to nothing: all that is skipped is skipped by slabs.
-        let little = 1e-6;
-        let next_to_nothing = PairMetric {
-            facet_a: DVec3::splat(little),
-            facet_b: DVec3::splat(little),
-            sigma_min_a: little,
-            sigma_min_b: little,
-        };
+        let next_to_nothing = uniform(1e-6);
         let mut answers = Vec::new();
         for facing in [Some(&facing), None] {
             answers.push(alike(|level| {
