@@ -9,7 +9,7 @@ use solid_convex::simd::{Level, dispatch};
 
 use super::lanes::{bits, distances_squared_to_box, lanes};
 use super::metric::{Folded, PairMetric};
-use super::node::{Child, Kind, Node};
+use super::node::{Kind, Node};
 use super::normal::round_down;
 use super::packed::PackedBox;
 use super::squares::{limit, raised, reaching};
@@ -117,11 +117,10 @@ impl Tree {
             if *best == 0.0 {
                 return;
             }
-            let child = self.child_at(place);
-            if square >= limit || child == Child::EMPTY {
+            if square >= limit {
                 continue;
             }
-            match child.kind() {
+            match self.child_at(place).kind() {
                 Kind::Empty => {}
                 Kind::Leaf(range) => {
                     counters.leaf_visits += 1;
@@ -132,13 +131,13 @@ impl Tree {
                     counters.box_tests += 1;
                     let node = &self.nodes[index];
                     let mut squares = query.squares(simd, node);
-                    if reaching(simd, squares, limit) == u32::MAX {
-                        continue;
-                    }
-                    if let Some(bounds) = visitor.bounds(simd, &Boxes(node)) {
+                    let mut near = !reaching(simd, squares, limit);
+                    if near != 0
+                        && let Some(bounds) = visitor.bounds(simd, &Boxes(node))
+                    {
                         squares = query.raised(simd, squares, bounds);
+                        near = !reaching(simd, squares, limit);
                     }
-                    let near = !reaching(simd, squares, limit);
                     if near == 0 {
                         continue;
                     }
