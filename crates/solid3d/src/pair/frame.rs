@@ -194,13 +194,6 @@ impl Stretch {
     /// Of what is bounded in the other space, and has no lengths of its own.
     pub const NONE: Stretch = Stretch { facets: DVec3::ZERO, least: 0.0 };
 
-    /// Of a space that is scaled alike in all directions.
-    #[inline(always)]
-    pub fn alike(scale: f64) -> Stretch {
-        let least = scale.min(STRETCH_MAX);
-        Stretch { facets: DVec3::splat(least), least }
-    }
-
     /// What bounds distances of two trees in the common frame.
     pub fn metric(&self, other: &Stretch) -> PairMetric {
         PairMetric {

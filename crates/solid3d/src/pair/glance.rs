@@ -46,11 +46,18 @@ const RADIUS_MIN: f64 = 1.0 / (1u64 << 30) as f64;
 /// A ball or a box, or a ball in a shape and one around it, beside which triangles are held.
 pub(super) struct Glance {
     body: Body,
-    /// From tree coordinates to the frame of the body, by rows.
-    rows: [[f64; 3]; 3],
+    /// From tree coordinates to the frame of the body.
+    linear: Linear,
     offset: [f64; 3],
     /// What `f64` loses.
     slack: f64,
+}
+
+/// A linear map.
+enum Linear {
+    /// It makes all so many times as long.
+    Alike(f64),
+    Rows([[f64; 3]; 3]),
 }
 
 /// What meets the body within `inner` is clear, and what is apart from it beyond `outer`.
@@ -70,8 +77,13 @@ impl Body {
     /// What has a ball in it and is in another, seen from the centre of the first; lengths are so many times as long here.
     #[inline(always)]
     pub fn between(Balls { inner, outer }: &Balls, times: f64, gap: f64) -> Body {
-        let around = outer.radius + outer.center.distance(inner.center);
-        Body { is_ball: true, inner: inner.radius * times - gap, outer: around * times + gap }
+        Body::between_radii([inner.radius, outer.radius + outer.center.distance(inner.center)], times, gap)
+    }
+
+    /// The same, by the radii of two balls about one point.
+    #[inline(always)]
+    pub fn between_radii([inner, outer]: [f64; 2], times: f64, gap: f64) -> Body {
+        Body { is_ball: true, inner: inner * times - gap, outer: outer * times + gap }
     }
 
     #[inline(always)]
@@ -127,7 +139,7 @@ impl Glance {
             + (x.abs() + y.abs() + z.abs());
         Glance {
             body,
-            rows: [[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]],
+            linear: Linear::Rows([[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]]),
             offset: (to_world(&map.matrix3, normal.origin) + map.translation - middle).to_array(),
             slack: slack + ROUNDING_F64 * terms.max_element(),
         }
@@ -139,7 +151,7 @@ impl Glance {
         let (step, origin) = (times * normal.scale, times * normal.origin);
         Glance {
             body,
-            rows: [[step, 0.0, 0.0], [0.0, step, 0.0], [0.0, 0.0, step]],
+            linear: Linear::Alike(step),
             offset: (origin - middle).to_array(),
             slack: slack + ROUNDING_F64 * ((origin.abs() + middle.abs()).max_element() + step),
         }
@@ -157,17 +169,41 @@ impl Glance {
 
     #[inline(always)]
     fn place<S: Simd>(&self, simd: S, image: &Image) -> Placed<S> {
+        match &self.linear {
+            Linear::Alike(times) => self.place_by(
+                simd,
+                image,
+                #[inline(always)]
+                |axis| [(axis, *times)],
+            ),
+            Linear::Rows(rows) => self.place_by(
+                simd,
+                image,
+                #[inline(always)]
+                |axis| [(0, rows[axis][0]), (1, rows[axis][1]), (2, rows[axis][2])],
+            ),
+        }
+    }
+
+    /// By what has a part in each coordinate: some of the tree's, by their numbers, so many times.
+    #[inline(always)]
+    fn place_by<S: Simd, const PARTS: usize>(
+        &self,
+        simd: S,
+        image: &Image,
+        parts: impl Fn(usize) -> [(usize, f64); PARTS],
+    ) -> Placed<S> {
         let grid = [image.axis(0), image.axis(1), image.axis(2)];
         let zero = splat(simd, 0.0);
-        let mut coefficients = [[zero; 3]; 3];
+        let mut coefficients = [[zero; PARTS]; 3];
         let (mut base, mut error, mut reach) = ([zero; 3], [0.0; 3], 0.0);
         for axis in 0..3 {
             let (mut at_min, mut sum) = (self.offset[axis], 0.0);
-            for (j, (min, step)) in grid.into_iter().enumerate() {
-                let entry = self.rows[axis][j];
+            for (part, (of, entry)) in parts(axis).into_iter().enumerate() {
+                let (min, step) = grid[of];
                 at_min += entry * min;
                 sum += (entry * step).abs();
-                coefficients[axis][j] = splat(simd, entry * step);
+                coefficients[axis][part] = splat(simd, entry * step);
             }
             base[axis] = splat(simd, at_min);
             let furthest = at_min.abs() + f64::from(STEPS) * sum;
@@ -177,10 +213,14 @@ impl Glance {
         let mut corners = [[zero; 3]; 3];
         for (number, corner) in corners.iter_mut().enumerate() {
             let image = image.corner(simd, number);
-            let [x, y, z] = [image.along(simd, 0), image.along(simd, 1), image.along(simd, 2)];
+            let along = [image.along(simd, 0), image.along(simd, 1), image.along(simd, 2)];
             for axis in 0..3 {
-                let [a, b, c] = coefficients[axis];
-                corner[axis] = x * a + y * b + z * c + base[axis];
+                let mut sum = zero;
+                for (part, (of, _)) in parts(axis).into_iter().enumerate() {
+                    let product = along[of] * coefficients[axis][part];
+                    sum = if part == 0 { product } else { sum + product };
+                }
+                corner[axis] = sum + base[axis];
             }
         }
         Placed { corners, error, reach }

@@ -65,6 +65,14 @@ pub(super) struct Weights {
     pub norm: f32,
 }
 
+impl Weights {
+    /// Gaps count fully, whatever their direction.
+    pub const ALL: Weights = Weights { axes: [1.0; 3], norm: 1.0 };
+
+    /// Nothing counts.
+    pub const NONE: Weights = Weights { axes: [0.0; 3], norm: 0.0 };
+}
+
 /// Lower bounds of the squared distances between a box of the other space and the lanes, up to the relative rounding of ten
 /// operations.
 #[inline(always)]
@@ -77,8 +85,8 @@ pub(super) fn distances_squared<S: Simd>(
     on_box: &Weights,
 ) -> f32x8<S> {
     part!(simd => {
-        let along_lanes = weighed(simd, interval_gaps(simd, node, probe), on_lanes);
-        let along_box = weighed(simd, projected_gaps(simd, node, crossing, probe), on_box);
+        let along_lanes = weighed(simd, positive(simd, interval_gaps(simd, node, probe)), on_lanes);
+        let along_box = weighed(simd, positive(simd, projected_gaps(simd, node, crossing, probe)), on_box);
         along_lanes.max(along_box)
     })
 }
@@ -92,10 +100,10 @@ pub(super) fn distances_squared_to_box<S: Simd>(
     weights: &Weights,
 ) -> f32x8<S> {
     part!(simd => {
-        let (lo, hi) = (query.min(), query.max());
+        let (lo, hi, zero) = (query.min(), query.max(), splat(simd, 0.0));
         let gaps = three(
             #[inline(always)]
-            |axis| interval_gap(simd, node, axis, (lo[axis], hi[axis])),
+            |axis| interval_gap(simd, node, axis, (lo[axis], hi[axis])).max(zero),
         );
         weighed(simd, gaps, weights)
     })
@@ -156,21 +164,32 @@ pub(super) fn lanes<S: Simd>(simd: S, node: &Node, axis: usize) -> (f32x8<S>, f3
 /// Gaps are counted up to here, so that their squares do not overflow.
 const GAP_MAX: f32 = 1e18;
 
+/// Gaps above zero. What is not a number counts nothing.
+#[inline(always)]
+fn positive<S: Simd>(simd: S, gaps: [f32x8<S>; 3]) -> [f32x8<S>; 3] {
+    three(
+        #[inline(always)]
+        |axis| gaps[axis].max_precise(splat(simd, 0.0)),
+    )
+}
+
 /// The squared distance that the gaps on three axes imply.
 #[inline(always)]
 fn weighed<S: Simd>(simd: S, gaps: [f32x8<S>; 3], weights: &Weights) -> f32x8<S> {
-    let zero = splat(simd, 0.0);
     let [x, y, z] = three(
         #[inline(always)]
         |axis| {
-            // What is not a number counts nothing.
-            let positive = gaps[axis].max_precise(zero).min(splat(simd, GAP_MAX));
-            positive * positive
+            let gap = gaps[axis].min(splat(simd, GAP_MAX));
+            gap * gap
         },
     );
+    let sum = x + y + z;
+    if weights.norm >= 1.0 {
+        return sum; // no weight is more
+    }
     let [a, b, c] = weights.axes;
     let one_axis = (splat(simd, a) * x).max(splat(simd, b) * y).max(splat(simd, c) * z);
-    (splat(simd, weights.norm) * (x + y + z)).max(one_axis)
+    (splat(simd, weights.norm) * sum).max(one_axis)
 }
 
 /// The set bits of a mask, from the lowest.

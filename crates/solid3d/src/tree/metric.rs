@@ -52,13 +52,13 @@ impl PairMetric {
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
 /// A metric in tree coordinates.
-pub(super) struct Folded {
-    pub a: Weights,
-    pub b: Weights,
+pub(crate) struct Folded {
+    pub(super) a: Weights,
+    pub(super) b: Weights,
     /// A length in the world times this is more units than it has, by what rounding may add to squares. Units are so chosen that no weight exceeds 1.
-    pub per_unit: f64,
+    pub(super) per_unit: f64,
     /// A length in the world times this is no more units than it has.
-    pub units: f32,
+    pub(super) units: f32,
 }
 
 impl Folded {
@@ -67,8 +67,7 @@ impl Folded {
         let (axes_a, norm_a) = (metric.facet_a * a.scale, metric.sigma_min_a * a.scale);
         let (axes_b, norm_b) = (metric.facet_b * b.scale, metric.sigma_min_b * b.scale);
         let unit = axes_a.max(axes_b).max_element().max(norm_a).max(norm_b);
-        // Without a unit every bound is zero: nothing is skipped, and nothing lost.
-        let inverse = if unit.is_normal() { unit.recip() } else { 0.0 };
+        let inverse = inverse(unit);
         let squared = {
             #[inline(always)]
             |w: f64| (w * inverse) as f32 * (w * inverse) as f32
@@ -77,9 +76,21 @@ impl Folded {
             #[inline(always)]
             |axes: DVec3, norm: f64| Weights { axes: each(axes.to_array(), squared), norm: squared(norm) }
         };
+        Folded::in_units(inverse, weights(axes_a, norm_a), weights(axes_b, norm_b))
+    }
+
+    /// Of a tree in whose space whatever has a length of one has at least `length` in the world.
+    #[inline(always)]
+    pub fn alike(length: f64, normal: &Normal) -> Self {
+        Folded::in_units(inverse(length * normal.scale), Weights::ALL, Weights::NONE)
+    }
+
+    /// In units of which so many are a length of one in the world.
+    #[inline(always)]
+    fn in_units(inverse: f64, a: Weights, b: Weights) -> Self {
         Folded {
-            a: weights(axes_a, norm_a),
-            b: weights(axes_b, norm_b),
+            a,
+            b,
             per_unit: if inverse > 0.0 { inverse * (1.0 + 2.0 * ROUNDING) } else { f64::INFINITY },
             units: round_down(inverse.min(f64::from(f32::MAX))),
         }
@@ -90,4 +101,10 @@ impl Folded {
     pub fn limit(&self, distance: f64) -> f32 {
         limit(distance * self.per_unit)
     }
+}
+
+/// How many units are a length of one in the world, or zero: without a unit every bound is zero, nothing is skipped, and nothing lost.
+#[inline(always)]
+fn inverse(unit: f64) -> f64 {
+    if unit.is_normal() { unit.recip() } else { 0.0 }
 }

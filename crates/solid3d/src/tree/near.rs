@@ -12,7 +12,7 @@ use super::metric::{Folded, PairMetric};
 use super::node::{Kind, Node};
 use super::normal::round_down;
 use super::packed::PackedBox;
-use super::squares::{limit, raised, reaching};
+use super::squares::{below, key_limit, keys, lane, limit, raised};
 use super::{Leaf, Place, Traversal, Tree};
 use crate::Aabb;
 
@@ -65,18 +65,34 @@ pub(crate) trait NearLeaves {
 }
 
 impl Tree {
-    /// The query that is around `around`, and within a box too. Of `metric`, the half for `a` counts. Where both tell no distance, the former gives the
-    /// order.
+    /// What distances are worth in the world, of which the half for `a` counts.
+    #[inline(always)]
+    pub(crate) fn folded(&self, metric: &PairMetric) -> Folded {
+        Folded::new(metric, &self.normal, &self.normal)
+    }
+
+    /// The same, where all are stretched alike: those of one are at least `length`.
+    #[inline(always)]
+    pub(crate) fn folded_alike(&self, length: f64) -> Folded {
+        Folded::alike(length, &self.normal)
+    }
+
+    /// The query that is around `around`, and within a box too. Where both tell no distance, the former gives the order.
     #[inline(always)] // into kernels, where nothing of it need be written before it is read
-    pub(crate) fn near_query(&self, within: Option<Aabb>, around: Around, metric: &PairMetric) -> NearQuery {
-        let metric = Folded::new(metric, &self.normal, &self.normal);
+    pub(crate) fn near_query<S: Simd>(
+        &self,
+        simd: S,
+        within: Option<Aabb>,
+        around: Around,
+        metric: Folded,
+    ) -> NearQuery {
         let Around { bounds, radius } = around;
         NearQuery {
-            around: self.normal.pack_any(&bounds),
+            around: self.normal.pack_any(simd, &bounds),
             radius,
             within: within.map(
                 #[inline(always)]
-                |bounds| self.normal.pack_any(&bounds),
+                |bounds| self.normal.pack_any(simd, &bounds),
             ),
             reach: round_down((radius * f64::from(metric.units)).min(f64::from(f32::MAX))),
             metric,
@@ -109,15 +125,15 @@ impl Tree {
         broods.clear();
         let mut limit = query.limit(*best);
         // What comes next, where it is known: of a node with near children mostly one of these.
-        let mut next = Some((0.0, Place::ROOT));
-        while let Some((square, place)) = next.take().or_else(
+        let mut next = Some((0, Place::ROOT));
+        while let Some((key, place)) = next.take().or_else(
             #[inline(always)]
             || broods.take(simd, V::NODES_LOOKED_AT, limit),
         ) {
             if *best == 0.0 {
                 return;
             }
-            if square >= limit {
+            if key >= limit {
                 continue;
             }
             match self.child_at(place).kind() {
@@ -130,20 +146,21 @@ impl Tree {
                 Kind::Inner(index) => {
                     counters.box_tests += 1;
                     let node = &self.nodes[index];
-                    let mut squares = query.squares(simd, node);
-                    let mut near = !reaching(simd, squares, limit);
+                    let squares = query.squares(simd, node);
+                    let mut found = keys(simd, squares);
+                    let mut near = below(simd, found, limit);
                     if near != 0
                         && let Some(bounds) = visitor.bounds(simd, &Boxes(node))
                     {
-                        squares = query.raised(simd, squares, bounds);
-                        near = !reaching(simd, squares, limit);
+                        found = keys(simd, query.raised(simd, squares, bounds));
+                        near = below(simd, found, limit);
                     }
                     if near == 0 {
                         continue;
                     }
                     if near.is_power_of_two() {
-                        next =
-                            Some((squares.reduce_min(), Place::lane(index, near.trailing_zeros() as usize)));
+                        let least = found.reduce_min();
+                        next = Some((least, Place::lane(index, lane(least))));
                         continue;
                     }
                     for lane in bits(near) {
@@ -153,7 +170,7 @@ impl Tree {
                             |start| visitor.prefetch(start),
                         );
                     }
-                    next = broods.add_and_take(simd, (index, squares), V::NODES_LOOKED_AT, limit);
+                    next = broods.add_and_take(simd, (index, found), V::NODES_LOOKED_AT, limit);
                 }
             }
         }
@@ -163,8 +180,8 @@ impl Tree {
 impl NearQuery {
     /// What has a square of at least this is no nearer than a distance.
     #[inline(always)]
-    fn limit(&self, distance: f64) -> f32 {
-        limit((distance + self.radius) * self.metric.per_unit)
+    fn limit(&self, distance: f64) -> i32 {
+        key_limit(limit((distance + self.radius) * self.metric.per_unit))
     }
 
     /// Those of the lanes of a node. Empty lanes are far off, or do no harm.
@@ -244,7 +261,6 @@ mod tests {
             };
             let around = Around { bounds: Aabb::new(query, query), radius };
             let within = knows_box.then_some(around.bounds);
-            let near_query = tree.near_query(within, around, &metric);
             let distances: Vec<f64> = (points.iter())
                 .map(|&p| map.transform_vector3(p - query).length() - if is_ball { radius } else { 0.0 })
                 .map(|distance| distance.max(0.0))
@@ -256,7 +272,8 @@ mod tests {
                 let mut best = limit;
                 let mut visitor =
                     Nearest { tree: &tree, distances: &distances, bound: knows_bounds.then_some(bound) };
-                tree.nearest_on(level, &near_query, &mut best, &mut traversal, &mut visitor);
+                let query = dispatch!(widest level, simd => tree.near_query(simd, within, around, tree.folded(&metric)));
+                tree.nearest_on(level, &query, &mut best, &mut traversal, &mut visitor);
                 best
             });
             assert_eq!(found, distances.iter().copied().fold(limit, f64::min), "case {case}");

@@ -6,6 +6,8 @@
 use super::packed::{FAR, PackedBox};
 use crate::Aabb;
 use crate::exact::power_of_two;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f64x4};
 use glam::DVec3;
 
 /// The greatest magnitude of a coordinate of a primitive's box.
@@ -74,10 +76,20 @@ impl Normal {
 
     /// The same for a box that may be anywhere: beyond [`FAR`], where nothing is, it is cut off.
     #[inline(always)]
-    pub(super) fn pack_any(&self, bounds: &Aabb) -> PackedBox {
-        let far = DVec3::splat(f64::from(FAR)) * self.scale;
-        let (least, greatest) = (self.origin - far, self.origin + far);
-        self.pack(&Aabb::new(bounds.min.clamp(least, greatest), bounds.max.clamp(least, greatest)))
+    pub(super) fn pack_any<S: Simd>(&self, simd: S, bounds: &Aabb) -> PackedBox {
+        let far = f64::from(FAR);
+        let [origin, min, max] =
+            [self.origin, bounds.min, bounds.max].map(|p| f64x4::simd_from(simd, [p.x, p.y, p.z, p.z]));
+        let round = {
+            #[inline(always)]
+            |ends: f64x4<S>| {
+                let ends = (ends * f64x4::splat(simd, self.inverse))
+                    .min(f64x4::splat(simd, far))
+                    .max(f64x4::splat(simd, -far));
+                ends - (ends.abs() * f64x4::splat(simd, GROWTH_RELATIVE) + f64x4::splat(simd, GROWTH))
+            }
+        };
+        PackedBox(simd.narrow_f64x4(round(min - origin), round(origin - max)).to_array())
     }
 
     /// A box in local coordinates, which contains the exact image of `packed`.

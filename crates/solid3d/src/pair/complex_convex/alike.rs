@@ -5,13 +5,12 @@
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
-use solid_convex::gjk::{Ball, Balls};
+use solid_convex::gjk::Balls;
 use solid_convex::simd::each;
 use solid_convex::similarity::{SKEW_MAX, plain_squares};
 use solid_convex::{Support, unit_scale};
 
 use super::super::closed_form::{to_body, to_world};
-use super::super::frame::Stretch;
 use super::super::glance::{Body, Glance};
 use super::super::row::Cube;
 use super::super::table::{PlacedComplex, PlacedConvex};
@@ -34,24 +33,19 @@ pub(super) fn sight<S: Simd>(simd: S, complex: PlacedComplex, convex: PlacedConv
     let squares = plain_squares(simd, [complex.1, convex.1])?;
     let body = Outline::of(convex.0)?;
     let tree = complex.0.tree();
-    let alike = Alike::new(tree.normal(), [complex.1, convex.1], squares, body.balls.outer);
+    let alike = Alike::new(tree.normal(), [complex.1, convex.1], squares, body.reach());
     let glance = alike.glance(&body, tree.normal())?;
     let (box_around, around) = alike.around(&body, convex.0);
-    let metric = Stretch::alike((1.0 - STRETCH) * alike.of_complex).metric(&Stretch::NONE);
+    let metric = tree.folded_alike((1.0 - STRETCH) * alike.of_complex);
     Some(Sight {
         scale: alike.scale,
-        query: tree.near_query(box_around, around, &metric),
+        query: tree.near_query(simd, box_around, around, metric),
         glance: Some(glance),
     })
 }
 
 /// What is known of a convex shape but its support mapping.
-struct Outline {
-    balls: Balls,
-    kind: Kind,
-}
-
-enum Kind {
+enum Outline {
     /// All within a radius of a segment on the axis y, about the origin; of a ball, of no length.
     Round {
         half_height: f64,
@@ -60,8 +54,9 @@ enum Kind {
     /// A box along the axes, about the origin.
     Box {
         half: DVec3,
+        length: f64,
     },
-    Other,
+    Other(Balls),
 }
 
 impl Outline {
@@ -69,20 +64,27 @@ impl Outline {
     fn of(shape: &dyn Support) -> Option<Outline> {
         let radius = shape.core_radius();
         if radius > 0.0 {
-            let half_height = shape.core_support(DVec3::Y).y;
-            let balls = Balls::about_origin(radius, radius + half_height);
-            return Some(Outline { balls, kind: Kind::Round { half_height, radius } });
+            return Some(Outline::Round { half_height: shape.core_support(DVec3::Y).y, radius });
         }
         if let Some([x, y, z]) = shape.half_edges() {
             let half = DVec3::new(x.x, y.y, z.z);
-            let balls = Balls::about_origin(half.min_element(), half.length());
-            return Some(Outline { balls, kind: Kind::Box { half } });
+            return Some(Outline::Box { half, length: half.length() });
         }
         let balls = match shape.as_polytope() {
             Some(polytope) => polytope.balls(),
             None => shape.balls(),
-        }?;
-        Some(Outline { balls, kind: Kind::Other })
+        };
+        balls.map(Outline::Other)
+    }
+
+    /// How far all of it is from the origin, at most.
+    #[inline(always)]
+    fn reach(&self) -> f64 {
+        match self {
+            Outline::Round { half_height, radius } => half_height + radius,
+            Outline::Box { length, .. } => *length,
+            Outline::Other(Balls { outer, .. }) => outer.center.abs().element_sum() + outer.radius,
+        }
     }
 }
 
@@ -90,17 +92,20 @@ impl Outline {
 struct Alike<'s> {
     turn_complex: &'s DMat3,
     turn_convex: &'s DMat3,
-    /// The squares of their scales.
-    squares: [f64; 2],
-    /// The origin of the convex shape from that of the complex one, in the world.
+    /// The square of the scale of the convex shape, and the inverse of that of the complex one.
+    square_convex: f64,
+    inverse_square: f64,
+    /// The origin of the convex shape from that of the complex one, in the world, and where it is in the space of that.
     offset: DVec3,
+    origin: DVec3,
     /// World lengths times this are lengths of the common frame.
     scale: f64,
     /// What a length in the space of each is there.
     of_complex: f64,
     of_convex: f64,
-    /// How far points may be from where they are computed, there.
+    /// How far points may be from where they are computed, there, and in the space of the complex shape.
     slack: f64,
+    slack_in_complex: f64,
 }
 
 impl<'s> Alike<'s> {
@@ -108,84 +113,112 @@ impl<'s> Alike<'s> {
     fn new(
         Normal { origin, scale: half, .. }: &Normal,
         [at_complex, at_convex]: [&'s DAffine3; 2],
-        squares: [f64; 2],
-        Ball { center, radius }: Ball,
+        [square_complex, square_convex]: [f64; 2],
+        reach: f64,
     ) -> Self {
+        // Nothing waits for a root and a division one after the other.
+        let inverse_square = square_complex.recip();
         let offset = at_convex.translation - at_complex.translation;
-        let [of_complex, of_convex] = [squares[0].sqrt(), squares[1].sqrt()];
+        let [of_complex, of_convex] = [square_complex.sqrt(), square_convex.sqrt()];
         // A tree is within twice this of its origin.
         let size = of_complex * (origin.abs().element_sum() + 2.0 * half)
-            + of_convex * (center.abs().element_sum() + radius)
+            + of_convex * reach
             + offset.abs().element_sum();
         let scale = unit_scale(size);
         Alike {
             turn_complex: &at_complex.matrix3,
             turn_convex: &at_convex.matrix3,
-            squares,
+            square_convex,
+            inverse_square,
             offset,
+            origin: to_body(&at_complex.matrix3, offset) * inverse_square,
             scale,
             of_complex: of_complex * scale,
             of_convex: of_convex * scale,
             slack: ERROR * size * scale,
+            slack_in_complex: ERROR * size * (of_complex * inverse_square),
         }
     }
 
-    /// A point of the convex shape in the space of the complex one.
+    /// A way in the space of the convex shape in that of the complex one.
     #[inline(always)]
-    fn in_complex(&self, point: DVec3) -> DVec3 {
-        to_body(self.turn_complex, self.offset + to_world(self.turn_convex, point)) / self.squares[0]
+    fn turned(&self, way: DVec3) -> DVec3 {
+        to_body(self.turn_complex, to_world(self.turn_convex, way)) * self.inverse_square
     }
 
     /// Where the convex shape is, as [`Shadow::around`](super::shadow::Shadow::around) says.
     #[inline(always)]
     fn around(&self, body: &Outline, shape: &dyn Support) -> (Option<Aabb>, Around) {
-        let Outline { balls: Balls { inner, outer }, kind } = body;
-        let slack = self.slack / self.of_complex;
         let within = {
             #[inline(always)]
             |middle: DVec3, half: DVec3, radius: f64| {
-                let reach = half + slack;
+                let reach = half + self.slack_in_complex;
                 Around { bounds: Aabb::new(middle - reach, middle + reach), radius }
             }
         };
-        let center = self.in_complex(outer.center);
-        if let Kind::Round { half_height, radius } = kind {
-            let half = to_body(self.turn_complex, self.turn_convex.y_axis * (half_height / self.squares[0]));
-            return (None, within(center, half.abs(), (1.0 + STRETCH) * radius * self.of_convex));
-        }
-        let radius = (1.0 + STRETCH) * outer.radius * self.of_convex + CLEARLY_APART;
-        let ball = within(center, DVec3::ZERO, radius);
-        if inner.radius >= ROUND * outer.radius {
+        let radius_around = {
+            #[inline(always)]
+            |radius: f64| (1.0 + STRETCH) * radius * self.of_convex
+        };
+        let (is_round, ball) = match body {
+            Outline::Round { half_height, radius } => {
+                let half = match *half_height {
+                    0.0 => DVec3::ZERO,
+                    y => to_body(self.turn_complex, self.turn_convex.y_axis * (y * self.inverse_square)),
+                };
+                return (None, within(self.origin, half.abs(), radius_around(*radius)));
+            }
+            Outline::Box { half, length } => (
+                half.min_element() >= ROUND * length,
+                within(self.origin, DVec3::ZERO, radius_around(*length) + CLEARLY_APART),
+            ),
+            Outline::Other(Balls { inner, outer }) => {
+                let middle = self.origin + self.turned(outer.center);
+                (
+                    inner.radius >= ROUND * outer.radius,
+                    within(middle, DVec3::ZERO, radius_around(outer.radius) + CLEARLY_APART),
+                )
+            }
+        };
+        if is_round {
             return (None, ball);
         }
         let DMat3 { x_axis, y_axis, z_axis } = self.turn_convex;
         let [x, y, z] = each(
             [x_axis, y_axis, z_axis],
             #[inline(always)]
-            |axis| to_body(self.turn_complex, *axis) / self.squares[0],
+            |axis| to_body(self.turn_complex, *axis) * self.inverse_square,
         );
         let [min, max] = shape.image_bounds(&DMat3::from_cols(x, y, z));
-        let middle = self.in_complex(DVec3::ZERO) + 0.5 * (min + max);
+        let middle = self.origin + 0.5 * (min + max);
         (Some(within(middle, 0.5 * (max - min), 0.0).bounds), ball)
     }
 
     /// What looks at images of triangles: in the space in which a box is a cube, or in the common frame turned into the directions of the complex shape.
     #[inline(always)]
-    fn glance(&self, Outline { balls, kind }: &Outline, normal: &Normal) -> Option<Glance> {
-        if let Kind::Box { half } = kind {
-            let cube = self.cube(*half)?;
-            return Some(Glance::of(Body::cube(&cube), DVec3::ZERO, &cube.map, normal, 0.0));
-        }
-        let body = Body::between(balls, self.of_convex, CLEARLY_APART);
-        let middle = self.in_complex(balls.inner.center) * self.of_complex;
-        Some(Glance::upright(body, middle, self.of_complex, normal, self.slack))
+    fn glance(&self, body: &Outline, normal: &Normal) -> Option<Glance> {
+        let (body, middle) = match body {
+            Outline::Box { half, .. } => {
+                let cube = self.cube(*half)?;
+                return Some(Glance::of(Body::cube(&cube), DVec3::ZERO, &cube.map, normal, 0.0));
+            }
+            Outline::Round { half_height, radius } => {
+                let radii = [*radius, radius + half_height];
+                (Body::between_radii(radii, self.of_convex, CLEARLY_APART), self.origin)
+            }
+            Outline::Other(balls) => (
+                Body::between(balls, self.of_convex, CLEARLY_APART),
+                self.origin + self.turned(balls.inner.center),
+            ),
+        };
+        Some(Glance::upright(body, middle * self.of_complex, self.of_complex, normal, self.slack))
     }
 
     /// The cube that a box is in a space of its own.
     #[inline(always)]
     fn cube(&self, half: DVec3) -> Option<Cube> {
         let DMat3 { x_axis, y_axis, z_axis } = self.turn_convex;
-        let inverse = (self.squares[1] * half).recip();
+        let inverse = (self.square_convex * half).recip();
         let rows = [*x_axis * inverse.x, *y_axis * inverse.y, *z_axis * inverse.z];
         let [x, y, z] = each(
             rows,

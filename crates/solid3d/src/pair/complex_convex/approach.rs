@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, f32x8};
 use glam::DVec3;
-use solid_convex::simd::{each, level};
+use solid_convex::simd::{dispatch, each, level};
 use solid_convex::{Closest, Witness, gjk};
 
 use super::super::Scratch;
@@ -27,16 +27,17 @@ pub(super) fn closest_primitive(
     let Scratch { traversal, row, primitive_tests, .. } = scratch;
     let row = row.get_or_insert_default();
     row.clear();
-    let metric = frame.stretch_of_a().metric(&Stretch::NONE);
+    let tree = complex.0.tree();
+    let metric = tree.folded(&frame.stretch_of_a().metric(&Stretch::NONE));
     // The best distance so far is kept in the common frame, as the bounds are.
     let mut best = frame.beyond(bound);
     // Of a box the distance has no closed form here.
     let direct = Direct::round(convex.0, frame);
     let shadow = Shadow::new(convex.0, frame, ROUNDINGS);
     let (box_around, around) = shadow.around(&direct, frame);
-    let query = complex.0.tree().near_query(box_around, around, &metric);
+    let query = dispatch!(simd => tree.near_query(simd, box_around, around, metric));
     let from = [convex.0.center(); 2];
-    let mut gaps = Gaps::new(convex.0, &direct, frame, complex.0.tree().normal());
+    let mut gaps = Gaps::new(convex.0, &direct, frame, tree.normal());
     let images = complex.0.images();
     let mut approach = Approach {
         complex,
@@ -51,7 +52,7 @@ pub(super) fn closest_primitive(
         primitive_tests,
         answer: None,
     };
-    complex.0.tree().nearest_on(level(), &query, &mut best, traversal, &mut approach);
+    tree.nearest_on(level(), &query, &mut best, traversal, &mut approach);
     let (primitive, closest) = approach.answer?;
     Some((primitive, closest.or_else(|| approach.in_closed_form(primitive))))
 }

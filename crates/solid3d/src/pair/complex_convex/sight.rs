@@ -1,5 +1,7 @@
 //! What a walk down the tree begins with: where the convex shape is, what lengths are worth, and a glance at the images of leaves.
 
+use solid_convex::simd::dispatch;
+
 use super::super::frame::Stretch;
 use super::super::glance::Glance;
 use super::super::table::{PlacedComplex, PlacedConvex};
@@ -30,7 +32,7 @@ impl Sight {
         let glance = || Glance::new(direct, convex.0, to_common, map, CLEARLY_APART, tree.normal());
         Sight {
             scale: frame.scale,
-            query: tree.near_query(box_around, around, &frame.stretch_of_a().metric(&Stretch::NONE)),
+            query: dispatch!(simd => tree.near_query(simd, box_around, around, tree.folded(&frame.stretch_of_a().metric(&Stretch::NONE)))),
             glance: wants_any.then(glance).flatten(),
         }
     }

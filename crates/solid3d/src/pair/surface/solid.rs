@@ -2,7 +2,7 @@
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
-use solid_convex::simd::level;
+use solid_convex::simd::{dispatch, level};
 use solid_convex::{Closest, Points, gjk};
 
 use super::{NEAR, SignedDistance, away};
@@ -63,7 +63,7 @@ fn close_by(
     let bounds = Aabb::new(local, local).inflated(frame.slack_in_a);
     let of_mesh = &frame.stretch_of_a();
     let around = Around { bounds, radius: 0.0 };
-    let query = mesh.tree().near_query(None, around, &of_mesh.metric(&Stretch::NONE));
+    let query = dispatch!(simd => mesh.tree().near_query(simd, None, around, mesh.tree().folded(&of_mesh.metric(&Stretch::NONE))));
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let mut nearest = Nearest {
         corners: |primitive| {
