@@ -163,6 +163,8 @@ impl Tree {
                         next = Some((least, Place::lane(index, lane(least))));
                         continue;
                     }
+                    next = broods.add_and_take(simd, (index, found), V::NODES_LOOKED_AT, limit);
+                    // Last, as nobody can foretell how many there are: where the walk goes on is then on its way.
                     for lane in bits(near) {
                         self.prefetch(
                             node.child[lane],
@@ -170,7 +172,6 @@ impl Tree {
                             |start| visitor.prefetch(start),
                         );
                     }
-                    next = broods.add_and_take(simd, (index, found), V::NODES_LOOKED_AT, limit);
                 }
             }
         }
