@@ -185,9 +185,13 @@ pub fn prefetch<T>(value: &T) {
 pub fn prefetch_some<T, const N: usize>(slice: &[T], first: usize) {
     /// What memory comes by, in bytes.
     const LINE: usize = 64;
-    let first = slice.as_ptr().wrapping_add(first).cast::<i8>();
-    for offset in (0..N * size_of::<T>()).step_by(LINE) {
+    let (first, size) = (slice.as_ptr().wrapping_add(first).cast::<i8>(), N * size_of::<T>());
+    for offset in (0..size).step_by(LINE) {
         prefetch_line(first.wrapping_add(offset));
+    }
+    // What is aligned to less than a line may end in one more.
+    if LINE.saturating_sub(align_of::<T>()) + size > size.next_multiple_of(LINE) {
+        prefetch_line(first.wrapping_add(size - 1));
     }
 }
 

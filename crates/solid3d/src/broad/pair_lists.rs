@@ -252,17 +252,23 @@ impl PairLists {
     ///
     /// Which pairs overlap is written down first, and what changed is acted upon afterwards, because nobody can foretell it: where each was
     /// a branch, the boxes of the pairs that follow were not fetched from memory before the branch was taken. The processor waits for the
-    /// boxes of as many pairs at a time as it has room for the instructions of: so a pair takes few.
+    /// boxes of as many pairs at a time as it has room for the instructions of: so a pair takes few; and where boxes are not in the caches, those of
+    /// the next word are asked for before.
     ///
     /// Of boxes that several threads were told (`shared`), less of this is worth another thread: some are nearer to it.
     pub fn refresh_all(&mut self, boxes: &Boxes, shared: bool) {
         let Self { ends, in_use, overlaps, touched, found, .. } = self;
         /// More boxes than this are not in the caches.
-        const NEAR_MAX: usize = 1 << 19;
+        const NEAR_MAX: usize = 1 << 18;
         let (level, near) = (level(), boxes.len() <= NEAR_MAX);
         found.clear();
         extend(found, in_use.words());
-        for_each_word(ends, found, shared, |(pairs, found): (&[[Proxy; 2]], &mut u64)| {
+        for_each_word(found, shared, |(at, found): (usize, &mut u64)| {
+            let pairs = &ends[WORD * at..];
+            let (pairs, later) = pairs.split_at(pairs.len().min(WORD));
+            if !near {
+                later.iter().take(WORD).flatten().for_each(|&proxy| boxes.prefetch(proxy));
+            }
             *found &= if found.count_ones() <= SPARSE {
                 let overlap = |&at: &usize| boxes.overlap(pairs[at][0], pairs[at][1]);
                 bits(*found).filter(overlap).fold(0, |all, at| all | 1 << at)
@@ -498,13 +504,8 @@ fn overlapping<S: Simd, const FAR: bool>(simd: S, pairs: &[[Proxy; 2]], boxes: &
     !apart
 }
 
-/// Calls `find` with the pairs of each word; with the feature `rayon` on the threads of the current pool, if there are many.
-fn for_each_word(
-    pairs: &[[Proxy; 2]],
-    words: &mut [u64],
-    shared: bool,
-    find: impl Fn((&[[Proxy; 2]], &mut u64)) + Sync + Send,
-) {
+/// Calls `find` with each word and its number; with the feature `rayon` on the threads of the current pool, if there are many.
+fn for_each_word(words: &mut [u64], shared: bool, find: impl Fn((usize, &mut u64)) + Sync + Send) {
     #[cfg(feature = "rayon")]
     {
         use rayon::prelude::*;
@@ -512,12 +513,11 @@ fn for_each_word(
         const SHARE_MIN: usize = 512;
         let enough = if shared { SHARE_MIN / 8 } else { SHARE_MIN };
         if crate::threads::share(words.len(), enough) {
-            let blocks = pairs.par_chunks(WORD).zip(words);
-            return blocks.with_min_len(enough / 2).for_each(find);
+            return words.par_iter_mut().enumerate().with_min_len(enough / 2).for_each(find);
         }
     }
     let _ = shared;
-    pairs.chunks(WORD).zip(words).for_each(find);
+    words.iter_mut().enumerate().for_each(find);
 }
 
 #[cfg(test)]
