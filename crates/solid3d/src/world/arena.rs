@@ -6,6 +6,7 @@
 use std::ops::{Index, IndexMut};
 
 use slotmap::{Key, KeyData};
+use solid_convex::simd::prefetch;
 
 use super::object::{Object, ObjectId};
 use crate::broad::Proxy;
@@ -77,14 +78,11 @@ impl Arena {
         slot.and_then(|slot| slot.object.as_ref())
     }
 
-    /// Reads what tests begin with of some objects, one right after the other; gives a number of it, which is of no account. Nothing, where
-    /// objects are so few that they are in the caches.
-    pub fn fetch(&self, ids: impl IntoIterator<Item = ObjectId>) -> u64 {
-        if self.slots.len() <= NEAR_MAX {
-            return 0;
+    /// Asks for the memory of some objects. Nothing, where objects are so few that they are in the caches.
+    pub fn prefetch(&self, ids: impl IntoIterator<Item = ObjectId>) {
+        if self.slots.len() > NEAR_MAX {
+            ids.into_iter().filter_map(|id| self.slots.get(parts(id).0 as usize)).for_each(prefetch);
         }
-        let of = |id| self.get(id).map_or(0, Object::fetch);
-        ids.into_iter().fold(0, |all, id| all ^ of(id))
     }
 
     pub fn get_mut(&mut self, id: ObjectId) -> Option<&mut Object> {

@@ -1,5 +1,7 @@
 //! What the last test found, in order, and what changed since the last frame ended.
 
+use solid_convex::simd::prefetch;
+
 use super::ordered::Ordered;
 use super::{Collision, Contact, Event, EventKind, ObjectId, PairKey, When};
 use crate::threads::for_each_part;
@@ -87,6 +89,8 @@ impl Findings {
         const MANY: usize = 1 << 10;
         /// No more parts than this: each finds its first collision by a walk along the blocks.
         const PARTS_MAX: usize = 64;
+        /// So many before they are copied collisions are asked for, which stand anywhere in memory.
+        const AHEAD: usize = 16;
         let plain = || Collision {
             a: ObjectId::default(),
             b: ObjectId::default(),
@@ -96,7 +100,9 @@ impl Findings {
         collisions.resize_with(self.len(), plain);
         let part_len = self.len().div_ceil(PARTS_MAX).max(MANY / 4);
         for_each_part(collisions, part_len, MANY, |i, part| {
+            let mut later = self.order.iter_from(i * part_len).skip(AHEAD);
             for (to, (_, id)) in part.iter_mut().zip(self.order.iter_from(i * part_len)) {
+                later.next().into_iter().for_each(|(_, id)| prefetch(self.collision(id)));
                 to.take_from(self.collision(id));
             }
         });

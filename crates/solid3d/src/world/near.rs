@@ -100,7 +100,8 @@ impl World {
         for batch in places.chunks(Workers::batch(share)) {
             let candidate =
                 |place| candidates[place as usize].as_ref().expect("what is looked at is a candidate");
-            let fetch = |place: Place, _: &Nearness| objects.fetch([candidate(place).a, candidate(place).b]);
+            let fetch =
+                |place: Place, _: &Nearness| objects.prefetch([candidate(place).a, candidate(place).b]);
             let items = Items { first: 0, values: &mut *nearness, places: batch };
             workers.each(share, items, &mut works, fetch, |place, nearness, work, scratch| {
                 *nearness = looker.look_at(candidate(place), work, scratch);

@@ -92,12 +92,6 @@ impl Object {
         }
     }
 
-    /// Reads from all lines of memory that it takes; gives a number of what was read.
-    pub fn fetch(&self) -> u64 {
-        let DAffine3 { matrix3, translation } = &self.placement;
-        self.order ^ matrix3.x_axis.x.to_bits() ^ translation.z.to_bits() ^ u64::from(self.pair_responses)
-    }
-
     /// Its place in the creation order.
     pub fn serial(&self) -> u64 {
         self.order & ((1 << RANK_SHIFT) - 1)

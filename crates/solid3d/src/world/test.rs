@@ -185,7 +185,7 @@ impl World {
                 items,
                 news,
                 |_, candidate| {
-                    objects.fetch(candidate.iter().flat_map(|candidate| [candidate.a, candidate.b]))
+                    objects.prefetch(candidate.iter().flat_map(|candidate| [candidate.a, candidate.b]))
                 },
                 |place, candidate, news, scratch| examiner.renew(place, candidate, news, scratch),
             );
@@ -206,7 +206,7 @@ impl World {
             }
             notes.keep(earlier, &mut earlier_news);
         } else {
-            for places in places.chunks(PART) {
+            for places in places.chunks(16 * PART) {
                 let mut part = Items { first: 0, values: &mut *values, places };
                 examine(part.reborrow(), &mut news);
                 notes.keep(part, &mut news);

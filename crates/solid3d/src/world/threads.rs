@@ -49,7 +49,7 @@ impl Workers {
 
     /// Of how many items the results are to be kept at a time.
     pub fn batch(share: bool) -> usize {
-        if share { BATCH } else { PART }
+        if share { BATCH } else { 16 * PART }
     }
 
     /// Calls `work` with each of the items and the result of the [`PART`] that it is of, of which there are as many as parts or more; with the
@@ -62,7 +62,7 @@ impl Workers {
         share: bool,
         items: Items<T>,
         results: &mut Vec<R>,
-        fetch: impl Fn(Place, &T) -> u64 + Sync + Send,
+        fetch: impl Fn(Place, &T) + Sync + Send,
         work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
         let parts = items.places.len().div_ceil(PART);
@@ -82,7 +82,7 @@ impl Workers {
     fn on_threads<T: Send, R: Send>(
         &mut self,
         items: Shared<T, R>,
-        fetch: impl Fn(Place, &T) -> u64 + Sync + Send,
+        fetch: impl Fn(Place, &T) + Sync + Send,
         work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
         use std::sync::{Mutex, PoisonError};
@@ -136,12 +136,17 @@ impl<'a, T> Items<'a, T> {
         mut self,
         results: &mut [R],
         scratch: &mut Scratch,
-        fetch: &impl Fn(Place, &T) -> u64,
+        fetch: &impl Fn(Place, &T),
         work: &impl Fn(Place, &mut T, &mut R, &mut Scratch),
     ) {
+        for &place in self.places.iter().take(PART) {
+            fetch(place, self.at(place));
+        }
+        let mut later = self.places.chunks(PART).skip(1);
         for (part, result) in self.places.chunks(PART).zip(results) {
-            let fetched = part.iter().fold(0, |all, &place| all ^ fetch(place, self.at(place)));
-            std::hint::black_box(fetched);
+            for &place in later.next().unwrap_or_default() {
+                fetch(place, self.at(place));
+            }
             for &place in part {
                 work(place, self.at(place), result, scratch);
             }
