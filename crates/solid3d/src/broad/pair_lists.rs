@@ -1,7 +1,7 @@
 //! Pairs of proxies, with each proxy's own list of them, and what changed about them.
 
 use fearless_simd::Simd;
-use solid_convex::simd::{dispatch, level};
+use solid_convex::simd::{dispatch, level, prefetch};
 
 use super::bits::{Bits, WORD};
 use super::boxes::{AXES, Boxes};
@@ -99,6 +99,11 @@ impl PairLists {
         self.hang(id);
         self.set_overlaps(id, overlaps);
         id
+    }
+
+    /// Asks for the memory of where the list of a proxy begins.
+    pub fn prefetch(&self, proxy: Proxy) {
+        prefetch(&self.heads[proxy as usize]);
     }
 
     /// Puts a pair at the head of both its lists.

@@ -12,6 +12,8 @@
 
 use std::ops::Range;
 
+use solid_convex::simd::prefetch;
+
 use super::codes::{MANY, PART, code, encode, proxy, sort, sort_ascending};
 use super::fat_box::FatBox;
 use super::node::{Child, Node, Place, PlaceCell, WIDTH};
@@ -26,6 +28,9 @@ const DEPTH_BY_CODE: usize = 32;
 
 /// Ranges of so many leaves or fewer are cut into full nodes.
 const CUT_BY_CODE_MIN: usize = 32;
+
+/// So many leaves before it is hung the box of one is asked for, which is anywhere in memory.
+const AHEAD: usize = 32;
 
 /// So many nodes to make are worth another thread.
 const NODES_MANY: usize = 1 << 10;
@@ -171,6 +176,7 @@ fn hang(below: &[Subtree], nodes: &mut [Node], order: &[u64], boxes: &[FatBox], 
     match below {
         [] => {}
         [subtree] => {
+            let range = &order[subtree.leaves.clone()];
             let mut hanger = Hanger {
                 boxes,
                 places,
@@ -178,8 +184,9 @@ fn hang(below: &[Subtree], nodes: &mut [Node], order: &[u64], boxes: &[FatBox], 
                 first: subtree.nodes.start,
                 nodes,
                 used: 0,
+                later: range.get(AHEAD..).unwrap_or_default().iter(),
             };
-            hanger.hang(&order[subtree.leaves.clone()], subtree.place);
+            hanger.hang(range, subtree.place);
         }
         [head, ..] => {
             let (left, right) = below.split_at(below.len() / 2);
@@ -240,6 +247,8 @@ struct Hanger<'a> {
     first: usize,
     nodes: &'a mut [Node],
     used: usize,
+    /// The leaves that are hung [`AHEAD`] leaves later.
+    later: std::slice::Iter<'a, u64>,
 }
 
 impl Hanger<'_> {
@@ -258,6 +267,10 @@ impl Hanger<'_> {
             let here = Place::new(name, self.nodes[at].count());
             if let [entry] = *piece {
                 let leaf = proxy(entry);
+                if let Some(&later) = self.later.next() {
+                    prefetch(&self.boxes[proxy(later) as usize]);
+                    prefetch(&self.places[proxy(later) as usize]);
+                }
                 self.nodes[at].push(Child::leaf(leaf), &self.boxes[leaf as usize]);
                 self.places[leaf as usize].set(here);
             } else {

@@ -274,14 +274,16 @@ impl DynamicTree {
     fn pair_all(&mut self) {
         let Self { tight, tree, pairs, search, .. } = self;
         let none_known = pairs.is_empty();
-        self.counters.node_visits += search.run(tree, tight, |&Found { proxies: [a, b], overlaps }| {
-            // Those that do not overlap are not known any more.
-            if none_known || !overlaps {
-                pairs.insert(a, b, overlaps);
-            } else {
-                pairs.insert_new(a, b, overlaps);
-            }
-        });
+        self.counters.node_visits +=
+            search.run(tree, tight, |&Found { proxies: [a, b], overlaps }, later| {
+                later.into_iter().flat_map(|later| later.proxies).for_each(|proxy| pairs.prefetch(proxy));
+                // Those that do not overlap are not known any more.
+                if none_known || !overlaps {
+                    pairs.insert(a, b, overlaps);
+                } else {
+                    pairs.insert_new(a, b, overlaps);
+                }
+            });
         pairs.settle(|_| true);
         pairs.give_back();
     }

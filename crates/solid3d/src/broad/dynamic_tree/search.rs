@@ -21,6 +21,9 @@ const NODES_MANY: usize = 512;
 /// So many leaves, of some 0.3 us each, are.
 const LEAVES_MANY: usize = 256;
 
+/// So many pairs before it is looked at memory is asked for.
+const AHEAD: usize = 32;
+
 /// About so many times pairs are handed on in all: meanwhile the next are sought.
 const ROUNDS: usize = 8;
 
@@ -50,9 +53,14 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// Hands on every pair of leaves whose boxes overlap, each once, in an order that depends on the tree alone; gives the number
-    /// of nodes visited.
-    pub fn run(&mut self, tree: &Tree, tight: &Boxes, mut visit: impl FnMut(&Found) + Send) -> u64 {
+    /// Hands on every pair of leaves whose boxes overlap, each once, in an order that depends on the tree alone, and with each one that comes somewhat
+    /// later; gives the number of nodes visited.
+    pub fn run(
+        &mut self,
+        tree: &Tree,
+        tight: &Boxes,
+        mut visit: impl FnMut(&Found, Option<&Found>) + Send,
+    ) -> u64 {
         let Self { next, done } = self;
         next.resize_with(PIECES, Piece::default);
         done.resize_with(PIECES, Piece::default);
@@ -69,12 +77,12 @@ impl Search {
             both(
                 worth,
                 || for_each(next, worth, search),
-                || done.iter().flat_map(|piece| &piece.found).for_each(&mut visit),
+                || done.iter().for_each(|piece| piece.hand_on(&mut visit)),
             );
             visits += next.iter().map(|piece| piece.visits).sum::<u64>();
             std::mem::swap(next, done);
         }
-        done.iter().flat_map(|piece| &piece.found).for_each(visit);
+        done.iter().for_each(|piece| piece.hand_on(&mut visit));
         visits
     }
 
@@ -148,9 +156,19 @@ impl Piece {
         self.compare(tight);
     }
 
-    /// Finds which of the boxes overlap: in a loop of its own, which waits for many of them at a time.
+    fn hand_on(&self, visit: &mut impl FnMut(&Found, Option<&Found>)) {
+        for (i, found) in self.found.iter().enumerate() {
+            visit(found, self.found.get(i + AHEAD));
+        }
+    }
+
+    /// Finds which of the boxes overlap: in a loop of its own, as boxes are asked for ahead.
     fn compare(&mut self, tight: &Boxes) {
-        for Found { proxies: [a, b], overlaps } in &mut self.found {
+        for i in 0..self.found.len() {
+            if let Some(later) = self.found.get(i + AHEAD) {
+                later.proxies.into_iter().for_each(|proxy| tight.prefetch(proxy));
+            }
+            let Found { proxies: [a, b], overlaps } = &mut self.found[i];
             *overlaps = tight.overlap(*a, *b);
         }
     }
