@@ -1,7 +1,7 @@
 //! All pairs of leaves whose boxes overlap: the tree against itself.
 
 use fearless_simd::Simd;
-use solid_convex::simd::dispatch;
+use solid_convex::simd::{dispatch, prefetch};
 
 use super::node::{Kind, Place, lanes};
 use super::tree::Tree;
@@ -85,9 +85,17 @@ impl Tree {
 
     #[inline(always)]
     fn found(&self, places: Lanes, stack: &mut Vec<Lanes>, visit: &mut impl FnMut(Proxy, Proxy)) {
-        match places.map(|place| self.lane(place)) {
+        let kinds = places.map(|place| self.lane(place));
+        match kinds {
             [Kind::Leaf(a), Kind::Leaf(b)] => visit(a, b),
-            _ => stack.push(places),
+            _ => {
+                stack.push(places);
+                for kind in kinds {
+                    if let Kind::Node(node) = kind {
+                        prefetch(&self.nodes[node as usize]);
+                    }
+                }
+            }
         }
     }
 
