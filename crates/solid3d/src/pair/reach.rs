@@ -31,7 +31,8 @@ pub(crate) fn world_bounds_into<S: Simd>(simd: S, placed: Placed, bounds: &mut A
 /// A box around a shape that is placed, from the least and the greatest coordinates of its image under the linear map.
 #[inline(always)]
 fn enclosing([min, max]: [DVec3; 2], translation: DVec3) -> Aabb {
-    let extent = min.abs().max(max.abs()).max_element();
+    // As none of the least is above the greatest, without a look at signs.
+    let extent = max.max(-min).max_element();
     let margin = bounds_margin(extent + 1e-3 * translation.abs().max_element());
     Aabb::new(min + translation - margin, max + translation + margin)
 }

@@ -12,9 +12,6 @@ use super::object::{Object, ObjectId};
 use crate::broad::Proxy;
 use crate::broad::room::push;
 
-/// So many objects are in the caches.
-const NEAR_MAX: usize = 1 << 13;
-
 /// No slot. Slot 0 is never used.
 const NONE: u32 = 0;
 
@@ -78,11 +75,9 @@ impl Arena {
         slot.and_then(|slot| slot.object.as_ref())
     }
 
-    /// Asks for the memory of some objects. Nothing, where objects are so few that they are in the caches.
+    /// Asks for the memory of some objects.
     pub fn prefetch(&self, ids: impl IntoIterator<Item = ObjectId>) {
-        if self.slots.len() > NEAR_MAX {
-            ids.into_iter().filter_map(|id| self.slots.get(parts(id).0 as usize)).for_each(prefetch);
-        }
+        ids.into_iter().filter_map(|id| self.slots.get(parts(id).0 as usize)).for_each(prefetch);
     }
 
     pub fn get_mut(&mut self, id: ObjectId) -> Option<&mut Object> {
