@@ -1,6 +1,6 @@
 //! The children of nodes that are yet to be visited, the nearest of them first.
 //!
-//! Those of a node stay together with their squares, and the nearest is found when it is wanted: most are never visited, as what is found before is
+//! Those of a node stay together with the [keys](super::squares::keys) of their squares, and the nearest is found when it is wanted: most are never visited, as what is found before is
 //! nearer. Sorting them as they came took a tenth of a walk, for branches that nobody can foretell.
 
 use fearless_simd::prelude::*;

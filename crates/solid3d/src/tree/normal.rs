@@ -9,6 +9,7 @@ use crate::exact::power_of_two;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x4};
 use glam::DVec3;
+use solid_convex::simd::each;
 
 /// The greatest magnitude of a coordinate of a primitive's box.
 pub const COORDINATE_MAX: f64 = 1e100;
@@ -78,8 +79,12 @@ impl Normal {
     #[inline(always)]
     pub(super) fn pack_any<S: Simd>(&self, simd: S, bounds: &Aabb) -> PackedBox {
         let far = f64::from(FAR);
-        let [origin, min, max] =
-            [self.origin, bounds.min, bounds.max].map(|p| f64x4::simd_from(simd, [p.x, p.y, p.z, p.z]));
+        let [origin, min, max] = each(
+            [self.origin, bounds.min, bounds.max],
+            #[inline(always)]
+            |p| f64x4::simd_from(simd, [p.x, p.y, p.z, p.z]),
+        );
+        // As `round_down`.
         let round = {
             #[inline(always)]
             |ends: f64x4<S>| {

@@ -2,7 +2,7 @@
 //!
 //! A square is a lower bound of the squared distance of two boxes: nothing in them is nearer than `unit * sqrt(square)`. So what is at least
 //! `d` away is told by a limit, found once for each `d`: at least (d / unit)². A root of each square would be waited for, as it tells where the walk
-//! goes on.
+//! goes on. For the same reason a square tells its lane: see [`keys`].
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8, i32x8};

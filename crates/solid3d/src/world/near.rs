@@ -100,10 +100,10 @@ impl World {
         for batch in places.chunks(Workers::batch(share)) {
             let candidate =
                 |place| candidates[place as usize].as_ref().expect("what is looked at is a candidate");
-            let fetch =
+            let prefetch =
                 |place: Place, _: &Nearness| objects.prefetch([candidate(place).a, candidate(place).b]);
             let items = Items { first: 0, values: &mut *nearness, places: batch };
-            workers.each(share, items, &mut works, fetch, |place, nearness, work, scratch| {
+            workers.each(share, items, &mut works, prefetch, |place, nearness, work, scratch| {
                 *nearness = looker.look_at(candidate(place), work, scratch);
             });
             for work in works.iter_mut().take(batch.len().div_ceil(PART)) {

@@ -6,7 +6,7 @@ use super::candidates::{Candidate, PairKey};
 use super::examine::Examiner;
 use super::news::{News, Notes};
 use super::pair_map::Place;
-use super::threads::{BATCH, Items, PART, Workers};
+use super::threads::{BATCH, BATCH_ALONE, Items, Workers};
 use super::{Collision, ObjectId, Response, World};
 use crate::error::Result;
 use crate::threads::{between, both, in_pool};
@@ -206,7 +206,7 @@ impl World {
             }
             notes.keep(earlier, &mut earlier_news);
         } else {
-            for places in places.chunks(16 * PART) {
+            for places in places.chunks(BATCH_ALONE) {
                 let mut part = Items { first: 0, values: &mut *values, places };
                 examine(part.reborrow(), &mut news);
                 notes.keep(part, &mut news);

@@ -16,6 +16,9 @@ pub(super) const BATCH: usize = 4096;
 /// Items that are worth passing to another thread. Their results stay at hand until they are read.
 pub(super) const PART: usize = 16;
 
+/// Items of which the results are kept at a time where work is not shared: parts enough that what a part takes comes while the one before is worked at.
+pub(super) const BATCH_ALONE: usize = 16 * PART;
+
 /// Working memory for each thread.
 #[derive(Debug, Default)]
 pub(super) struct Workers {
@@ -49,20 +52,20 @@ impl Workers {
 
     /// Of how many items the results are to be kept at a time.
     pub fn batch(share: bool) -> usize {
-        if share { BATCH } else { 16 * PART }
+        if share { BATCH } else { BATCH_ALONE }
     }
 
     /// Calls `work` with each of the items and the result of the [`PART`] that it is of, of which there are as many as parts or more; with the
     /// feature `rayon` on the threads of the current pool, if `share`. Then places must ascend.
     ///
-    /// Before a part `fetch` is called with each of it: it reads what `work` is going to, and gives any number of that. So what is far away
-    /// in memory is waited for once for all of a part, not by each in turn.
+    /// While a part is worked at `prefetch` has been called with each of the next: it asks for the memory that `work` is going to read. So what is far
+    /// away is not waited for by each in turn.
     pub fn each<T: Send, R: Default + Send>(
         &mut self,
         share: bool,
         items: Items<T>,
         results: &mut Vec<R>,
-        fetch: impl Fn(Place, &T) + Sync + Send,
+        prefetch: impl Fn(Place, &T) + Sync + Send,
         work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
         let parts = items.places.len().div_ceil(PART);
@@ -72,17 +75,17 @@ impl Workers {
         let results = &mut results[..parts];
         #[cfg(feature = "rayon")]
         if share {
-            return self.on_threads((items, results), fetch, work);
+            return self.on_threads((items, results), prefetch, work);
         }
         let _ = share;
-        items.each(results, &mut self.own, &fetch, &work);
+        items.each(results, &mut self.own, &prefetch, &work);
     }
 
     #[cfg(feature = "rayon")]
     fn on_threads<T: Send, R: Send>(
         &mut self,
         items: Shared<T, R>,
-        fetch: impl Fn(Place, &T) + Sync + Send,
+        prefetch: impl Fn(Place, &T) + Sync + Send,
         work: impl Fn(Place, &mut T, &mut R, &mut Scratch) + Sync + Send,
     ) {
         use std::sync::{Mutex, PoisonError};
@@ -98,8 +101,9 @@ impl Workers {
             // What a panic left is as good as new: it is memory to be overwritten, and counts of which differences are taken.
             of_pool[thread].lock().unwrap_or_else(PoisonError::into_inner)
         };
-        rayon::iter::split(items, halves)
-            .for_each_init(scratch, |scratch, (items, results)| items.each(results, scratch, &fetch, &work));
+        rayon::iter::split(items, halves).for_each_init(scratch, |scratch, (items, results)| {
+            items.each(results, scratch, &prefetch, &work)
+        });
     }
 }
 
@@ -136,16 +140,16 @@ impl<'a, T> Items<'a, T> {
         mut self,
         results: &mut [R],
         scratch: &mut Scratch,
-        fetch: &impl Fn(Place, &T),
+        prefetch: &impl Fn(Place, &T),
         work: &impl Fn(Place, &mut T, &mut R, &mut Scratch),
     ) {
         for &place in self.places.iter().take(PART) {
-            fetch(place, self.at(place));
+            prefetch(place, self.at(place));
         }
         let mut later = self.places.chunks(PART).skip(1);
         for (part, result) in self.places.chunks(PART).zip(results) {
             for &place in later.next().unwrap_or_default() {
-                fetch(place, self.at(place));
+                prefetch(place, self.at(place));
             }
             for &place in part {
                 work(place, self.at(place), result, scratch);

@@ -21,7 +21,7 @@ const NODES_MANY: usize = 512;
 /// So many leaves, of some 0.3 us each, are.
 const LEAVES_MANY: usize = 256;
 
-/// So many pairs before it is looked at memory is asked for.
+/// So many pairs before one is looked at its memory is asked for.
 const AHEAD: usize = 32;
 
 /// About so many times pairs are handed on in all: meanwhile the next are sought.
@@ -156,6 +156,7 @@ impl Piece {
         self.compare(tight);
     }
 
+    /// Hands on what was found, each with what comes [`AHEAD`] pairs later.
     fn hand_on(&self, visit: &mut impl FnMut(&Found, Option<&Found>)) {
         for (i, found) in self.found.iter().enumerate() {
             visit(found, self.found.get(i + AHEAD));

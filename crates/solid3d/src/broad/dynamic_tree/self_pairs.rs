@@ -90,6 +90,7 @@ impl Tree {
             [Kind::Leaf(a), Kind::Leaf(b)] => visit(a, b),
             _ => {
                 stack.push(places);
+                // The search comes to them soon.
                 for kind in kinds {
                     if let Kind::Node(node) = kind {
                         prefetch(&self.nodes[node as usize]);

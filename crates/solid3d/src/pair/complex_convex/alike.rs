@@ -51,7 +51,7 @@ enum Outline {
         half_height: f64,
         radius: f64,
     },
-    /// A box along the axes, about the origin.
+    /// A box along the axes, about the origin: half of its edges, and half of its diagonal.
     Box {
         half: DVec3,
         length: f64,

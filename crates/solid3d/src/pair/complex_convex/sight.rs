@@ -30,9 +30,10 @@ impl Sight {
         let (to_common, tree) = (&frame.common[1], complex.tree());
         let (box_around, around) = shadow.around(direct, frame);
         let glance = || Glance::new(direct, convex.0, to_common, map, CLEARLY_APART, tree.normal());
+        let metric = tree.folded(&frame.stretch_of_a().metric(&Stretch::NONE));
         Sight {
             scale: frame.scale,
-            query: dispatch!(simd => tree.near_query(simd, box_around, around, tree.folded(&frame.stretch_of_a().metric(&Stretch::NONE)))),
+            query: dispatch!(simd => tree.near_query(simd, box_around, around, metric)),
             glance: wants_any.then(glance).flatten(),
         }
     }

@@ -63,7 +63,8 @@ fn close_by(
     let bounds = Aabb::new(local, local).inflated(frame.slack_in_a);
     let of_mesh = &frame.stretch_of_a();
     let around = Around { bounds, radius: 0.0 };
-    let query = dispatch!(simd => mesh.tree().near_query(simd, None, around, mesh.tree().folded(&of_mesh.metric(&Stretch::NONE))));
+    let metric = mesh.tree().folded(&of_mesh.metric(&Stretch::NONE));
+    let query = dispatch!(simd => mesh.tree().near_query(simd, None, around, metric));
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let mut nearest = Nearest {
         corners: |primitive| {
