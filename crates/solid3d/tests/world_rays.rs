@@ -1,4 +1,4 @@
-//! Rays and regions of a world, against all objects one by one.
+//! Rays and regions of a world, and what is nearest to a point, against all objects one by one.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -13,7 +13,7 @@ use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid3d::query::{self, FromInside, Ray, RayOptions};
-use solid3d::{BroadPhaseKind, ObjectHit, ObjectId, Shape, World, WorldOptions, glam};
+use solid3d::{BroadPhaseKind, ObjectHit, ObjectId, ObjectPoint, Shape, World, WorldOptions, glam};
 
 /// Adds a mesh or a convex shape, of one of two ranks.
 fn add_random(world: &mut World, rng: &mut StdRng, i: u8) -> ObjectId {
@@ -95,6 +95,68 @@ fn a_world_sees_what_its_objects_show() {
         println!("{hits} of {cases} rays hit; {in_region} objects in regions");
         assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))) && in_region > 100);
     }
+}
+
+/// The same of what is nearest to a point, within a distance; of objects that are as near the first in the order of pairs.
+#[test]
+fn nearest_to_a_point_is_what_is_nearest_of_all() {
+    for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+        let mut rng = seeded(114);
+        let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
+        let (mut found, mut cases, mut inside) = (0, 0, 0);
+        for round in 0..12 {
+            for i in 0..6 {
+                add_random(&mut world, &mut rng, i);
+            }
+            if round % 3 > 0 {
+                world.refresh();
+            }
+            let ids = world.objects();
+            for _ in 0..4 {
+                world.set_placement(ids[rng.random_range(0..ids.len())], placement(&mut rng, 4.5)).unwrap();
+            }
+            if round % 4 == 1 {
+                // In the place of another, of one shape with it: both are as near.
+                let (shape, at) =
+                    (world.shape(ids[round]).unwrap().clone(), world.placement(ids[round]).unwrap());
+                world.add_ranked(&shape, at, (round / 4 % 2) as u8).unwrap();
+            }
+            if round % 2 == 1 {
+                world.remove(ids[round]).unwrap();
+            }
+            let everywhere = Shape::sphere(100.0).unwrap();
+            let in_order = world.objects_in(&everywhere, &DAffine3::IDENTITY).unwrap();
+            let far = if round % 5 == 4 { 1e17 } else { 1.0 };
+            for case in 0..60 {
+                let point = in_cube(&mut rng) * 5.0 * far;
+                let within = if case % 3 == 0 { f64::INFINITY } else { rng.random_range(0.0..4.0) * far };
+                let counts = |id: ObjectId| {
+                    case % 2 == 0 || in_order.iter().position(|other| *other == id).unwrap() % 2 == 0
+                };
+                let closest = in_order.iter().filter(|id| counts(**id)).map(|&object| {
+                    let (shape, at) = (world.shape(object).unwrap(), world.placement(object).unwrap());
+                    ObjectPoint { object, closest: query::closest_point(shape, &at, point).unwrap() }
+                });
+                // The first of equals.
+                let expected = (closest.filter(|near| near.closest.distance <= within))
+                    .reduce(|x, y| if y.closest.distance < x.closest.distance { y } else { x });
+                let nearest = world.closest_point(point, within, counts).unwrap();
+                assert_eq!(nearest, expected, "{point}, {within}");
+                cases += 1;
+                found += u32::from(nearest.is_some());
+                inside += u32::from(nearest.is_some_and(|near| near.closest.distance == 0.0));
+            }
+        }
+        println!("{found} of {cases} points have something near, {inside} are inside");
+        assert!((0.5..=0.95).contains(&(f64::from(found) / f64::from(cases))) && inside > 5);
+    }
+    let world = World::new();
+    assert_eq!(world.closest_point(DVec3::ZERO, f64::INFINITY, |_| true), Ok(None));
+    let error =
+        |point: DVec3, within: f64| world.closest_point(point, within, |_| true).unwrap_err().to_string();
+    assert_eq!(error(DVec3::ZERO, -1.0), "within is -1.0; it must be at least 0");
+    assert_eq!(error(DVec3::ZERO, f64::NAN), "within is NaN; it must be at least 0");
+    assert!(error(DVec3::X * 1e101, 1.0).starts_with("point is "));
 }
 
 /// The same of a shape that moves: it meets first what the earliest of all its casts meets.

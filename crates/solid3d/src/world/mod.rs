@@ -6,6 +6,7 @@ mod arena;
 mod candidates;
 mod casts;
 mod clearance;
+mod closest;
 mod collision;
 mod contacts;
 mod event;
@@ -30,6 +31,7 @@ mod threads;
 use glam::{DAffine3, DVec3};
 
 pub use casts::ObjectCast;
+pub use closest::ObjectPoint;
 pub use collision::{Collision, Contact};
 pub use event::{Event, EventKind};
 pub use motion::{Motion, When};
