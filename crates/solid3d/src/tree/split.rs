@@ -3,7 +3,9 @@
 //! The functions are inlined into the build, which is compiled for every level of instructions: a box is one vector, so that a union is one
 //! instruction. They compare and add, each number by itself, so every level gives the same bits.
 
-use fearless_simd::Simd;
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x4};
+use solid_convex::simd::each;
 
 use super::cost::measure_of;
 use super::node::LEAF_SIZE;
@@ -83,7 +85,7 @@ impl Set {
     ) -> [Set; 2] {
         match best_plane(simd, self, items, weight) {
             Some(plane) => {
-                let below = plane.part(items, spare);
+                let below = plane.part(simd, items, spare);
                 let [bounds_below, bounds_above] = plane.bounds;
                 let (first, second) = items.split_at(below);
                 [
@@ -141,19 +143,20 @@ impl Binning {
         Binning { origin: [x, y, z, 0.0], per_unit, last: bins - 1 }
     }
 
-    /// The bins of an item along the axes.
+    /// The bins of an item along the axes; the fourth is of none.
     #[inline(always)]
-    fn bins(&self, item: &Item) -> [usize; 3] {
-        let b = &item.bounds.0;
-        let last = self.last as f32;
-        let mut offset = [0.0; 4];
-        for k in 0..4 {
-            let o = (b[k] - b[k + 4] - self.origin[k]) * self.per_unit[k];
-            offset[k] = if o < last { o } else { last };
-        }
-        // What is not a number was made the last bin.
-        let bin = |o: f32| (o as i32 as usize) % BINS;
-        [bin(offset[0]), bin(offset[1]), bin(offset[2])]
+    fn bins<S: Simd>(&self, simd: S, item: &Item) -> [usize; 4] {
+        let (low, high) = item.bounds.0.split_at(4);
+        let doubled = f32x4::from_slice(simd, low) - f32x4::from_slice(simd, high);
+        let [origin, per_unit] = [f32x4::simd_from(simd, self.origin), f32x4::simd_from(simd, self.per_unit)];
+        let (offset, last) = ((doubled - origin) * per_unit, f32x4::splat(simd, self.last as f32));
+        // What is not a number is in the last.
+        let bins = simd.cvt_i32_f32x4(offset.simd_lt(last).select(offset, last));
+        each(
+            bins.to_array(),
+            #[inline(always)]
+            |bin| bin as usize % BINS,
+        )
     }
 }
 
@@ -175,7 +178,7 @@ fn best_plane<S: Simd>(simd: S, set: &Set, items: &[Item], weight: impl Fn(&Item
     let mut bounds = [PackedBox::EMPTY; 3 * BINS];
     let mut weights = [0; 3 * BINS];
     for item in items {
-        let bins = binning.bins(item);
+        let bins = binning.bins(simd, item);
         let weight = weight(item);
         for axis in 0..3 {
             bounds[axis * BINS + bins[axis]].grow_on(simd, &item.bounds);
@@ -262,8 +265,11 @@ fn cheapest<S: Simd>(simd: S, bounds: &[PackedBox], weights: &[u32], last: usize
 impl Plane {
     /// Moves the items below the plane to the front, and gives their number.
     #[inline(always)]
-    fn part(&self, items: &mut [Item], Spare(spare): &mut Spare) -> usize {
-        let is_below = |item: &Item| self.binning.bins(item)[self.axis] <= self.bin;
+    fn part<S: Simd>(&self, simd: S, items: &mut [Item], Spare(spare): &mut Spare) -> usize {
+        let is_below = {
+            #[inline(always)]
+            |item: &Item| self.binning.bins(simd, item)[self.axis] <= self.bin
+        };
         if items.len() > SPARE {
             return part_in_place(items, is_below);
         }
