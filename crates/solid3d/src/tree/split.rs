@@ -4,8 +4,7 @@
 //! instruction. They compare and add, each number by itself, so every level gives the same bits.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x4};
-use solid_convex::simd::each;
+use fearless_simd::{Simd, f32x4, i32x4};
 
 use super::cost::measure_of;
 use super::node::LEAF_SIZE;
@@ -143,20 +142,15 @@ impl Binning {
         Binning { origin: [x, y, z, 0.0], per_unit, last: bins - 1 }
     }
 
-    /// The bins of an item along the axes; the fourth is of none.
+    /// The bins of an item along the axes, each below [`BINS`]; the fourth is of none.
     #[inline(always)]
-    fn bins<S: Simd>(&self, simd: S, item: &Item) -> [usize; 4] {
+    fn bins<S: Simd>(&self, simd: S, item: &Item) -> i32x4<S> {
         let (low, high) = item.bounds.0.split_at(4);
         let doubled = f32x4::from_slice(simd, low) - f32x4::from_slice(simd, high);
         let [origin, per_unit] = [f32x4::simd_from(simd, self.origin), f32x4::simd_from(simd, self.per_unit)];
         let (offset, last) = ((doubled - origin) * per_unit, f32x4::splat(simd, self.last as f32));
         // What is not a number is in the last.
-        let bins = simd.cvt_i32_f32x4(offset.simd_lt(last).select(offset, last));
-        each(
-            bins.to_array(),
-            #[inline(always)]
-            |bin| bin as usize % BINS,
-        )
+        simd.cvt_i32_f32x4(offset.simd_lt(last).select(offset, last))
     }
 }
 
@@ -178,11 +172,12 @@ fn best_plane<S: Simd>(simd: S, set: &Set, items: &[Item], weight: impl Fn(&Item
     let mut bounds = [PackedBox::EMPTY; 3 * BINS];
     let mut weights = [0; 3 * BINS];
     for item in items {
-        let bins = binning.bins(simd, item);
+        let bins = binning.bins(simd, item).to_array();
         let weight = weight(item);
         for axis in 0..3 {
-            bounds[axis * BINS + bins[axis]].grow_on(simd, &item.bounds);
-            weights[axis * BINS + bins[axis]] += weight;
+            let bin = axis * BINS + bins[axis] as usize % BINS;
+            bounds[bin].grow_on(simd, &item.bounds);
+            weights[bin] += weight;
         }
     }
     let mut best: Option<(f32, usize, usize)> = None;
@@ -268,7 +263,10 @@ impl Plane {
     fn part<S: Simd>(&self, simd: S, items: &mut [Item], Spare(spare): &mut Spare) -> usize {
         let is_below = {
             #[inline(always)]
-            |item: &Item| self.binning.bins(simd, item)[self.axis] <= self.bin
+            |item: &Item| {
+                let below = self.binning.bins(simd, item).simd_le(i32x4::splat(simd, self.bin as i32));
+                below.to_bitmask() >> self.axis & 1 == 1
+            }
         };
         if items.len() > SPARE {
             return part_in_place(items, is_below);
