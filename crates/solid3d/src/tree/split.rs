@@ -172,10 +172,10 @@ fn best_plane<S: Simd>(simd: S, set: &Set, items: &[Item], weight: impl Fn(&Item
     let mut bounds = [PackedBox::EMPTY; 3 * BINS];
     let mut weights = [0; 3 * BINS];
     for item in items {
-        let bins = binning.bins(simd, item).to_array();
+        let [x, y, z, _] = binning.bins(simd, item).to_array();
         let weight = weight(item);
-        for axis in 0..3 {
-            let bin = axis * BINS + bins[axis] as usize % BINS;
+        for (axis, bin) in [x, y, z].into_iter().enumerate() {
+            let bin = axis * BINS + bin as usize % BINS;
             bounds[bin].grow_on(simd, &item.bounds);
             weights[bin] += weight;
         }
