@@ -24,7 +24,7 @@ impl World {
     /// The object that is nearest to a point, up to a distance, among those that `counts` lets through, and its closest point; `None` when none is as near.
     /// Of objects as near as each other, as all are that contain the point, one that comes first in the order of pairs.
     ///
-    /// As [`query::closest_point`](crate::query::closest_point) says for each, which tells what the errors are. Objects are where they are now, whatever
+    /// As [`query::closest_point`] says for each, which tells what the errors are. Objects are where they are now, whatever
     /// their response. A distance of infinity is no limit. Cost: follows the objects whose boxes are nearer than what is found; those that
     /// were added or moved since the last test or [`refresh`](World::refresh) are looked at one by one.
     ///
