@@ -267,6 +267,11 @@ fn listed(edges: &[OpenEdge]) -> String {
 /// A result whose error names what was wrong with the input.
 pub type Result<T> = std::result::Result<T, Error>;
 
+/// Refuses what is negative or not a number.
+pub(crate) fn at_least_zero(argument: &'static str, value: f64) -> Result<()> {
+    if value >= 0.0 { Ok(()) } else { Err(Error::Negative { argument, value }) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

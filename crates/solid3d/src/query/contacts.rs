@@ -3,7 +3,7 @@
 use glam::DAffine3;
 
 use super::{placed, unchecked};
-use crate::error::{Error, Result};
+use crate::error::{Result, at_least_zero};
 use crate::pair::{self, ContactOptions, Manifold, Scratch};
 use crate::shape::Shape;
 
@@ -66,9 +66,7 @@ pub fn contacts(
 impl ContactOptions {
     /// The options when they can be used.
     pub(crate) fn checked(&self) -> Result<&ContactOptions> {
-        if self.margin.is_nan() || self.margin < 0.0 {
-            return Err(Error::Negative { argument: "margin", value: self.margin });
-        }
+        at_least_zero("margin", self.margin)?;
         Ok(self)
     }
 }

@@ -3,7 +3,7 @@
 use glam::DAffine3;
 
 use super::{Distance, placed};
-use crate::error::{Error, Result};
+use crate::error::{Result, at_least_zero};
 use crate::pair::{self, Scratch};
 use crate::shape::Shape;
 
@@ -36,10 +36,7 @@ pub fn distance_within(
     placement_b: &DAffine3,
     bound: f64,
 ) -> Result<Option<Distance>> {
-    // Neither is NaN.
-    if !matches!(bound.partial_cmp(&0.0), Some(std::cmp::Ordering::Equal | std::cmp::Ordering::Greater)) {
-        return Err(Error::Negative { argument: "bound", value: bound });
-    }
+    at_least_zero("bound", bound)?;
     let (a, b) = (placed("placement_a", a, placement_a)?, placed("placement_b", b, placement_b)?);
     let closest = pair::convex_closest_within(a, b, bound)
         .unwrap_or_else(|| Scratch::with(|scratch| pair::closest_within(a, b, bound, scratch)));

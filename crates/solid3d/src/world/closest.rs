@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{ObjectId, World};
 use crate::bounds::Aabb;
 use crate::broad::matters;
-use crate::error::{Error, Result};
+use crate::error::{Result, at_least_zero};
 use crate::query::{self, ClosestPoint, bounded};
 
 /// The point of an object that is closest to another point.
@@ -47,9 +47,7 @@ impl World {
         mut counts: impl FnMut(ObjectId) -> bool,
     ) -> Result<Option<ObjectPoint>> {
         bounded("point", point)?;
-        if within.is_nan() || within < 0.0 {
-            return Err(Error::Negative { argument: "within", value: within });
-        }
+        at_least_zero("within", within)?;
         let (mut until, mut best) = (within, None::<ObjectPoint>);
         let mut look_at = |object: ObjectId, until: &mut f64| -> Result<()> {
             let placed = self.objects[object].placed();

@@ -11,7 +11,7 @@ pub(crate) use convex::first_hit;
 use glam::{DMat3, DVec3};
 
 use super::{Placed, Scratch};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, at_least_zero};
 use crate::placement::direction;
 use crate::shape::Class;
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN};
@@ -66,9 +66,7 @@ impl Ray {
         if self.direction.abs().max_element() < MAGNITUDE_MIN {
             return Err(Error::NoDirection { argument: "ray.direction", value: self.direction });
         }
-        if self.max.is_nan() || self.max < 0.0 {
-            return Err(Error::Negative { argument: "ray.max", value: self.max });
-        }
+        at_least_zero("ray.max", self.max)?;
         Ok(self)
     }
 }
