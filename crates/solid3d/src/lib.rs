@@ -15,6 +15,7 @@ mod shape;
 mod threads;
 pub mod tree;
 mod triangle_triangle;
+mod working;
 mod world;
 
 pub use bounds::Aabb;

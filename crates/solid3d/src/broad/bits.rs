@@ -7,7 +7,7 @@ use crate::tree::bits;
 pub(super) const WORD: usize = u64::BITS as usize;
 
 /// Bits that are named by dense integers; those that were never set are not.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Bits(Vec<u64>);
 
 impl Bits {

@@ -17,7 +17,7 @@ const ROW: usize = 6;
 pub(super) const AXES: u64 = 0b111;
 
 /// Boxes by proxy, one after the other. After the last is room for one more, so that from each number of a box four can be read at once.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Boxes(Vec<Row>);
 
 const EMPTY: Row = row(&Aabb::EMPTY);

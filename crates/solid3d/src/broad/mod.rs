@@ -87,6 +87,21 @@ pub struct PairChange {
 /// }
 /// ```
 pub trait BroadPhase: Send + Sync + std::fmt::Debug {
+    /// A copy, which does from here on what this one does when it is told the same. Cost: linear in the boxes and pairs.
+    ///
+    /// ```
+    /// use solid3d::broad::{BroadPhase, DynamicTree};
+    /// use solid3d::{Aabb, glam::DVec3};
+    /// let mut broad = DynamicTree::default();
+    /// broad.insert_many(&[0, 1].map(|proxy| (proxy, Aabb::new(DVec3::ZERO, DVec3::ONE))));
+    /// broad.flush();
+    /// let before = broad.boxed_clone();
+    /// broad.remove(1);
+    /// broad.flush();
+    /// assert_eq!((broad.sorted_pairs(), before.sorted_pairs()), (vec![], vec![(0, 1)]));
+    /// ```
+    fn boxed_clone(&self) -> Box<dyn BroadPhase>;
+
     /// Adds a box. Shown in the pairs from the next [`flush`](Self::flush) on.
     ///
     /// # Panics
@@ -298,6 +313,12 @@ pub trait BroadPhase: Send + Sync + std::fmt::Debug {
         self.for_each_pair(&mut |a, b| pairs.push((a, b)));
         pairs.sort_unstable();
         pairs
+    }
+}
+
+impl Clone for Box<dyn BroadPhase> {
+    fn clone(&self) -> Self {
+        (**self).boxed_clone()
     }
 }
 

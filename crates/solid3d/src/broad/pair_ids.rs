@@ -17,7 +17,7 @@ pub(super) fn key(a: Proxy, b: Proxy) -> u64 {
 }
 
 /// Multiplicative hashing without a random seed: runs must repeat. The keys are the caller's own dense integers.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct ProxyHasher(u64);
 
 impl Hasher for ProxyHasher {

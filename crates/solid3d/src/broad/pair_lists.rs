@@ -34,7 +34,7 @@ struct Links {
 /// Vectors hold them, so that visiting all is a linear scan and nothing is allocated per proxy; a pair keeps its slot, which
 /// is its id. The links of the lists name a pair and a side of it: `2 * id + side`. Lists rather than vectors, because taking
 /// one pair out of the list of, say, the ground must not cost a search in that list.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct PairLists {
     /// The proxies of each pair, the smaller first; of a slot that is not in use, 0 twice. Of all that is kept of a pair this alone is read
     /// of each when everything moved: so it stands apart from the rest, and what is yes or no of a pair in bits, of 64 at a time.

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::pair::{self, Scratch};
 use crate::placement;
 use crate::shape::Shape;
+use crate::working::Working;
 
 /// Two shapes about which the same is asked frame after frame, as they move a little: what was found last is tried first
 /// (thesis, section 4.4.3). For pairs outside of a [`World`](crate::World), which does the like by itself.
@@ -31,19 +32,19 @@ use crate::shape::Shape;
 /// }
 /// # Ok::<(), solid3d::Error>(())
 /// ```
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct PairCache {
     a: Shape,
     b: Shape,
     /// Of these two shapes.
     memory: Memory,
-    scratch: Scratch,
+    scratch: Working<Scratch>,
 }
 
 impl PairCache {
     /// Two shapes of which nothing is known yet. Cost: none to speak of; shapes share their geometry.
     pub fn new(a: &Shape, b: &Shape) -> PairCache {
-        PairCache { a: a.clone(), b: b.clone(), memory: Memory::default(), scratch: Scratch::default() }
+        PairCache { a: a.clone(), b: b.clone(), memory: Memory::default(), scratch: Working::default() }
     }
 
     /// What [`intersects`](super::intersects) says, always.

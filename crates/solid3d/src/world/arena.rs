@@ -15,7 +15,7 @@ use crate::broad::room::push;
 /// No slot. Slot 0 is never used.
 const NONE: u32 = 0;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Slot {
     /// Odd when there is an object. Grows with each that comes and goes, so that the id of one that went names no other.
     version: u32,
@@ -25,7 +25,7 @@ struct Slot {
 }
 
 /// Objects under generational ids.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Arena {
     slots: Vec<Slot>,
     /// The first slot that is not in use.

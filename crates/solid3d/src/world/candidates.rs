@@ -66,7 +66,7 @@ impl Candidate {
 }
 
 /// All candidates.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Candidates {
     slots: PairMap<Candidate>,
     /// Candidates to be examined, some of them twice; some may be none any more.

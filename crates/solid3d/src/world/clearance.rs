@@ -19,7 +19,7 @@ const GROWTH_ERROR: f64 = 4e-12;
 const SWEEP_MIN: usize = 64;
 
 /// Clearances by default and per pair.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Clearances {
     default: f64,
     /// The lesser id first. Ids never come back, so pairs of objects that are gone do no harm until they are dropped.

@@ -9,7 +9,7 @@ use crate::threads::for_each_part;
 /// A collision in the findings.
 pub(super) type FindingId = u32;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Finding {
     key: PairKey,
     /// The frame in which it began; of what began again before a frame ended some earlier one.
@@ -18,7 +18,7 @@ struct Finding {
 }
 
 /// The collisions, kept from test to test: what is told is what changed.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Findings {
     order: Ordered<FindingId>,
     findings: Vec<Finding>,

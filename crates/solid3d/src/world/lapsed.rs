@@ -9,7 +9,7 @@ use super::findings::{FindingId, Findings};
 ///
 /// Where they are of each object is written down when an object is removed, once for each finding. So removing many objects costs what there
 /// is of them, and a test pays nothing for it.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Lapsed {
     /// `None` for those that went with an object.
     findings: Vec<Option<FindingId>>,

@@ -48,6 +48,7 @@ use crate::broad::{BroadPhase, PROXY_MAX};
 use crate::error::{Error, Result};
 use crate::placement;
 use crate::shape::Shape;
+use crate::working::Working;
 use arena::{Arena, slot_of as proxy};
 use candidates::{Candidates, PairKey};
 use clearance::Clearances;
@@ -82,7 +83,10 @@ const OBJECTS_MAX: usize = PROXY_MAX as usize;
 /// assert!((collisions[0].normal().unwrap() + DVec3::Y).length() < 1e-5);
 /// # Ok::<(), solid3d::Error>(())
 /// ```
-#[derive(Debug)]
+///
+/// A copy made with `clone` does from there on what the world does, to the bit, if it is told the same: a state to go back to, or a branch in which to try
+/// something. Ids name the same objects in both. Cost: linear in the objects and pairs; shapes share their geometry.
+#[derive(Clone, Debug)]
 pub struct World {
     /// The slot of each is its proxy in the broad phase.
     objects: Arena,
@@ -104,11 +108,11 @@ pub struct World {
     stale: bool,
     /// Whether the default response did.
     default_changed: bool,
-    /// Working memory: the candidates that a test examines.
-    to_examine: Vec<pair_map::Place>,
-    /// Working memory: what examining them gave, part by part.
-    news: [Vec<news::News>; 2],
-    workers: Workers,
+    /// The candidates that a test examines.
+    to_examine: Working<Vec<pair_map::Place>>,
+    /// What examining them gave, part by part.
+    news: Working<[Vec<news::News>; 2]>,
+    workers: Working<Workers>,
     statistics: Statistics,
 }
 
@@ -141,9 +145,9 @@ impl World {
             findings: Findings::default(),
             stale: false,
             default_changed: false,
-            to_examine: Vec::new(),
-            news: Default::default(),
-            workers: Workers::default(),
+            to_examine: Working::default(),
+            news: Working::default(),
+            workers: Working::default(),
             statistics: Statistics::default(),
         }
     }

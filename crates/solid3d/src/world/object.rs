@@ -20,7 +20,7 @@ slotmap::new_key_type! {
 const RANK_SHIFT: u32 = 56;
 
 /// An object.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Object {
     /// Its place in the order of pairs and their results: by rank, then by creation.
     pub order: u64,
@@ -39,7 +39,7 @@ pub(super) struct Object {
 }
 
 /// What an object has whose shape changed, or whose box is of a fixed size.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Extra {
     /// The shape of the previous frame, if it is another.
     previous_shape: Option<Shape>,

@@ -10,7 +10,7 @@ const SHELF_MAX: usize = 256;
 
 /// A sorted map in three levels: blocks of entries, shelves of blocks, and the list of shelves. What is inserted or removed moves at most
 /// one block's entries and, seldom, the list of a shelf's blocks. Memory of blocks and shelves that became empty is kept for new ones.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Ordered<T> {
     /// None is empty; all keys of one are below those of the next.
     shelves: Vec<Shelf<T>>,
@@ -18,7 +18,7 @@ pub(super) struct Ordered<T> {
     len: usize,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Shelf<T> {
     /// None is empty; all keys of one are below those of the next.
     blocks: Vec<Block<T>>,
@@ -28,7 +28,7 @@ struct Shelf<T> {
 
 type Block<T> = Vec<(PairKey, T)>;
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Spare<T> {
     /// With room for all that were made, so that what becomes empty allocates nothing.
     blocks: Vec<Block<T>>,

@@ -14,7 +14,7 @@ pub(super) type Place = u32;
 
 /// A map from pairs. The ids of pairs are dense, but more than half of them may be of boxes that do not overlap, of which
 /// nothing is known: so they have a word each, and only what there is has more.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct PairMap<T> {
     /// By pair: where its value stands.
     places: Vec<Place>,

@@ -35,7 +35,7 @@ pub enum Response {
 }
 
 /// Responses by default, per object and per pair.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct ResponseTable {
     default: Response,
     objects: SecondaryMap<ObjectId, Response>,

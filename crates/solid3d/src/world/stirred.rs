@@ -22,7 +22,7 @@ pub(super) enum Staleness {
 /// Objects about which something changed, by their slots; some may have been removed since, and others added in their slots.
 ///
 /// Apart from the objects, because a test looks at this of both objects of every pair: a byte for each is at hand always.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Stirred {
     /// By slot, as far as any was stirred.
     staleness: Vec<Staleness>,

@@ -174,7 +174,7 @@ impl World {
     fn examine_all(&mut self, places: &mut [Place]) {
         let share = Workers::share(self.statistics.units_for(places.len()));
         // Taken out, so that a panic leaves nothing in it.
-        let [mut news, mut earlier_news] = std::mem::take(&mut self.news);
+        let [mut news, mut earlier_news] = std::mem::take(&mut *self.news);
         let Self { objects, responses, caching, candidates, findings, workers, statistics, .. } = self;
         let examiner = Examiner { objects, responses, caching: *caching };
         let (values, count) = candidates.values_and_count_mut();
@@ -212,7 +212,7 @@ impl World {
                 notes.keep(part, &mut news);
             }
         }
-        self.news = [news, earlier_news];
+        *self.news = [news, earlier_news];
     }
 }
 

@@ -160,6 +160,41 @@ fn the_same_calls_give_the_same_bits_and_the_same_work() {
     }
 }
 
+/// Law: a copy of a world, taken at any time, does what the world does; what is done to another copy changes neither.
+#[test]
+fn a_copy_does_what_the_world_does() {
+    for kind in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+        let original = swept_world(kind, true, Boxes::Dynamic);
+        let mut stage = Stage::new(vec![original.clone(), original], 205, 9.0);
+        for _ in 0..50 {
+            stage.add();
+        }
+        let maybe_copy = |stage: &mut Stage| {
+            if stage.rng.random_range(0..4) > 0 {
+                return;
+            }
+            let copy = stage.worlds[0].clone();
+            let mut other = std::mem::replace(&mut stage.worlds[1], copy);
+            stage.worlds.swap(0, 1);
+            for id in other.objects() {
+                other.set_placement(id, DAffine3::IDENTITY).unwrap();
+                other.test();
+                other.remove(id).unwrap();
+            }
+        };
+        for _ in 0..120 {
+            maybe_copy(&mut stage);
+            stage.change();
+            maybe_copy(&mut stage);
+            stage.tell(|world| (all_bits(&world.test()), world.events().collect::<Vec<_>>()));
+            maybe_copy(&mut stage);
+            stage.proceed();
+            stage.tell(|world| world.statistics());
+        }
+        assert!(stage.worlds[0].statistics().collisions > 200);
+    }
+}
+
 #[cfg(feature = "rayon")]
 #[test]
 fn the_number_of_threads_changes_no_bit_and_no_count() {

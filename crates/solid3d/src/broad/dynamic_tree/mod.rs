@@ -44,6 +44,7 @@ use super::{
 use crate::bounds::Aabb;
 use crate::threads::{between, both, in_pool};
 use crate::tree::TreeRay;
+use crate::working::Working;
 use build::Builder;
 use fat_box::FatBox;
 use notes::Notes;
@@ -83,7 +84,7 @@ const REFRESH_ALL_AT_ONE_IN: usize = 4;
 /// broad.flush();
 /// assert_eq!(broad.sorted_pairs(), [(0, 51)]); // the fat boxes of 50 and 0 overlap, the boxes do not
 /// ```
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct DynamicTree {
     /// By proxy: the current box where the proxy is in use.
     tight: Boxes,
@@ -100,8 +101,8 @@ pub struct DynamicTree {
     /// Changes of the tree since it was last built.
     changes: usize,
     counters: Counters,
-    builder: Builder,
-    search: Search,
+    builder: Working<Builder>,
+    search: Working<Search>,
 }
 
 impl DynamicTree {
@@ -185,8 +186,8 @@ impl DynamicTree {
         self.tree.places.shrink_to_fit();
         self.pairs.trim();
         self.notes.trim();
-        self.builder = Builder::default();
-        self.search = Search::default();
+        self.builder = Working::default();
+        self.search = Working::default();
     }
 
     /// Moves the origin to where the boxes are, if they are far from it, and gives all of them fat boxes from there.
@@ -366,6 +367,10 @@ fn living(status: &[Status]) -> impl Iterator<Item = Proxy> {
 }
 
 impl BroadPhase for DynamicTree {
+    fn boxed_clone(&self) -> Box<dyn BroadPhase> {
+        Box::new(self.clone())
+    }
+
     fn insert(&mut self, proxy: Proxy, bounds: Aabb) {
         assert_valid(proxy, &bounds);
         self.grow(proxy as usize + 1);

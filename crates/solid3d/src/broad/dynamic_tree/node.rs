@@ -63,6 +63,12 @@ impl Place {
 #[derive(Debug)]
 pub(super) struct PlaceCell(AtomicU32);
 
+impl Clone for PlaceCell {
+    fn clone(&self) -> Self {
+        PlaceCell::new(self.get())
+    }
+}
+
 impl PlaceCell {
     pub fn new(place: Place) -> Self {
         PlaceCell(AtomicU32::new(place.0))

@@ -7,7 +7,7 @@ use crate::broad::room::extend;
 use crate::broad::room::push;
 
 /// What became of the boxes since the last flush.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Notes {
     /// Whether any is not what it was.
     pub changed: bool,

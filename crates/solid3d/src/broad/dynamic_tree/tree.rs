@@ -20,7 +20,7 @@ pub(super) const DEPTH_MAX: usize = 64;
 pub(super) const ROOT: u32 = 0;
 
 /// A tree over boxes named by proxies. Every lane's box is exactly the union of the boxes below it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Tree {
     pub nodes: Vec<Node>,
     /// Nodes not in use.

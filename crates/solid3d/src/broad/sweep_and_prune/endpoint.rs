@@ -33,7 +33,7 @@ impl Endpoint {
 }
 
 /// The endpoints on one axis.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
     /// Each [`precedes`](Endpoint::precedes) the next.
     endpoints: Vec<Endpoint>,

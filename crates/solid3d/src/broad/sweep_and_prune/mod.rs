@@ -53,7 +53,7 @@ enum State {
 /// broad.flush();
 /// assert_eq!(broad.sorted_pairs(), [(3, 7)]);
 /// ```
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct SweepAndPrune {
     /// By proxy; the current box where the state is `Present`, `New` or `Stale`.
     boxes: Vec<Aabb>,
@@ -217,6 +217,10 @@ impl SweepAndPrune {
 }
 
 impl BroadPhase for SweepAndPrune {
+    fn boxed_clone(&self) -> Box<dyn BroadPhase> {
+        Box::new(self.clone())
+    }
+
     fn insert(&mut self, proxy: Proxy, bounds: Aabb) {
         assert_valid(proxy, &bounds);
         let slot = proxy as usize;

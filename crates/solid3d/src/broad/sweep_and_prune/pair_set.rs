@@ -5,7 +5,7 @@ use crate::broad::pair_ids::{PairIds, key};
 use crate::broad::pair_lists::PairLists;
 
 /// A set of unordered pairs of proxies. One that ceased to overlap stays until that was told.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct PairSet {
     ids: PairIds,
     pub lists: PairLists,
