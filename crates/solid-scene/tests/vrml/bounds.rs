@@ -4,11 +4,13 @@ use glam::{DAffine3, DVec3};
 use solid_scene::{Pose, Scene};
 use solid3d::{Aabb, Shape, ShapeKind};
 
-/// The sizes of a convex shape, in the order of its fields. A shape does not tell them but in its debug form.
+/// The radius of a ball, half of the size of a box, the radius and half of the height of a cone or a cylinder; nothing of other shapes.
 pub fn sizes(shape: &Shape) -> Vec<f64> {
-    let debug = format!("{shape:?}").replace("DVec3", "");
-    let number = |text: &str| text.parse::<f64>().ok();
-    debug.split(|c: char| !(c.is_ascii_digit() || ".e-".contains(c))).filter_map(number).collect()
+    let ball = shape.as_sphere().map(|it| vec![it.radius()]);
+    let cuboid = shape.as_cuboid().map(|it| (0.5 * it.size()).to_array().to_vec());
+    let cone = shape.as_cone().map(|it| vec![it.radius(), 0.5 * it.height()]);
+    let cylinder = shape.as_cylinder().map(|it| vec![it.radius(), 0.5 * it.height()]);
+    ball.or(cuboid).or(cone).or(cylinder).unwrap_or_default()
 }
 
 /// How far a shape reaches along a direction.

@@ -3,6 +3,7 @@
 mod builder;
 mod chord;
 mod complex;
+mod debug;
 mod enclosed;
 mod facets;
 mod hulled;
@@ -52,12 +53,12 @@ const POINTS_MAX: usize = (u32::MAX / 8) as usize;
 /// assert_eq!(error.to_string(), "radius is -1.0; it must be from 1e-100 to 1e100");
 /// # Ok::<(), solid3d::Error>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Shape {
     geometry: Geometry,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 enum Geometry {
     Sphere(Sphere),
     Cuboid(Cuboid),

@@ -28,6 +28,8 @@ mod stirred;
 mod test;
 mod threads;
 
+use std::fmt;
+
 use glam::{DAffine3, DVec3};
 
 pub use casts::ObjectCast;
@@ -86,7 +88,7 @@ const OBJECTS_MAX: usize = PROXY_MAX as usize;
 ///
 /// A copy made with `clone` does from there on what the world does, to the bit, if it is told the same: a state to go back to, or a branch in which to try
 /// something. Ids name the same objects in both. Cost: linear in the objects and pairs; shapes share their geometry.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct World {
     /// The slot of each is its proxy in the broad phase.
     objects: Arena,
@@ -119,6 +121,15 @@ pub struct World {
 impl Default for World {
     fn default() -> Self {
         World::with_options(&WorldOptions::default())
+    }
+}
+
+/// How many objects there are, and the work done, not all that is known of them.
+impl fmt::Debug for World {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { objects, statistics, .. } = self;
+        let mut world = f.debug_struct("World");
+        world.field("objects", &objects.len()).field("statistics", statistics).finish_non_exhaustive()
     }
 }
 
