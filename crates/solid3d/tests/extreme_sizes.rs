@@ -200,3 +200,62 @@ fn normals_are_unit_vectors_beside_what_is_next_to_nothing() {
         }
     }
 }
+
+/// Law: a mesh that is one point, or was deformed to one, has the distances that a point has, whatever it is beside: the space of its tree may be far larger
+/// than all else.
+#[test]
+fn a_mesh_that_is_a_point_is_as_far_away_as_a_point() {
+    let here = DAffine3::IDENTITY;
+    let mut shrunk = Shape::mesh([DVec3::X * 1e20, DVec3::Y * 1e20, DVec3::Z], [[0, 1, 2]]).unwrap();
+    shrunk.deform(&[DVec3::ZERO; 3]).unwrap();
+    let flat = Shape::mesh([DVec3::ZERO; 3], [[0, 1, 2]]).unwrap();
+    let point = Shape::convex_hull(&[DVec3::ZERO]).unwrap();
+    for exponent in (-60..=0).step_by(4) {
+        let size = 10f64.powi(exponent);
+        let corners = [DVec3::ZERO, DVec3::new(0.5, 1.0, 0.0), DVec3::new(0.5, 0.0, 1.0)];
+        let strip: Vec<DVec3> =
+            (0..30).map(|i| size * (DVec3::X * f64::from(i / 3) + corners[i as usize % 3])).collect();
+        let triangles: Vec<[u32; 3]> = (0..10).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let mesh = Shape::mesh(strip, triangles).unwrap();
+        let hull = Shape::convex_hull(&corners.map(|corner| corner * size)).unwrap();
+        let at = DAffine3::from_translation(size * DVec3::new(-4.5, 1.0, 2.0));
+        for other in [&mesh, &hull] {
+            let expected = query::distance(&point, &here, other, &at).unwrap().distance;
+            assert!(expected > size && expected < 10.0 * size);
+            for it in [&flat, &shrunk] {
+                let found = query::distance(it, &here, other, &at).unwrap().distance;
+                let within = query::distance_within(it, &here, other, &at, 2.0 * expected).unwrap();
+                let off =
+                    [found, within.expect("it is near").distance].map(|distance| (distance - expected).abs());
+                assert!(off.iter().all(|&off| off <= 1e-10 * size), "{size:e}: {found:e}, not {expected:e}");
+            }
+        }
+    }
+}
+
+/// Law: of what is so thin that products of its edges vanish, answers are whole.
+#[test]
+fn answers_are_whole_where_products_vanish() {
+    let f = f64::from_bits;
+    let here = DAffine3::IDENTITY;
+    let hull = |corners: &[DVec3]| Shape::convex_hull(corners).unwrap();
+    let flat =
+        hull(&[DVec3::new(-6.3e-176, 0.0, 0.0), DVec3::new(0.0, -0.5, 0.0), DVec3::new(1.0, -1.0, 0.0)]);
+    let thin =
+        hull(&[DVec3::new(0.0, 8e-174, -0.1), DVec3::new(0.0, 0.0, 1e-172), DVec3::new(0.0, 0.0, -0.01)]);
+    let at = DAffine3::from_translation(DVec3::X * 1e-11);
+    for (a, b, p, q) in [(&flat, &thin, here, at), (&thin, &flat, at, here)] {
+        let distance = query::distance(a, &p, b, &q).unwrap().distance;
+        assert!((distance - 1e-11 * 0.5f64.sqrt()).abs() < 1e-20, "{distance:e}");
+    }
+    let needle = hull(&[
+        DVec3::Y * 0.8,
+        DVec3::new(f(0xbfe18d2dc7c45b1e), f(0x3fe18d2dc7c45b1f), f(0x3c935c43468e47cd)),
+    ]);
+    let mote = Shape::cylinder(f(0x3d220489b4eb1bff), f(0x3d6c4f314903bdc8)).unwrap();
+    let at = DAffine3::from_translation(DVec3::new(f(0xbfa8893d26276600), f(0x3fe8e593c049c500), 0.0));
+    let found = query::distance(&needle, &here, &mote, &at).unwrap();
+    assert!(found.point_on_a.is_finite() && found.point_on_a.distance(at.translation) < 1e-11, "{found:?}");
+    let depth = query::penetration(&needle, &here, &mote, &at).unwrap().map_or(0.0, |found| found.depth);
+    assert!(depth < 1e-12, "{depth:e}");
+}

@@ -168,7 +168,9 @@ where
             if members_before.any() {
                 let before = v_before.length_squared();
                 stalled = length_squared > (1.0 - PROGRESS_MIN) * before;
-                if length_squared > GROWTH_MAX * before {
+                // What is so thin that products of its edges vanish has a closest point that is no number.
+                if length_squared > GROWTH_MAX * before || length_squared.is_nan() {
+                    stalled = true;
                     simplex.restore(members_before);
                     v = v_before;
                     if refinements < REFINEMENTS_MAX

@@ -92,7 +92,8 @@ impl Folded {
             a,
             b,
             per_unit: if inverse > 0.0 { inverse * (1.0 + 2.0 * ROUNDING) } else { f64::INFINITY },
-            units: round_down(inverse.min(f64::from(f32::MAX))),
+            // Of less than zero bounds below zero, which tell nothing, would be great ones.
+            units: round_down(inverse.min(f64::from(f32::MAX))).max(0.0),
         }
     }
 
