@@ -271,6 +271,33 @@ fn what_a_placement_makes_even_is_hit_as_what_is_even() {
     assert_rate("rays", hits, cases);
 }
 
+/// Law: a normal is on the side that the ray comes from. The sides of a needle are told by signs, but its normal is a rounded product, which may be any
+/// across the needle.
+#[test]
+fn the_normal_of_a_needle_is_on_the_side_that_the_ray_comes_from() {
+    let mut rng = seeded(75);
+    let (mut hits, cases) = (0, 40_000);
+    for case in 0..cases {
+        let (from, along) = (in_cube(&mut rng), direction(&mut rng));
+        let mut corner = || {
+            let on_line = from + along * rng.random_range(-4.0..4.0);
+            on_line + 10f64.powi(-rng.random_range(15..18)) * in_cube(&mut rng)
+        };
+        let corners: Vec<DVec3> = (0..18).map(|_| corner()).collect();
+        let needles: Vec<[u32; 3]> = (0..6).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let to = corners[rng.random_range(0..18)];
+        let needles = Shape::mesh(corners, needles).unwrap();
+        let way = direction(&mut rng);
+        let ray = Ray::new(to - way * f64::from(case % 2), way);
+        let hit = query::cast_ray(&needles, &DAffine3::IDENTITY, &ray, &RayOptions::default()).unwrap();
+        let Some(hit) = hit else { continue };
+        hits += 1;
+        assert!(hit.surface.unwrap().normal.dot(way) <= 1e-15, "case {case}: {hit:?}");
+    }
+    println!("{hits} of {cases} hit");
+    assert!(hits > cases / 20);
+}
+
 /// From so far off that rounding leaves few digits of where a ray meets a shape, normals are unit vectors still.
 #[test]
 fn normals_are_unit_vectors_from_any_distance() {

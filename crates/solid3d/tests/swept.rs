@@ -336,6 +336,26 @@ fn a_shape_set_within_the_frame_comes_along() {
     }
 }
 
+/// Law: boxes of a fixed size are around all forms on the way, also where another shape was set in between.
+#[test]
+fn boxes_of_a_fixed_size_hold_what_was_larger_on_the_way() {
+    let small = Shape::mesh([DVec3::ZERO, DVec3::X, DVec3::Y], [[0, 1, 2]]).unwrap();
+    let mut large = small.clone();
+    large.deform(&[DVec3::ZERO, DVec3::X * 100.0, DVec3::Y * 100.0]).unwrap();
+    let ball = Shape::sphere(1.0).unwrap();
+    for boxes in [Boxes::Dynamic, Boxes::FixedSize] {
+        let options = WorldOptions { boxes, motion: Motion::Swept, ..WorldOptions::default() };
+        let mut world = World::with_options(&options);
+        let sheet = world.add(&large, DAffine3::IDENTITY).unwrap();
+        world.add(&ball, DAffine3::from_translation(DVec3::new(30.0, 30.0, 0.0))).unwrap();
+        world.set_shape(sheet, &ball).unwrap();
+        world.set_shape(sheet, &small).unwrap();
+        assert!(matches!(&world.test()[..], [found] if found.when == When::OnTheWay), "{boxes:?}");
+        world.proceed();
+        assert!(world.test().is_empty());
+    }
+}
+
 /// The tree leaves out what a bullet does not come near, also when the bullet is a mesh.
 #[test]
 fn a_bullet_in_a_valley_costs_little() {

@@ -13,7 +13,9 @@ use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid3d::query::{self, FromInside, Ray, RayOptions};
-use solid3d::{BroadPhaseKind, ObjectHit, ObjectId, ObjectPoint, Shape, World, WorldOptions, glam};
+use solid3d::{
+    BroadPhaseKind, ComplexShapeBuilder, ObjectHit, ObjectId, ObjectPoint, Shape, World, WorldOptions, glam,
+};
 
 /// Adds a mesh or a convex shape, of one of two ranks.
 fn add_random(world: &mut World, rng: &mut StdRng, i: u8) -> ObjectId {
@@ -150,6 +152,14 @@ fn nearest_to_a_point_is_what_is_nearest_of_all() {
         println!("{found} of {cases} points have something near, {inside} are inside");
         assert!((0.5..=0.95).contains(&(f64::from(found) / f64::from(cases))) && inside > 5);
     }
+    // Also so far away that no square of the distance is a number.
+    let (mut world, hull) = (World::new(), Shape::convex_hull(&[DVec3::X * 1e100]).unwrap());
+    let object = world.add(&hull, DAffine3::from_scale(DVec3::splat(1e100))).unwrap();
+    for _ in 0..2 {
+        let nearest = world.closest_point(DVec3::ZERO, f64::INFINITY, |_| true).unwrap().unwrap();
+        assert!(nearest.object == object && (nearest.closest.distance - 1e200).abs() < 1e188);
+        world.refresh();
+    }
     let world = World::new();
     assert_eq!(world.closest_point(DVec3::ZERO, f64::INFINITY, |_| true), Ok(None));
     let error =
@@ -244,6 +254,62 @@ fn of_objects_met_at_the_same_t_the_first_is_told_from_any_distance() {
     }
     println!("{hits} of {cases} hit");
     assert!(hits > cases / 2);
+}
+
+/// The same of what is hit by casts, which may be early: hulls of many points, far from their local origin, and next to nothing.
+#[test]
+fn of_hulls_met_at_the_same_t_the_first_is_told() {
+    let mut rng = seeded(115);
+    let options = RayOptions::default();
+    let (mut hits, cases) = (0, 3000);
+    let ring = |at: f64, count: u32| -> Vec<DVec3> {
+        let point = |i: u32| {
+            let angle = f64::from(i / 2) / f64::from(count) * 4.0 * std::f64::consts::PI;
+            DVec3::new(at + angle.cos(), f64::from(i % 2) * 2.0 - 1.0, angle.sin())
+        };
+        (0..count).map(point).collect()
+    };
+    let whole = |points: Vec<DVec3>| {
+        let corners: Vec<u32> = (0..points.len() as u32).collect();
+        ComplexShapeBuilder::new(points).polyhedron(&corners).build().unwrap()
+    };
+    let shapes = [
+        ComplexShapeBuilder::new([DVec3::Y]).tetrahedron([0; 4]).build().unwrap(),
+        Shape::convex_hull(&ring(0.0, 800)).unwrap(),
+        whole(ring(6.4e6, 40)),
+        Shape::convex_hull(&ring(1e5, 800)).unwrap(),
+    ];
+    for case in 0..cases {
+        let shape = &shapes[case % 4];
+        let turn = DQuat::from_rotation_y(if case % 8 < 4 { 0.0 } else { rng.random_range(-1.0..1.0) });
+        let scale = if case % 3 == 0 { 1e-6 } else { 1.0 };
+        let at = DAffine3::from_scale_rotation_translation(DVec3::splat(scale), turn, in_cube(&mut rng));
+        let corners = shape.vertices().unwrap();
+        let to = at.transform_point3(corners[rng.random_range(0..corners.len())]);
+        let from = to + DVec3::Y * if case % 5 == 0 { 2.0 } else { rng.random_range(0.1..2.0) };
+        let aside = if case % 2 == 0 { DVec3::ZERO } else { 0.1 * scale * in_cube(&mut rng) };
+        let ray = Ray::new(from, to + aside - from);
+        let Some(hit) = query::cast_ray(shape, &at, &ray, &options).unwrap() else { continue };
+        hits += 1;
+        assert_eq!(
+            query::cast_ray(shape, &at, &ray.until(hit.t), &options).unwrap(),
+            Some(hit),
+            "case {case}"
+        );
+        for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+            let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
+            world.add_ranked(shape, at, 1).unwrap();
+            let object = world.add(shape, at).unwrap();
+            for refreshed in [false, true] {
+                let found = world.cast_ray(&ray, &options, |_| true).unwrap();
+                let context = format!("case {case}, {broad_phase:?}, refreshed: {refreshed}");
+                assert_eq!(found, Some(ObjectHit { object, hit }), "{context}");
+                world.refresh();
+            }
+        }
+    }
+    println!("{hits} of {cases} hit");
+    assert!(hits > cases / 3);
 }
 
 /// Law: what a world tells of a ray is what the query tells, to the bit, signs of zeros too.

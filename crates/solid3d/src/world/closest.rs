@@ -62,7 +62,12 @@ impl World {
             }
             Ok(())
         };
-        let bound = |bounds: &Aabb| point.distance(point.clamp(bounds.min, bounds.max)) * (1.0 - ERROR);
+        let bound = |bounds: &Aabb| {
+            let gap = point - point.clamp(bounds.min, bounds.max);
+            // Where squares are no numbers of `f64` any more, infinity would be for a box that does not matter.
+            let length = Some(gap.length()).filter(|length| length.is_finite());
+            length.unwrap_or(gap.abs().max_element()) * (1.0 - ERROR)
+        };
         for (object, bounds) in self.elsewhere() {
             if matters(bound(&bounds), until) && counts(object) {
                 look_at(object, &mut until)?;

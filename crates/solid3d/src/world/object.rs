@@ -12,7 +12,8 @@ use crate::pair::{Placed, fixed_bounds, world_bounds, world_bounds_into};
 use crate::shape::Shape;
 
 slotmap::new_key_type! {
-    /// An object of a world. The id of a removed object never comes back.
+    /// An object of a world. The id of a removed object never comes back. Worlds number their objects alike: in another world, but for a copy, an id
+    /// may name another object.
     pub struct ObjectId;
 }
 
@@ -187,7 +188,9 @@ impl Object {
     /// Of an object on its way, or with a box of a fixed size.
     #[inline(never)]
     fn unusual_bounds(&self) -> Aabb {
-        let radius = self.extra.as_ref().and_then(|extra| extra.radius);
+        // On its way it may have had other forms, of other sizes.
+        let is_rigid = !self.has_way() || !self.was_deformed();
+        let radius = self.extra.as_ref().and_then(|extra| extra.radius).filter(|_| is_rigid);
         let bounds_of = |placed: Placed| {
             let fixed = radius.and_then(|radius| fixed_bounds(placed.placement, radius));
             fixed.unwrap_or_else(|| world_bounds(placed))

@@ -7,7 +7,7 @@ use solid_convex::unit_scale;
 
 use super::super::Scratch;
 use super::super::table::PlacedComplex;
-use super::convex::hull_hits;
+use super::convex::{hull_hits, into_box};
 use super::glance::Glance;
 use super::triangle::{Corners, LANES, Shear, TriangleHit, put};
 use super::{FromInside, Hits, SurfaceHit, facing, world_normal};
@@ -183,7 +183,11 @@ impl LocalRay {
         let owner = complex.owner(primitive);
         match triangle(complex, primitive) {
             Some(triangle) => self.meet(&triangle, owner, found),
-            None => hull_hits(&complex.primitive_hull(primitive), at, owner, found.hits),
+            None => {
+                let bounds = Aabb::of_points(complex.points_of(primitive));
+                let into_box = || self.start + into_box(&bounds, self.origin, self.direction);
+                hull_hits(&complex.primitive_hull(primitive), at, owner, into_box, found.hits);
+            }
         }
     }
 
@@ -205,7 +209,11 @@ impl LocalRay {
         let edge = |i: usize| (triangle[i] - triangle[0]) * scale;
         let back = back.unwrap_or(false);
         let normal = match world_normal(&self.to_local, edge(1).cross(edge(2))) {
-            Some(front) => facing(front, back),
+            Some(front) => {
+                // The side is told by signs, and the normal of a needle is a rounded one.
+                let normal = facing(front, back);
+                if normal.dot(hits.ray.direction) > 0.0 { -normal } else { normal }
+            }
             // A segment or a point has none: it turns to the ray.
             None => -direction(hits.ray.direction).expect("a ray has a direction"),
         };

@@ -7,12 +7,14 @@ use solid_convex::similarity::plain_square;
 use solid_convex::{Chord, Line, Support, gjk};
 
 use super::super::closed_form::{to_body, to_world};
-use super::super::reach::image_reach;
+use super::super::reach::{image_reach, world_bounds};
 use super::super::{POINT, Placed};
 use super::{Faces, FromInside, Hits, Ray, RayHit, RayOptions, SurfaceHit, Wanted, facing, world_normal};
+use crate::bounds::Aabb;
 use crate::error::Result;
 use crate::placement::{direction, inverse_linear};
 use crate::shape::{Class, Shape};
+use crate::tree::entry;
 
 /// Where a ray meets a surface from outside or inside, and a vector that tells the outward normal there.
 type End = (f64, DVec3);
@@ -100,7 +102,8 @@ pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
         })
     };
     if !told {
-        hull_hits(shape, at, 0, hits);
+        let into_box = || into_box(&world_bounds(placed), ray.origin, ray.direction);
+        hull_hits(shape, at, 0, into_box, hits);
     }
 }
 
@@ -115,14 +118,26 @@ fn chord_hits(chord: Option<Option<Chord>>, hits: &mut Hits, placed: impl Fn(DVe
     chord.is_some()
 }
 
-/// A ray against the hull of points, or any other support mapping: casts of a point from either end.
-pub(super) fn hull_hits(shape: &dyn Support, at: &DAffine3, primitive: u32, hits: &mut Hits) {
+/// When a ray comes into a box around a shape: no hit is before.
+pub(super) fn into_box(bounds: &Aabb, origin: DVec3, direction: DVec3) -> f64 {
+    entry(origin - bounds.center(), direction, bounds.half_extents()).unwrap_or(0.0)
+}
+
+/// A ray against the hull of points, or any other support mapping: casts of a point from either end. A cast may be early, but not before the ray comes
+/// into a box: else what looks at boxes first would pass over what is hit.
+pub(super) fn hull_hits(
+    shape: &dyn Support,
+    at: &DAffine3,
+    primitive: u32,
+    into_box: impl FnOnce() -> f64,
+    hits: &mut Hits,
+) {
     let ray = *hits.ray;
     let cast = |from: DVec3, direction: DVec3, until: f64| {
         gjk::cast(&*POINT, &DAffine3::from_translation(from), direction, shape, at, until)
     };
     let Some(impact) = cast(ray.origin, ray.direction, hits.until.max(0.0)) else { return };
-    let enter = impact.normal.map(|normal| (impact.time, normal));
+    let enter = impact.normal.map(|normal| (impact.time.max(into_box()), normal));
     if enter.is_none() {
         hits.add_inside();
     }
