@@ -103,8 +103,8 @@ pub enum Error {
         /// The edges where it is not, all of them, in ascending order.
         edges: Vec<OpenEdge>,
     },
-    /// A complex shape was to be solid.
-    #[error("a {kind} cannot be made solid; only meshes can")]
+    /// A shape of another kind stands where only a mesh may.
+    #[error("shape is a {kind}; it must be a mesh")]
     NotAMesh {
         /// The shape's kind.
         kind: crate::ShapeKind,

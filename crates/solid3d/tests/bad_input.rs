@@ -137,6 +137,12 @@ fn bad_placements_are_refused_by_queries_on_either_side() {
     let good = DAffine3::IDENTITY;
     for (bad, words) in bad_placements() {
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        for shape in &shapes {
+            let words = [words.as_slice(), &["placement "]].concat();
+            refused(query::contains_point(shape, &bad, DVec3::ONE), &words);
+            refused(query::closest_point(shape, &bad, DVec3::ONE), &words);
+            refused(query::signed_distance(shape, &bad, DVec3::ONE), &words);
+        }
         for (a, b) in shapes.iter().flat_map(|a| shapes.iter().map(move |b| (a, b))) {
             for (at_a, at_b, name) in
                 [(&bad, &good, "placement_a"), (&good, &bad, "placement_b"), (&bad, &bad, "placement_a")]

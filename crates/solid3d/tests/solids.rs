@@ -406,7 +406,7 @@ fn other_shapes_are_solid_already_or_never() {
     let ball = Shape::sphere(1.0).unwrap();
     assert_eq!(ball.clone().into_solid().unwrap().kind(), ShapeKind::Sphere);
     let error = point_shape(DVec3::ZERO).into_solid().unwrap_err();
-    assert_eq!(error.to_string(), "a complex shape cannot be made solid; only meshes can");
+    assert_eq!(error.to_string(), "shape is a complex shape; it must be a mesh");
     assert!(!point_shape(DVec3::ZERO).is_solid());
     let twice = solid(&cube(1.0)).into_solid().unwrap();
     assert!(twice.is_solid() && !cube(1.0).shape().is_solid());

@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 use super::cast::bounded;
 use super::{Distance, distance, intersects, placed, unchecked};
 use crate::error::{Error, Result};
-use crate::pair::{self, ClosestPoint};
+use crate::pair::{self, ClosestPoint, Placed};
 use crate::placement::direction;
 use crate::shape::{Shape, ShapeKind};
 
@@ -26,6 +26,7 @@ pub fn contains_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Resu
     if let Some(answer) = pair::contains(unchecked(shape, placement), point) {
         return Ok(answer);
     }
+    let Placed { shape, placement } = placed("placement", shape, placement)?;
     let (of_point, at) = as_shape(point)?;
     intersects(shape, placement, of_point, &at)
 }
@@ -47,6 +48,7 @@ pub fn closest_point(shape: &Shape, placement: &DAffine3, point: DVec3) -> Resul
 /// The same, of whatever has no closed form.
 #[inline(never)]
 fn at_length(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<ClosestPoint> {
+    let Placed { shape, placement } = placed("placement", shape, placement)?;
     let (of_point, at) = as_shape(point)?;
     let Distance { distance, point_on_a, .. } = distance(shape, placement, of_point, &at)?;
     Ok(ClosestPoint { point: point_on_a, distance })
