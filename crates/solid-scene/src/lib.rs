@@ -21,7 +21,7 @@
 //!
 //! scene.sample(2.0, &mut pose);
 //! for (&id, at) in ids.iter().zip(&pose.objects) {
-//!     world.set_placement(id, at.placement)?;
+//!     world.set_placement(id, at.placement)?; // refused while it is scaled to nothing
 //!     if !at.positions.is_empty() {
 //!         world.deform(id, &at.positions)?; // the cloth has fallen over the ball
 //!     }

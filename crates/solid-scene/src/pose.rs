@@ -5,7 +5,9 @@ use glam::{DAffine3, DVec3};
 /// Where an object is at a time, and which form it has.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectPose {
-    /// Local to world.
+    /// Local to world. An object that is scaled to nothing, as animators hide one, or flattened is placed so: a world refuses that with
+    /// [`Error::SingularPlacement`](solid3d::Error::SingularPlacement), and who plays the scene says what it means; for the command `solid` the
+    /// object is not there.
     pub placement: DAffine3,
     /// For an object that deforms: the positions of the vertices of its shape, in its local space. Empty for one that
     /// does not.

@@ -11,7 +11,7 @@ const WORD: &str = "WORD";
 
 /// Files with a word that a message tells, by how their names end.
 const FILES: [(&str, &str); 23] = [
-    ("wrl", "#VRML V2.0 utf8\nDEF WORD Transform { scale 0 0 0 children Shape { geometry Box { } } }"),
+    ("wrl", "#VRML V2.0 utf8\nShape { geometry DEF WORD Box { size -1 1 1 } }"),
     ("wrl", "#VRML V2.0 utf8\nUSE WORD"),
     ("wrl", "#VRML V2.0 utf8\nShape { geometry Box { } } WORD { }"),
     ("wrl", "#VRML V2.0 utf8\nShape { geometry Box { } } Transform { WORD 1 2 3 }"),

@@ -286,6 +286,21 @@ fn a_text_that_is_no_object_is_refused() {
 }
 
 #[test]
+fn extras_may_be_anything() {
+    for extras in
+        [json!("a note"), json!(5), json!([1, {"a": [null]}]), json!({"made by": "me"}), json!(true)]
+    {
+        let mut file = File::new();
+        file.triangle();
+        file.0["extras"] = extras.clone();
+        file.0["asset"]["extras"] = extras.clone();
+        file.0["nodes"] = json!([{"mesh": 0, "extras": extras}]);
+        file.0["meshes"][0]["extras"] = extras;
+        assert_eq!(file.parse().unwrap().objects.len(), 1);
+    }
+}
+
+#[test]
 fn broken_hierarchies_are_refused() {
     let mut file = File::new();
     file.triangle();

@@ -35,11 +35,6 @@ impl Transform {
         let translation = self.translation + self.center - matrix3 * self.center;
         DAffine3 { matrix3, translation }
     }
-
-    /// Whether it flattens space.
-    pub fn is_singular(&self) -> bool {
-        self.scale.cmpeq(DVec3::ZERO).any()
-    }
 }
 
 #[cfg(test)]
@@ -78,11 +73,5 @@ mod tests {
         let map = Transform { scale, scale_orientation: turned, ..IDENTITY }.map();
         assert!(map.transform_point3(DVec3::Y).distance(3.0 * DVec3::Y) < 1e-12);
         assert!(map.transform_point3(DVec3::X).distance(DVec3::X) < 1e-12);
-    }
-
-    #[test]
-    fn a_zero_scale_is_singular() {
-        assert!(Transform { scale: DVec3::new(1.0, 0.0, -1.0), ..IDENTITY }.is_singular());
-        assert!(!Transform { scale: DVec3::new(1.0, -1.0, 2.0), ..IDENTITY }.is_singular());
     }
 }

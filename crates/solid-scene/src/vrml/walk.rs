@@ -18,8 +18,6 @@ struct Place {
     around: Surrounding,
     /// The name of the nearest node around that has one.
     name: Option<Rc<str>>,
-    /// A Transform around that flattens space for good.
-    flattened: Option<Node>,
 }
 
 /// Collects objects.
@@ -54,7 +52,7 @@ impl<'a> Walk<'a> {
 
     /// The objects of the first scope, and what moves them.
     pub fn run(mut self) -> Result<(Vec<PartObject>, Animation), SceneError> {
-        let place = Place { around: Surrounding::WORLD, name: None, flattened: None };
+        let place = Place { around: Surrounding::WORLD, name: None };
         self.all(self.graph.roots(0).collect(), &place)?;
         let signals = self.builder.signals.finish();
         Ok((self.objects, Animation { signals, frames: self.frames, objects: self.motions }))
@@ -168,8 +166,7 @@ impl<'a> Walk<'a> {
             return Ok(Place { around, ..place });
         }
         let offset = place.around.offset * rest.map();
-        let flattened = place.flattened.or(rest.is_singular().then_some(node));
-        Ok(Place { around: Surrounding { offset, ..place.around }, flattened, ..place })
+        Ok(Place { around: Surrounding { offset, ..place.around }, ..place })
     }
 
     fn drives(&mut self, node: Node) -> Result<Drives, SceneError> {
@@ -210,10 +207,6 @@ impl<'a> Walk<'a> {
         geometry: Geometry,
         place: &Place,
     ) -> Result<(), SceneError> {
-        if let Some(transform) = place.flattened {
-            let message = "a scale of 0 flattens the shapes inside; expected another number";
-            return Err(self.graph.error(transform, message));
-        }
         if !place.around.offset.is_finite() {
             return Err(self.graph.error(node, "the Transforms around put it infinitely far away"));
         }

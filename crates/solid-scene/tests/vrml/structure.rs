@@ -33,12 +33,11 @@ fn a_rotation_about_no_axis_is_none() {
 }
 
 #[test]
-fn a_scale_of_zero_over_a_shape_names_the_transform() {
-    let (line, message) =
-        error("Group { children\n DEF Flat Transform { scale 1 0 1 children Shape { geometry Box {} } } }");
-    assert_eq!(line, Some(3));
-    assert!(message.starts_with("Transform Flat: a scale of 0"), "{message}");
-    assert!(scene("Transform { scale 0 0 0 }").objects().is_empty());
+fn what_a_scale_of_zero_hides_is_placed_so() {
+    let scene =
+        scene("Transform { scale 1 0 1 children [ Shape { geometry Box {} } ] } Shape { geometry Box {} }");
+    let pose = pose(&scene, 0.0);
+    assert_eq!([0, 1].map(|i| pose.objects[i].placement.matrix3.determinant()), [0.0, 1.0]);
 }
 
 #[test]
