@@ -19,7 +19,7 @@ const EXIT_STATUS: &str = "\
 Exit status:
   0  no collisions
   1  collisions, or objects nearer than --clearance
-  2  bad input or usage; one message on standard error says what and where";
+  2  bad input or usage, or a warning where --strict is given; one message on standard error says what and where";
 
 const CHECK_NOTES: &str = "\
 Objects:
@@ -45,8 +45,8 @@ Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any char
     [[pair]]                        # the pair, in whichever order
     a = \"ship*\"
     b = \"sweeper\"
-    response = \"smart\"
-    clearance = 0.2                 # optional: of this pair alone
+    response = \"smart\"             # one of the two may be missing
+    clearance = 0.2                 # of this pair alone
 
     [[ray]]                         # as --ray, under a name of its own
     name = \"barrier\"
@@ -128,7 +128,7 @@ pub struct SceneArgs {
     #[arg(value_name = "SCENE", required = true)]
     pub files: Vec<PathBuf>,
 
-    /// Make each group of an OBJ file an object
+    /// Make each object (`o`) and group (`g`) of an OBJ file an object
     #[arg(long)]
     pub split: bool,
 
@@ -206,6 +206,10 @@ pub struct CheckArgs {
     /// Write every collision as a row of CSV; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
+
+    /// Let a warning be an error: the report is printed, but the exit status is 2
+    #[arg(long)]
+    pub strict: bool,
 
     /// Print how much work it was
     #[arg(long)]

@@ -14,6 +14,7 @@
 //! | `rules` | the response table from a TOML file |
 //! | `rays` | what is cast in every frame |
 //! | `record` | what becomes of the collisions: JSON, CSV, pairs |
+//! | `warnings` | what was passed over or guessed |
 //! | `info` | what is in the files |
 //! | `output` | writing to files and pipes |
 
@@ -30,6 +31,7 @@ mod scene;
 mod suggest;
 mod table;
 mod text;
+mod warnings;
 mod words;
 
 use std::io::Write;

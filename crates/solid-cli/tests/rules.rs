@@ -54,6 +54,38 @@ fn a_pattern_that_matches_nothing_is_warned_of() {
 }
 
 #[test]
+fn with_strict_a_warning_is_an_error() {
+    let warned = run(&object("mine2", "ignore"), "--strict");
+    assert_eq!(warned.json()["frames"][0]["collisions"].as_array().unwrap().len(), 3);
+    assert!(
+        warned.stderr.ends_with("error: there is 1 warning, which --strict does not allow\n"),
+        "{}",
+        warned.stderr
+    );
+    warned.assert_status(2);
+    run("", "--strict").assert_status(1);
+    let desk = Desk::new().file("two.obj", format!("o a\n{BOX}"));
+    let alone = desk.run("check two.obj");
+    assert!(
+        alone.stderr.contains("one object alone") && alone.stderr.contains("--split"),
+        "{}",
+        alone.stderr
+    );
+    alone.assert_status(0);
+}
+
+#[test]
+fn a_pair_may_have_a_clearance_and_no_response() {
+    let apart = pair("b", "*", "ignore") + &pair("a", "*", "ignore");
+    let near = format!("{apart}[[pair]]\na = \"a\"\nb = \"mine1\"\nclearance = 1.0\n");
+    assert!(pairs(&near, "").is_empty());
+    let near = "[[pair]]\na = \"a\"\nb = \"mine1\"\nclearance = 1.0\n";
+    assert_eq!(pairs(near, ""), ["a b point", "a mine1 point", "b mine1 point"]);
+    let json = run(near, "").json();
+    assert_eq!(json["frames"][0]["near"].as_array().unwrap().len(), 1);
+}
+
+#[test]
 fn mistakes_name_file_and_line() {
     run("default = \"loud\"", "").assert_fails(&[
         "r.toml:1: ",

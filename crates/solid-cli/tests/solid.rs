@@ -97,6 +97,10 @@ fn what_cannot_be_decomposed_is_refused_with_the_reason() {
         "ball.wrl: object \"ball\" cannot be decomposed: a sphere cannot be",
         "only meshes can",
     ]);
+    // A pattern is for the meshes that it matches.
+    desk.run("check a.obj ball.wrl --decompose * --strict").assert_status(1);
+    let run = desk.run("check a.obj ball.wrl --solid b*");
+    assert_eq!(run.stderr, "warning: --solid: \"b*\" matches no mesh\n");
     let run = desk.run("check a.obj ball.wrl --decompose bal");
     assert_eq!(run.stderr, "warning: --decompose: \"bal\" matches no object; did you mean \"ball\"?\n");
 }

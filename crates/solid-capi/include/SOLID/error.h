@@ -6,7 +6,7 @@
  *     dtClearError();
  *     shape = dtSphere(-1.0);
  *     if (dtGetError() != DT_NO_ERROR) puts(dtGetErrorMessage());
- *     // dtSphere: radius is -1; it must be from 0 to 1e100
+ *     // dtSphere: radius is -1.0; it must be from 0 to 1e100
  */
 #ifndef SOLID_ERROR_H
 #define SOLID_ERROR_H

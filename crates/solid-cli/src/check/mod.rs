@@ -15,7 +15,7 @@ mod timeline;
 use std::io::{IsTerminal, Write};
 
 use anyhow::{Context, Result};
-use solid_scene::Scene;
+use solid_scene::{Format, Scene};
 use solid3d::Response;
 
 use crate::args::CheckArgs;
@@ -25,7 +25,8 @@ use crate::rays;
 use crate::record::{CsvColumns, CsvRecorder, JsonRecorder, Recorder};
 use crate::rules::{self, Objects, Rules};
 use crate::table::Style;
-use crate::{Verdict, complain, progress, scene};
+use crate::warnings::Warnings;
+use crate::{Verdict, progress, scene};
 use clock::{Clock, Times};
 use crowd::Crowd;
 use motion::Motion;
@@ -38,25 +39,27 @@ use timeline::Timeline;
 pub fn run(args: &CheckArgs) -> Result<Verdict> {
     files::refuse_clashes(args)?;
     let (mut clock, mut times) = (Clock::start(), Times::default());
+    let mut warnings = Warnings::default();
     let mut rules = args.rules.as_deref().map(Rules::read).transpose()?.unwrap_or_default();
     rules.declare_solid(&args.solid);
     rules.declare_decomposed(&args.decompose);
     let rays = rays::all(&args.ray, rules.rays())?;
     let scene = scene::load(&args.scene)?;
     files::refuse_overwriting_parts(args, &scene)?;
-    scene::warnings(&scene).for_each(|warning| complain("warning", warning));
-    let placements = placements(args, &scene)?;
+    warnings.tell_all(scene::warnings(&scene));
+    let placements = placements(args, &scene, &mut warnings)?;
     let timeline = timeline(args, &scene, placements.as_ref())?;
     let motion = match &placements {
         Some(placements) => Motion::table(&scene, placements),
         None => Motion::animation(&scene),
     };
-    let (bodies, warnings) = rules::bodies(&rules, &names(&scene));
-    warnings.iter().for_each(|warning| complain("warning", warning));
+    let is_mesh = |object: usize| scene.objects()[object].shape().triangles().is_some();
+    let (bodies, unmatched) = rules::bodies(&rules, &names(&scene), is_mesh);
+    warnings.tell_all(unmatched);
     let shapes = progress::while_waiting("preparing the shapes", || bodies::shapes(&scene, &bodies))?;
     let tested = if args.continuous { solid3d::Motion::Swept } else { solid3d::Motion::Sampled };
     let mut stage = Stage::new(&scene, &shapes, motion, tested, timeline.time(0))?;
-    let clearance = set_rules(&rules, args, &scene, &mut stage)?;
+    let clearance = set_rules(&rules, args, &scene, &mut stage, &mut warnings)?;
     let has_clearance = clearance.is_some();
     let crowd = Crowd::new(args.max_pairs, clearance.unwrap_or(0.0), tested);
     let tells_distances = has_clearance || rules.tell_depth(args.response.map(Response::from));
@@ -69,26 +72,39 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let mut player = Player { scene: &scene, stage, crowd, has_clearance, rays, recorders, clock, times };
     let findings = player.play(&timeline);
     // Now, that no progress bar is in the way; also where an error ended the play.
-    player.stage.absences().for_each(|absence| complain("warning", absence));
+    warnings.tell_all(player.stage.absences());
     let findings = findings?;
+    if scene.objects().len() == 1 && !has_rays {
+        warnings.tell(alone(args));
+    }
     let statistics = player.stage.statistics();
     let report =
         Report { scene: &scene, findings: &findings, rays: &player.rays, statistics, times: player.times };
     print(args, &report)?;
+    if args.strict {
+        warnings.refuse()?;
+    }
     let summary = findings.summary();
     let near = summary.near.is_some_and(|near| near.near_pairs > 0);
     Ok(if near || summary.collisions > 0 { Verdict::Collisions } else { Verdict::Clean })
 }
 
-fn placements(args: &CheckArgs, scene: &Scene) -> Result<Option<Placements>> {
+/// That there is one object, in words.
+fn alone(args: &CheckArgs) -> String {
+    let obj = !args.scene.split && args.scene.files.iter().any(|file| Format::of(file) == Some(Format::Obj));
+    let hint = if obj { "; --split makes each object and group of an OBJ file one" } else { "" };
+    format!("there is one object alone, so that nothing can collide{hint}")
+}
+
+fn placements(args: &CheckArgs, scene: &Scene, warnings: &mut Warnings) -> Result<Option<Placements>> {
     let Some(path) = &args.placements else {
         return Ok(None);
     };
     let names = names(scene);
     let placements = Placements::read(path, &names)?;
-    placements.repetition(&names).iter().for_each(|warning| complain("warning", warning));
+    warnings.tell_all(placements.repetition(&names));
     if placements.rows().is_empty() {
-        complain("warning", format_args!("{}: there are no rows; nothing is placed", path.display()));
+        warnings.tell(format_args!("{}: there are no rows; nothing is placed", path.display()));
     }
     Ok(Some(placements))
 }
@@ -106,13 +122,18 @@ fn names(scene: &Scene) -> Vec<&str> {
 }
 
 /// Brings responses and clearances into the world. Returns the greatest clearance, if there is any.
-fn set_rules(rules: &Rules, args: &CheckArgs, scene: &Scene, stage: &mut Stage) -> Result<Option<f64>> {
+fn set_rules(
+    rules: &Rules,
+    args: &CheckArgs,
+    scene: &Scene,
+    stage: &mut Stage,
+    warnings: &mut Warnings,
+) -> Result<Option<f64>> {
     let exempt = root_paths::pairs(scene.objects());
     let names = names(scene);
     let (world, ids) = stage.world();
     let objects = Objects { names: &names, ids, exempt: &exempt };
-    let warnings = rules::apply(rules, args.response.map(Response::from), &objects, world)?;
-    warnings.iter().for_each(|warning| complain("warning", warning));
+    warnings.tell_all(rules::apply(rules, args.response.map(Response::from), &objects, world)?);
     rules::set_clearances(rules, args.clearance, &objects, world)
 }
 

@@ -39,7 +39,8 @@ pub(super) struct ObjectRule {
 pub(super) struct PairRule {
     pub a: Names,
     pub b: Names,
-    pub response: Response,
+    /// One of the two there is.
+    pub response: Option<Response>,
     pub clearance: Option<f64>,
 }
 
@@ -83,7 +84,7 @@ impl Rules {
     /// Whether the response of some pair may tell a depth; `default` overrides that of the rules.
     pub fn tell_depth(&self, default: Option<Response>) -> bool {
         let of_objects = self.objects.iter().map(|rule| rule.response);
-        let of_pairs = self.pairs.iter().map(|rule| rule.response);
+        let of_pairs = self.pairs.iter().filter_map(|rule| rule.response);
         let all = default.or(self.default).into_iter().chain(of_objects).chain(of_pairs);
         all.into_iter().any(|response| matches!(response, Response::Depth | Response::Contacts))
     }
@@ -96,12 +97,6 @@ impl Rules {
             name: source.names(rule.name),
             response: rule.response.into(),
         };
-        let pair = |rule: WrittenPair| PairRule {
-            a: source.names(rule.a),
-            b: source.names(rule.b),
-            response: rule.response.into(),
-            clearance: rule.clearance.map(Spanned::into_inner),
-        };
         for clearance in
             written.pair.iter().filter_map(|pair| pair.clearance.as_ref()).chain(&written.clearance)
         {
@@ -113,7 +108,7 @@ impl Rules {
             solid: written.solid.into_iter().map(|text| source.names(text)).collect(),
             decompose: written.decompose.into_iter().map(|text| source.names(text)).collect(),
             objects: written.object.into_iter().map(object).collect(),
-            pairs: written.pair.into_iter().map(pair).collect(),
+            pairs: written.pair.into_iter().map(|pair| source.pair(pair)).collect::<Result<_>>()?,
             rays: written.ray.into_iter().map(|ray| source.ray(ray)).collect::<Result<_>>()?,
         })
     }
@@ -143,6 +138,15 @@ impl Source<'_> {
         }
         let place = self.place(clearance.span());
         Err(anyhow!("{place}: clearance is {value}; expected a length from 0 to {MAGNITUDE_MAX:e}"))
+    }
+
+    fn pair(&self, WrittenPair { a, b, response, clearance }: WrittenPair) -> Result<PairRule> {
+        let (response, clearance) = (response.map(Response::from), clearance.map(Spanned::into_inner));
+        let (a, b) = (self.names(a), self.names(b));
+        if response.is_none() && clearance.is_none() {
+            return Err(anyhow!("{}: a pair needs a response or a clearance", a.place));
+        }
+        Ok(PairRule { a, b, response, clearance })
     }
 
     fn ray(&self, written: WrittenRay) -> Result<NamedRay> {
@@ -201,7 +205,7 @@ struct WrittenObject {
 struct WrittenPair {
     a: Spanned<String>,
     b: Spanned<String>,
-    response: WrittenResponse,
+    response: Option<WrittenResponse>,
     clearance: Option<Spanned<f64>>,
 }
 
@@ -282,6 +286,7 @@ mod tests {
                 "[[pair]]\na = \"x\"\nb = \"y\"\nresponse = \"simple\"\nclearance = nan",
                 "rules.toml:5: clearance is NaN; expected a length",
             ),
+            ("\n[[pair]]\na = \"x\"\nb = \"y\"", "rules.toml:3: a pair needs a response or a clearance"),
             ("object = 3", "rules.toml:1: invalid type: integer"),
             ("[[ray]]\nname = \"x\"\norigin = [0, 0, 0]", "rules.toml:2: a ray needs a direction or an end"),
             (

@@ -32,6 +32,18 @@ impl<'a> NameIndex<'a> {
         found
     }
 
+    /// Of several that a pattern matches those that are meshes. Notes when there are none.
+    pub fn meshes_matching(&mut self, wanted: &Names, is_mesh: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut found = self.matching(wanted);
+        if !wanted.pattern.is_name() && !found.is_empty() {
+            found.retain(|&place| is_mesh(place));
+            if found.is_empty() {
+                self.warnings.push(format!("{}: {:?} matches no mesh", wanted.place, wanted.text));
+            }
+        }
+        found
+    }
+
     /// Notes that both sides of a rule for pairs name one object.
     pub fn note_one_object(&mut self, name: &Names) {
         self.warnings

@@ -28,10 +28,11 @@ pub struct Bodies {
     pub decomposed: Vec<usize>,
 }
 
-/// What rules want the objects to be, and warnings, for patterns that match nothing.
-pub fn bodies(rules: &Rules, names: &[&str]) -> (Bodies, Vec<String>) {
+/// What rules want the objects to be, and warnings, for patterns that match nothing. What has a name of its own is wanted whatever it is.
+pub fn bodies(rules: &Rules, names: &[&str], is_mesh: impl Fn(usize) -> bool) -> (Bodies, Vec<String>) {
     let mut index = NameIndex::new(names);
-    let mut places = |wanted: &[Names]| wanted.iter().flat_map(|wanted| index.matching(wanted)).collect();
+    let mut places =
+        |wanted: &[Names]| wanted.iter().flat_map(|wanted| index.meshes_matching(wanted, &is_mesh)).collect();
     let bodies = Bodies { solid: places(&rules.solid), decomposed: places(&rules.decompose) };
     (bodies, index.into_warnings())
 }
@@ -48,10 +49,10 @@ pub fn apply(
         rules.objects.iter().map(|rule| (index.matching(&rule.name), rule.response)).collect();
     let paired: Vec<_> = rules.pairs.iter().map(|rule| Paired::find(rule, &mut index)).collect();
     // A rule for all pairs overrides all that is before and below it, without an entry for each pair.
-    let universal = rules.pairs.iter().rposition(is_universal);
-    let rest = match universal {
-        Some(rule) => {
-            world.set_default_response(rules.pairs[rule].response);
+    let of_all = rules.pairs.iter().enumerate().rev().filter(|(_, rule)| is_universal(rule));
+    let rest = match of_all.filter_map(|(i, rule)| Some((i, rule.response?))).next() {
+        Some((rule, response)) => {
+            world.set_default_response(response);
             &paired[rule + 1..]
         }
         None => {
@@ -153,8 +154,9 @@ fn set_objects(named: &[(Vec<usize>, Response)], objects: &Objects, world: &mut 
 fn set_pairs(paired: &[Paired], ids: &[ObjectId], world: &mut World) -> Result<()> {
     let mut count = PairCount::default();
     for paired in paired {
+        let Some(response) = paired.rule.response else { continue };
         for (a, b) in paired.pairs(ids, &mut count)? {
-            world.set_pair_response(a, b, paired.rule.response)?;
+            world.set_pair_response(a, b, response)?;
         }
     }
     Ok(())
