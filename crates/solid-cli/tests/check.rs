@@ -336,7 +336,9 @@ fn an_empty_file_among_others_is_warned_of() {
     let desk = Desk::with_boxes().file("hollow.gltf", HOLLOW).file("empty.wrl", "#VRML V2.0 utf8\n");
     let run = desk.run("check empty.wrl a.obj hollow.gltf");
     let expected = "warning: hollow.gltf: mesh 0 (`m`) has no geometry\n\
-                    warning: empty.wrl: there is no geometry\nwarning: hollow.gltf: there is no geometry\n";
+                    warning: empty.wrl: there is no geometry\nwarning: hollow.gltf: there is no geometry\n\
+                    warning: there is one object alone, so that nothing can collide; \
+                    --split makes each object and group of an OBJ file one\n";
     assert_eq!(run.assert_status(0).stderr, expected);
 }
 

@@ -81,8 +81,9 @@ fn a_pair_may_have_a_clearance_and_no_response() {
     assert!(pairs(&near, "").is_empty());
     let near = "[[pair]]\na = \"a\"\nb = \"mine1\"\nclearance = 1.0\n";
     assert_eq!(pairs(near, ""), ["a b point", "a mine1 point", "b mine1 point"]);
-    let json = run(near, "").json();
-    assert_eq!(json["frames"][0]["near"].as_array().unwrap().len(), 1);
+    // What collides is near.
+    assert_eq!(run(near, "").json()["frames"][0]["near"].as_array().unwrap().len(), 3);
+    assert!(run("", "").json()["frames"][0]["near"].is_null());
 }
 
 #[test]

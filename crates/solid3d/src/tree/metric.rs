@@ -92,7 +92,7 @@ impl Folded {
             a,
             b,
             per_unit: if inverse > 0.0 { inverse * (1.0 + 2.0 * ROUNDING) } else { f64::INFINITY },
-            // Of less than zero bounds below zero, which tell nothing, would be great ones.
+            // No less than zero: bounds below zero, which tell nothing, would become great ones.
             units: round_down(inverse.min(f64::from(f32::MAX))).max(0.0),
         }
     }
