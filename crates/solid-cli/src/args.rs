@@ -124,7 +124,7 @@ pub enum Command {
 /// Which files, and how to read them.
 #[derive(Args, Debug)]
 pub struct SceneArgs {
-    /// Scene files, which together make one scene: .wrl, .gltf, .glb, .obj, .stl, .ply
+    /// Scene files, which together make one scene: .wrl, .vrml, .gltf, .glb, .obj, .stl, .ply
     #[arg(value_name = "SCENE", required = true)]
     pub files: Vec<PathBuf>,
 

@@ -342,6 +342,15 @@ fn an_empty_file_among_others_is_warned_of() {
     assert_eq!(run.assert_status(0).stderr, expected);
 }
 
+#[test]
+fn a_folder_is_said_to_be_one() {
+    let desk = Desk::new();
+    for name in ["scenes", "scenes.obj"] {
+        std::fs::create_dir(desk.path(name)).unwrap();
+        desk.run(&format!("check {name}")).assert_fails(&[name, "is a folder; expected a file"]);
+    }
+}
+
 /// They may have no end, or keep us waiting for ever.
 #[cfg(unix)]
 #[test]

@@ -40,7 +40,11 @@ fn is_utf16(bytes: &[u8]) -> bool {
 /// What is known of a regular file. Others are refused: a pipe could keep us waiting, and a device may have no end.
 pub(crate) fn metadata(path: &Path) -> Result<Metadata, SceneError> {
     let metadata = std::fs::metadata(path).map_err(|error| unreadable(path, &error))?;
-    if metadata.is_file() { Ok(metadata) } else { Err(SceneError::new(path, None, "is not a regular file")) }
+    match () {
+        _ if metadata.is_file() => Ok(metadata),
+        _ if metadata.is_dir() => Err(SceneError::new(path, None, "is a folder; expected a file")),
+        _ => Err(SceneError::new(path, None, "is not a regular file")),
+    }
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> SceneError {

@@ -7,7 +7,7 @@ use crate::part::Part;
 use crate::{gltf, obj, ply, stl, vrml};
 
 /// How to load files.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LoadOptions {
     /// Makes each group of an OBJ file an object, instead of one for the whole file.
@@ -49,9 +49,9 @@ impl Format {
 /// Reads a file.
 pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Part, SceneError> {
     let Some(format) = Format::of(path) else {
-        let message =
-            "unknown format; expected a file ending in .wrl, .vrml, .gltf, .glb, .obj, .stl or .ply";
-        return Err(SceneError::new(path, None, message));
+        let is = if path.is_dir() { "is a folder" } else { "unknown format" };
+        let expected = "expected a file ending in .wrl, .vrml, .gltf, .glb, .obj, .stl or .ply";
+        return Err(SceneError::new(path, None, format!("{is}; {expected}")));
     };
     match format {
         Format::Vrml97 => vrml::load(path),

@@ -10,7 +10,7 @@ use crate::broad::BroadPhaseKind;
 /// let options = WorldOptions { broad_phase: BroadPhaseKind::SweepAndPrune, ..Default::default() };
 /// assert!(World::with_options(&options).is_empty());
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorldOptions {
     /// The response for pairs without one of their own: [`Response::Witness`] by default.
     pub default_response: Response,
