@@ -1,9 +1,19 @@
 //! Exact signs: where a point lies to a line or a plane, and what follows from that for segments.
 //!
-//! Exact while nothing overflows or underflows: callers bring their points to a unit near the size of the data first.
+//! Exact while nothing overflows or underflows: callers bring their points to a unit near the size of the data first, and make them [`plain`].
 
 use glam::{DVec2, DVec3};
 use robust::{Coord, Coord3D};
+
+/// No predicate loses a bit while coordinates other than zero are at least this: their last bits are at least
+/// 2^(-300 - 52), and the product of three such bits is still a positive number.
+pub(crate) const MAGNITUDE_MIN: f64 = power_of_two(-300);
+
+/// A point in a unit near the size of the data, where coordinates too small for exact products count as zero.
+#[inline]
+pub(crate) fn plain(p: DVec3) -> DVec3 {
+    p.map(|x| if x.abs() < MAGNITUDE_MIN { 0.0 } else { x })
+}
 
 /// Positive where `a`, `b`, `c` turn to the left.
 #[inline]

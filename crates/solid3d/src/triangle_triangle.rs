@@ -8,13 +8,14 @@
 use glam::{DVec2, DVec3};
 use solid_convex::simd::each;
 
-use crate::exact::{flatten, orient2d, orient3d, segments_meet, segments_meet_in_space};
+use crate::exact::{flatten, orient2d, orient3d, plain, segments_meet, segments_meet_in_space};
 
 /// Three corners.
 pub(crate) type Triangle = [DVec3; 3];
 
 /// Whether two triangles share a point. Worth asking when their boxes do.
 pub(crate) fn intersect(x: &Triangle, y: &Triangle) -> bool {
+    let [x, y] = [&each(*x, plain), &each(*y, plain)];
     let (x_flat, y_flat) = (collinear(x), collinear(y));
     let y_sides = each(*x, |p| orient3d(y[0], y[1], y[2], p));
     if !y_flat && same_strict_side(y_sides) {

@@ -248,6 +248,14 @@ fn answers_are_whole_where_products_vanish() {
         let distance = query::distance(a, &p, b, &q).unwrap().distance;
         assert!((distance - 1e-11 * 0.5f64.sqrt()).abs() < 1e-20, "{distance:e}");
     }
+    let mesh = |corners: [DVec3; 3]| Shape::mesh(corners, [[0, 1, 2]]).unwrap();
+    let edge = mesh([DVec3::new(1.0, 0.0, -0.5), DVec3::ZERO, DVec3::ZERO]);
+    for tiny in [5e-324, 8e-323, 1e-321, 1e-310, 1e-200] {
+        let sheet = mesh([DVec3::X * -tiny, DVec3::ZERO, DVec3::new(4.0, -4.0, 0.0)]);
+        let at = DAffine3::from_translation(DVec3::new(-3.0, 4.0, 0.0));
+        assert!(!query::intersects(&edge, &here, &sheet, &at).unwrap(), "{tiny:e}");
+        assert!(query::distance(&edge, &here, &sheet, &at).unwrap().distance > 0.4, "{tiny:e}");
+    }
     let needle = hull(&[
         DVec3::Y * 0.8,
         DVec3::new(f(0xbfe18d2dc7c45b1e), f(0x3fe18d2dc7c45b1f), f(0x3c935c43468e47cd)),

@@ -82,9 +82,8 @@ impl Chain {
     }
 }
 
-/// Coordinates too small for exact products count as zero.
 pub(super) fn scaled(p: DVec3, scale: f64) -> DVec3 {
-    (p * scale).map(|x| if x.abs() < exact::MAGNITUDE_MIN { 0.0 } else { x })
+    exact::plain(p * scale)
 }
 
 fn base(vertices: &[DVec3], normal: DVec3) -> Option<Base> {

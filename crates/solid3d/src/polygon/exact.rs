@@ -3,16 +3,12 @@
 use glam::DVec2;
 
 use crate::exact::power_of_two;
-pub(super) use crate::exact::{flatten, height, orient2d as turn, same_strict_side};
+pub(super) use crate::exact::{MAGNITUDE_MIN, flatten, height, orient2d as turn, plain, same_strict_side};
 pub(super) use crate::exact::{segments_meet, segments_meet_in_space};
 
 /// No predicate overflows while coordinates are at most this: a determinant of three differences stays below
 /// 6 * (2^301)^3, with room for the splitting constant of exact products.
 pub(super) const MAGNITUDE_MAX: f64 = power_of_two(300);
-
-/// No predicate loses a bit while coordinates other than zero are at least this: their last bits are at least
-/// 2^(-300 - 52), and the product of three such bits is still a positive number.
-pub(super) const MAGNITUDE_MIN: f64 = power_of_two(-300);
 
 /// Whether two segments of a plane cross: each has its ends strictly on both sides of the other's line.
 pub(super) fn segments_cross(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {
