@@ -5,9 +5,9 @@ use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::simd::level;
 use solid_convex::unit_scale;
 
-use super::super::Scratch;
 use super::super::table::PlacedComplex;
-use super::convex::{hull_hits, into_box};
+use super::super::{Placed, Scratch};
+use super::convex::{hull_hits, into_box, into_world_box};
 use super::glance::Glance;
 use super::triangle::{Corners, LANES, Shear, TriangleHit, put};
 use super::{FromInside, Hits, SurfaceHit, facing, world_normal};
@@ -23,12 +23,15 @@ struct LocalRay {
     origin: DVec3,
     direction: DVec3,
     start: f64,
+    /// No hit of a cast is before; of what is no mesh, for which casts are asked.
+    earliest: Option<f64>,
     shear: Shear,
     to_local: DMat3,
 }
 
-pub(super) fn hits((complex, at): PlacedComplex, hits: &mut Hits, scratch: &mut Scratch) {
-    let Some(ray) = LocalRay::new(complex, at, hits) else { return };
+pub(super) fn hits(placed: Placed, complex: &Complex, hits: &mut Hits, scratch: &mut Scratch) {
+    let at = placed.placement;
+    let Some(ray) = LocalRay::new(placed, complex, hits) else { return };
     let asks_for_start =
         ray.start == 0.0 && complex.is_solid() && hits.options.from_inside == FromInside::Hits;
     let found = Found { hits, crossed: asks_for_start.then(Crossed::default) };
@@ -117,6 +120,8 @@ impl Found<'_, '_> {
         match self.crossed {
             _ if until < 0.0 => -1.0,
             Some(_) => f64::INFINITY,
+            // A cast may be early, and be wanted where its box is beyond.
+            None if ray.earliest.is_some() && self.hits.found.is_none() => f64::INFINITY,
             None => (until - ray.start).max(0.0) + ROUNDING * until,
         }
     }
@@ -147,19 +152,21 @@ fn triangle(complex: &Complex, primitive: u32) -> Option<Triangle> {
 
 impl LocalRay {
     /// `None` for a ray that passes the shape's box.
-    fn new(complex: &Complex, at: &DAffine3, hits: &Hits) -> Option<LocalRay> {
+    fn new(placed: Placed, complex: &Complex, hits: &Hits) -> Option<LocalRay> {
+        let at = placed.placement;
         let to_local = inverse_linear(&at.matrix3);
         let (origin, direction) =
             (to_local * (hits.ray.origin - at.translation), to_local * hits.ray.direction);
         let bounds = complex.bounds();
         let start = entry(&roomy(&bounds, origin), origin, direction)?;
-        if start > hits.until {
+        let earliest = (!complex.is_mesh()).then(|| into_world_box(placed, hits.ray));
+        if start > hits.until && earliest.is_none() {
             return None;
         }
         let origin = origin + direction * start;
         let reach = bounds.half_extents() + (origin - bounds.center()).abs();
         let shear = Shear::new(origin, direction, reach);
-        Some(LocalRay { origin, direction, start, shear, to_local })
+        Some(LocalRay { origin, direction, start, earliest, shear, to_local })
     }
 
     /// Adds where the ray meets the triangles of a leaf: eight at once sort out most of those that it does not.
@@ -185,8 +192,9 @@ impl LocalRay {
             Some(triangle) => self.meet(&triangle, owner, found),
             None => {
                 let bounds = Aabb::of_points(complex.points_of(primitive));
-                let into_box = || self.start + into_box(&bounds, self.origin, self.direction);
-                hull_hits(&complex.primitive_hull(primitive), at, owner, into_box, found.hits);
+                let in_local = self.start + into_box(&bounds, self.origin, self.direction);
+                let earliest = self.earliest.map_or(in_local, |earliest| earliest.max(in_local));
+                hull_hits(&complex.primitive_hull(primitive), at, owner, earliest, found.hits);
             }
         }
     }

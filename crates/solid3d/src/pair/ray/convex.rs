@@ -102,8 +102,7 @@ pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
         })
     };
     if !told {
-        let into_box = || into_box(&world_bounds(placed), ray.origin, ray.direction);
-        hull_hits(shape, at, 0, into_box, hits);
+        hull_hits(shape, at, 0, into_world_box(placed, ray), hits);
     }
 }
 
@@ -118,26 +117,24 @@ fn chord_hits(chord: Option<Option<Chord>>, hits: &mut Hits, placed: impl Fn(DVe
     chord.is_some()
 }
 
-/// When a ray comes into a box around a shape: no hit is before.
+/// When a ray comes into the box around a placed shape: no hit is before, for what looks at boxes first.
+pub(super) fn into_world_box(placed: Placed, ray: &Ray) -> f64 {
+    into_box(&world_bounds(placed), ray.origin, ray.direction)
+}
+
+/// When a ray comes into a box; 0 where it passes by.
 pub(super) fn into_box(bounds: &Aabb, origin: DVec3, direction: DVec3) -> f64 {
     entry(origin - bounds.center(), direction, bounds.half_extents()).unwrap_or(0.0)
 }
 
-/// A ray against the hull of points, or any other support mapping: casts of a point from either end. A cast may be early, but not before the ray comes
-/// into a box: else what looks at boxes first would pass over what is hit.
-pub(super) fn hull_hits(
-    shape: &dyn Support,
-    at: &DAffine3,
-    primitive: u32,
-    into_box: impl FnOnce() -> f64,
-    hits: &mut Hits,
-) {
+/// A ray against the hull of points, or any other support mapping: casts of a point from either end. A cast may be early; no hit is before `earliest`.
+pub(super) fn hull_hits(shape: &dyn Support, at: &DAffine3, primitive: u32, earliest: f64, hits: &mut Hits) {
     let ray = *hits.ray;
     let cast = |from: DVec3, direction: DVec3, until: f64| {
         gjk::cast(&*POINT, &DAffine3::from_translation(from), direction, shape, at, until)
     };
     let Some(impact) = cast(ray.origin, ray.direction, hits.until.max(0.0)) else { return };
-    let enter = impact.normal.map(|normal| (impact.time.max(into_box()), normal));
+    let enter = impact.normal.map(|normal| (impact.time.max(earliest), normal));
     if enter.is_none() {
         hits.add_inside();
     }

@@ -221,7 +221,7 @@ impl<'r> Hits<'r> {
 pub(crate) fn ray_hits(placed: Placed, hits: &mut Hits, scratch: &mut Scratch) {
     match placed.shape.class() {
         Class::Convex(shape) => convex::hits(placed, shape, hits),
-        Class::Complex(shape) => complex::hits((shape, placed.placement), hits, scratch),
+        Class::Complex(shape) => complex::hits(placed, shape, hits, scratch),
     }
 }
 
