@@ -267,3 +267,28 @@ fn answers_are_whole_where_products_vanish() {
     let depth = query::penetration(&needle, &here, &mote, &at).unwrap().map_or(0.0, |found| found.depth);
     assert!(depth < 1e-12, "{depth:e}");
 }
+
+/// Law: a triangle of any size, next to nothing too, is as far from a ball as a point is, and meets it where that is no distance.
+#[test]
+fn a_triangle_next_to_nothing_is_a_point() {
+    let scale = 1.0 / 262_144.0;
+    let here = DAffine3 {
+        translation: DVec3::new(1.25, -0.5, 2.0),
+        ..DAffine3::from_scale(DVec3::new(-scale, scale, scale))
+    };
+    let there = DAffine3 { translation: here.translation - DVec3::X * 2f64.powi(-24), ..here };
+    let away = 2f64.powi(-24) / scale;
+    let tiny = [DVec3::new(-1.7, -1.4, 0.5), DVec3::new(-0.3, 0.5, -1.6), DVec3::new(-0.3, 1.4, -0.1)];
+    let large = [DVec3::new(0.9, 0.8, 0.5), DVec3::new(0.9, -0.8, 0.5), DVec3::new(0.9, -0.8, -0.5)];
+    for exponent in 14..110 {
+        let corners: Vec<DVec3> = tiny.iter().map(|v| *v * 10f64.powi(-exponent)).chain(large).collect();
+        let mesh = Shape::mesh(corners, [[0, 1, 2], [3, 4, 5]]).unwrap();
+        for gap in [-1e-9, 1e-11, 1e-9, 1e-8] {
+            let ball = Shape::sphere(away - gap).unwrap();
+            let met = query::intersects(&mesh, &here, &ball, &there).unwrap();
+            let distance = query::distance(&mesh, &here, &ball, &there).unwrap().distance / scale;
+            assert_eq!(met, gap < 0.0, "1e-{exponent}: {gap:e}");
+            assert!((distance - gap.max(0.0)).abs() < 2e-13, "1e-{exponent}: {distance:e}, not {gap:e}");
+        }
+    }
+}

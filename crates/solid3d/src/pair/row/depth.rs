@@ -28,7 +28,7 @@ pub(crate) const CROSS_ERROR: f64 = 8.0 / (1u64 << 53) as f64;
 /// span no facet, moves no point of the difference by more than its length times this.
 pub(crate) const PARALLEL_SINE: f64 = 1.0 / (1u64 << 49) as f64;
 
-/// The square of the length of an axis whose coordinates have been rounded as they should, not to numbers below the normal ones.
+/// The square of the length of an axis, or a normal, whose coordinates have been rounded as they should, not to numbers below the normal ones.
 pub(crate) const SQUARED_MIN: f64 = 1e-290;
 
 /// How deep a triangle is in those of a row that meet it, in some lanes, given as bits. Whether a depth is below `bound` is all that need be

@@ -10,6 +10,7 @@ use fearless_simd::Simd;
 use fearless_simd::prelude::*;
 use glam::DVec3;
 
+use super::depth::SQUARED_MIN;
 use super::vector::{
     Vector, Wide, along, cross, dot, minus, one, splat, splat_triangle, steps_with, store, times,
 };
@@ -192,10 +193,10 @@ fn clamped<S: Simd>(simd: S, t: Wide<S>) -> Wide<S> {
 }
 
 /// The corners of one above the face of the other. `sign` is that of a vector from the face to the corner in `Best::v`,
-/// which points to `x`.
+/// which points to `x`. A face too small for digits of its normal is left to its edges.
 #[inline(always)]
 fn all_faces<S: Simd>(simd: S, of: &[Vector<S>], face: &[Vector<S>; 3], sign: f64, best: &mut Best<S>) {
-    let zero = one(simd, 0.0);
+    let (zero, least) = (one(simd, 0.0), one(simd, SQUARED_MIN));
     let edges = [minus(face[1], face[0]), minus(face[2], face[1]), minus(face[0], face[2])];
     let normal = cross(edges[0], edges[1]);
     let inward = [cross(normal, edges[0]), cross(normal, edges[1]), cross(normal, edges[2])];
@@ -206,7 +207,7 @@ fn all_faces<S: Simd>(simd: S, of: &[Vector<S>], face: &[Vector<S>; 3], sign: f6
         let inside = dot(from, inward[0]).simd_ge(zero)
             & dot(minus(*corner, face[1]), inward[1]).simd_ge(zero)
             & dot(minus(*corner, face[2]), inward[2]).simd_ge(zero)
-            & squared.simd_gt(zero);
+            & squared.simd_gt(least);
         let v = times(normal, dot(from, normal) * per_squared);
         best.offer(inside.select(dot(v, v), one(simd, f64::INFINITY)), v);
     }
