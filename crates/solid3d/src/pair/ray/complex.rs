@@ -191,9 +191,11 @@ impl LocalRay {
         match triangle(complex, primitive) {
             Some(triangle) => self.meet(&triangle, owner, found),
             None => {
-                let bounds = Aabb::of_points(complex.points_of(primitive));
-                let in_local = self.start + into_box(&bounds, self.origin, self.direction);
-                let earliest = self.earliest.map_or(in_local, |earliest| earliest.max(in_local));
+                let earliest = || {
+                    let bounds = Aabb::of_points(complex.points_of(primitive));
+                    let in_local = self.start + into_box(&bounds, self.origin, self.direction);
+                    in_local.max(self.earliest.unwrap_or(0.0))
+                };
                 hull_hits(&complex.primitive_hull(primitive), at, owner, earliest, found.hits);
             }
         }

@@ -102,7 +102,7 @@ pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
         })
     };
     if !told {
-        hull_hits(shape, at, 0, into_world_box(placed, ray), hits);
+        hull_hits(shape, at, 0, || into_world_box(placed, ray), hits);
     }
 }
 
@@ -128,13 +128,19 @@ pub(super) fn into_box(bounds: &Aabb, origin: DVec3, direction: DVec3) -> f64 {
 }
 
 /// A ray against the hull of points, or any other support mapping: casts of a point from either end. A cast may be early; no hit is before `earliest`.
-pub(super) fn hull_hits(shape: &dyn Support, at: &DAffine3, primitive: u32, earliest: f64, hits: &mut Hits) {
+pub(super) fn hull_hits(
+    shape: &dyn Support,
+    at: &DAffine3,
+    primitive: u32,
+    earliest: impl FnOnce() -> f64,
+    hits: &mut Hits,
+) {
     let ray = *hits.ray;
     let cast = |from: DVec3, direction: DVec3, until: f64| {
         gjk::cast(&*POINT, &DAffine3::from_translation(from), direction, shape, at, until)
     };
     let Some(impact) = cast(ray.origin, ray.direction, hits.until.max(0.0)) else { return };
-    let enter = impact.normal.map(|normal| (impact.time.max(earliest), normal));
+    let enter = impact.normal.map(|normal| (impact.time.max(earliest()), normal));
     if enter.is_none() {
         hits.add_inside();
     }
