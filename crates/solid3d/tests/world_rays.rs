@@ -12,7 +12,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
-use solid3d::query::{self, FromInside, Ray, RayOptions};
+use solid3d::query::{self, FromInside, Ray, RayHit, RayOptions};
 use solid3d::{
     BroadPhaseKind, ComplexShapeBuilder, ObjectHit, ObjectId, ObjectPoint, Shape, World, WorldOptions, glam,
 };
@@ -24,6 +24,21 @@ fn add_random(world: &mut World, rng: &mut StdRng, i: u8) -> ObjectId {
         _ => shape_of(&random_shape(rng, 1.0)),
     };
     world.add_ranked(&shape, placement(rng, 4.5), i % 2).unwrap()
+}
+
+/// Adds so many objects, and in two of three rounds places them in the broad phase.
+fn grow(world: &mut World, rng: &mut StdRng, count: u8, round: usize) {
+    for i in 0..count {
+        add_random(world, rng, i);
+    }
+    if !round.is_multiple_of(3) {
+        world.refresh();
+    }
+}
+
+/// All objects, or every other.
+fn lets_through(objects: &[ObjectId], id: ObjectId, case: usize) -> bool {
+    case.is_multiple_of(2) || objects.iter().position(|other| *other == id).unwrap().is_multiple_of(2)
 }
 
 /// With either broad phase, and whatever the world knows already: nothing tested, all tested, some moved since, some removed.
@@ -107,12 +122,7 @@ fn nearest_to_a_point_is_what_is_nearest_of_all() {
         let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
         let (mut found, mut cases, mut inside) = (0, 0, 0);
         for round in 0..12 {
-            for i in 0..6 {
-                add_random(&mut world, &mut rng, i);
-            }
-            if round % 3 > 0 {
-                world.refresh();
-            }
+            grow(&mut world, &mut rng, 6, round);
             let ids = world.objects();
             for _ in 0..4 {
                 world.set_placement(ids[rng.random_range(0..ids.len())], placement(&mut rng, 4.5)).unwrap();
@@ -132,9 +142,7 @@ fn nearest_to_a_point_is_what_is_nearest_of_all() {
             for case in 0..60 {
                 let point = in_cube(&mut rng) * 5.0 * far;
                 let within = if case % 3 == 0 { f64::INFINITY } else { rng.random_range(0.0..4.0) * far };
-                let counts = |id: ObjectId| {
-                    case % 2 == 0 || in_order.iter().position(|other| *other == id).unwrap() % 2 == 0
-                };
+                let counts = |id| lets_through(&in_order, id, case);
                 let closest = in_order.iter().filter(|id| counts(**id)).map(|&object| {
                     let (shape, at) = (world.shape(object).unwrap(), world.placement(object).unwrap());
                     ObjectPoint { object, closest: query::closest_point(shape, &at, point).unwrap() }
@@ -177,12 +185,7 @@ fn a_shape_meets_first_what_the_earliest_cast_meets() {
         let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
         let (mut met, mut cases, mut at_start) = (0, 0, 0);
         for round in 0..10 {
-            for i in 0..4 {
-                add_random(&mut world, &mut rng, i);
-            }
-            if round % 3 > 0 {
-                world.refresh();
-            }
+            grow(&mut world, &mut rng, 4, round);
             let objects = world.objects();
             world.set_placement(objects[round], placement(&mut rng, 4.5)).unwrap();
             for case in 0..20 {
@@ -190,9 +193,7 @@ fn a_shape_meets_first_what_the_earliest_cast_meets() {
                 let from = direction(&mut rng) * rng.random_range(4.0..16.0);
                 let motion = (in_cube(&mut rng) * 4.0 - from) * rng.random_range(0.0..1.5);
                 at.translation += from;
-                let counts = |id: ObjectId| {
-                    case % 2 == 0 || objects.iter().position(|other| *other == id).unwrap() % 2 == 0
-                };
+                let counts = |id| lets_through(&objects, id, case);
                 let cast = |object: ObjectId| {
                     let (other, placed) = (world.shape(object).unwrap(), world.placement(object).unwrap());
                     query::cast_shape(&shape, &at, motion, other, &placed, DVec3::ZERO).unwrap()
@@ -214,6 +215,31 @@ fn a_shape_meets_first_what_the_earliest_cast_meets() {
     }
 }
 
+/// Of objects in one place, which a ray hits, the first in the order of pairs is told, and a ray to where it hits hits there.
+fn assert_first_is_told(shape: &Shape, at: DAffine3, ray: &Ray, hit: RayHit, case: usize) {
+    let options = RayOptions::default();
+    assert_eq!(query::cast_ray(shape, &at, &ray.until(hit.t), &options).unwrap(), Some(hit), "case {case}");
+    for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
+        for known in [false, true] {
+            let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
+            for _ in 0..3 {
+                world.add_ranked(shape, at, 1).unwrap();
+            }
+            if known {
+                world.refresh();
+            }
+            // Looked at with those or before them, then among them.
+            let object = world.add(shape, at).unwrap();
+            for refreshed in [false, true] {
+                let found = world.cast_ray(ray, &options, |_| true).unwrap();
+                let context = format!("case {case}, {broad_phase:?}, known: {known}, refreshed: {refreshed}");
+                assert_eq!(found, Some(ObjectHit { object, hit }), "{context}");
+                world.refresh();
+            }
+        }
+    }
+}
+
 /// Law: of objects that are met at the same `t` the first in the order of pairs is told, by either broad phase, whether they were placed in it or not;
 /// also from so far that rounding leaves few values of `t` for all of a shape.
 #[test]
@@ -231,26 +257,7 @@ fn of_objects_met_at_the_same_t_the_first_is_told_from_any_distance() {
         let ray = Ray::new(from, at.translation + in_cube(&mut rng) * 0.5 - from);
         let Some(hit) = query::cast_ray(shape, &at, &ray, &options).unwrap() else { continue };
         hits += 1;
-        assert_eq!(
-            query::cast_ray(shape, &at, &ray.until(hit.t), &options).unwrap(),
-            Some(hit),
-            "case {case}"
-        );
-        for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
-            let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
-            for _ in 0..3 {
-                world.add_ranked(shape, at, 1).unwrap();
-            }
-            world.refresh();
-            // Looked at before those, then among them.
-            let object = world.add(shape, at).unwrap();
-            for refreshed in [false, true] {
-                let found = world.cast_ray(&ray, &options, |_| true).unwrap();
-                let context = format!("case {case}, {broad_phase:?}, refreshed: {refreshed}");
-                assert_eq!(found, Some(ObjectHit { object, hit }), "{context}");
-                world.refresh();
-            }
-        }
+        assert_first_is_told(shape, at, &ray, hit, case);
     }
     println!("{hits} of {cases} hit");
     assert!(hits > cases / 2);
@@ -291,22 +298,7 @@ fn of_hulls_met_at_the_same_t_the_first_is_told() {
         let ray = Ray::new(from, to + aside - from);
         let Some(hit) = query::cast_ray(shape, &at, &ray, &options).unwrap() else { continue };
         hits += 1;
-        assert_eq!(
-            query::cast_ray(shape, &at, &ray.until(hit.t), &options).unwrap(),
-            Some(hit),
-            "case {case}"
-        );
-        for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
-            let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
-            world.add_ranked(shape, at, 1).unwrap();
-            let object = world.add(shape, at).unwrap();
-            for refreshed in [false, true] {
-                let found = world.cast_ray(&ray, &options, |_| true).unwrap();
-                let context = format!("case {case}, {broad_phase:?}, refreshed: {refreshed}");
-                assert_eq!(found, Some(ObjectHit { object, hit }), "{context}");
-                world.refresh();
-            }
-        }
+        assert_first_is_told(shape, at, &ray, hit, case);
     }
     println!("{hits} of {cases} hit");
     assert!(hits > cases / 3);
