@@ -50,7 +50,7 @@ pub(crate) use closed_form::{
 };
 pub(crate) use coherent::{closest_again, intersects_again, penetration_again};
 pub use contact::{ContactOptions, ContactPoint, Feature, Manifold};
-pub(crate) use contact::{contacts, contacts_closely, quick_contact};
+pub(crate) use contact::{contacts_closely, quick_contact};
 pub(crate) use curve::intersection_curve;
 pub use curve::{IntersectionCurve, Polyline, PrimitivePair, Segment};
 pub(crate) use fixed_box::fixed_bounds;

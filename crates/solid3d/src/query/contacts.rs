@@ -65,7 +65,7 @@ pub fn contacts(
 
 impl ContactOptions {
     /// The options when they can be used.
-    pub(crate) fn checked(&self) -> Result<&ContactOptions> {
+    fn checked(&self) -> Result<&ContactOptions> {
         at_least_zero("margin", self.margin)?;
         Ok(self)
     }

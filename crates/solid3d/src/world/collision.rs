@@ -153,12 +153,15 @@ impl Contact {
 
     /// The contacts of two objects that intersect.
     pub(super) fn contacts(a: Placed, b: Placed, scratch: &mut Scratch) -> Contact {
-        let manifolds = pair::contacts(a, b, &ContactOptions::default(), scratch);
+        let manifolds: Arc<[Manifold]> = match pair::quick_contact(a, b) {
+            Some(contact) => Arc::new([contact]),
+            None => pair::contacts_closely(a, b, &ContactOptions::default(), scratch).into(),
+        };
         let point = match deepest(&manifolds) {
             Some((_, contact)) => 0.5 * contact.point_on_a + 0.5 * contact.point_on_b,
             None => common_point(a, b, scratch),
         };
-        Contact::Contacts { point, manifolds: manifolds.into() }
+        Contact::Contacts { point, manifolds }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{ObjectId, World};
 use crate::error::Result;
-use crate::pair::{self, ContactOptions, Manifold, Scratch};
+use crate::query::{self, ContactOptions, Manifold};
 
 impl World {
     /// All contacts of two objects where they are now, whatever their response: see [`query::contacts`](crate::query::contacts). In the
@@ -21,8 +21,7 @@ impl World {
     /// ```
     pub fn contacts(&self, a: ObjectId, b: ObjectId, options: &ContactOptions) -> Result<Vec<Manifold>> {
         self.check_pair(a, b)?;
-        let options = options.checked()?;
         let [of_a, of_b] = [a, b].map(|id| self.objects[id].placed());
-        Ok(Scratch::with(|scratch| pair::contacts(of_a, of_b, options, scratch)))
+        query::contacts(of_a.shape, of_a.placement, of_b.shape, of_b.placement, options)
     }
 }

@@ -34,6 +34,7 @@ mod through;
 mod ways;
 
 use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
 use solid_convex::{Penetration, Support, epa, gjk};
 
 use super::depth::of_common;
@@ -86,8 +87,8 @@ pub struct ContactPoint {
 pub struct Manifold {
     /// The unit normal, from `b` to `a`. Space: world.
     pub normal: DVec3,
-    /// The points, at least one. Corners of the region in which the surfaces face each other.
-    pub points: Vec<ContactPoint>,
+    /// The points, at least one. Corners of the region in which the surfaces face each other. One alone, as a ball always has, takes no memory of its own.
+    pub points: SmallVec<[ContactPoint; 1]>,
 }
 
 /// Which contacts are wanted.
@@ -180,20 +181,7 @@ pub(crate) fn quick_contact(a: Placed, b: Placed) -> Option<Manifold> {
     one_point::quick_contact(a, b)
 }
 
-/// All contacts of two shapes.
-pub(crate) fn contacts(
-    a: Placed,
-    b: Placed,
-    options: &ContactOptions,
-    scratch: &mut Scratch,
-) -> Vec<Manifold> {
-    match quick_contact(a, b) {
-        Some(contact) => vec![contact],
-        None => contacts_closely(a, b, options, scratch),
-    }
-}
-
-/// The same, where [`quick_contact`] says nothing.
+/// All contacts of two shapes, where [`quick_contact`] says nothing.
 pub(crate) fn contacts_closely(
     a: Placed,
     b: Placed,

@@ -2,6 +2,7 @@
 //! the two is needed for it.
 
 use glam::DVec3;
+use smallvec::smallvec;
 use solid_convex::Penetration;
 
 use super::super::{Mirror, Placed, closed_form};
@@ -78,7 +79,7 @@ fn manifold(a: Placed, b: Placed, found: &Penetration, features: [Feature; 2]) -
         primitives: [0, 0],
         features,
     };
-    Manifold { normal: found.direction, points: vec![point] }
+    Manifold { normal: found.direction, points: smallvec![point] }
 }
 
 /// What of a shape, whose placement changes no angle, faces a direction of the world.
