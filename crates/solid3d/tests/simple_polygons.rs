@@ -9,7 +9,10 @@ use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid3d::polygon::{Polygon, join_holes};
-use solid3d::{ComplexShapeBuilder, Error, Shape, ShapeKind, World, glam, query};
+use solid3d::query::ImpactOptions;
+use solid3d::{
+    Boxes, ComplexShapeBuilder, Error, Motion, Shape, ShapeKind, World, WorldOptions, glam, query,
+};
 
 /// A star-shaped polygon with a hole of the same form, in the plane x, y; about 1 from its origin.
 fn star(rng: &mut StdRng) -> (Vec<DVec3>, Vec<u32>) {
@@ -154,6 +157,53 @@ fn deformed_polygons_are_what_would_be_built_anew() {
     }
     assert!(cases > 3000);
     assert_rate("deformed combs", hits, cases);
+}
+
+/// A strip along x, 10 long: one polygon of many corners.
+fn strip() -> (Shape, Vec<DVec3>) {
+    let there = (0..=10).map(|x| DVec3::new(f64::from(x), 0.0, 0.0));
+    let vertices: Vec<DVec3> = there.clone().chain(there.rev().map(|p| p + DVec3::Y)).collect();
+    let chain: Vec<u32> = (0..vertices.len() as u32).collect();
+    (ComplexShapeBuilder::new(vertices.clone()).simple_polygon(&chain).build().unwrap(), vertices)
+}
+
+/// Every corner counts for a box that fits the shape however it turns.
+#[test]
+fn boxes_of_a_fixed_size_lose_nothing_of_a_polygon() {
+    let (strip, ball) = (strip().0, Shape::sphere(0.2).unwrap());
+    for x in 0..=10 {
+        let mut world =
+            World::with_options(&WorldOptions { boxes: Boxes::FixedSize, ..WorldOptions::default() });
+        world.add(&strip, DAffine3::IDENTITY).unwrap();
+        world.add(&ball, DAffine3::from_translation(DVec3::new(f64::from(x), 0.2, 0.1))).unwrap();
+        assert_eq!(world.test().len(), 1, "{x}");
+    }
+}
+
+/// Every corner counts for the way that a deformation takes.
+#[test]
+fn the_way_of_a_deformation_is_that_of_all_corners() {
+    let (was, vertices) = strip();
+    let moved: Vec<DVec3> =
+        vertices.iter().map(|p| p + if p.x >= 5.0 { DVec3::Z * 8.0 } else { DVec3::ZERO }).collect();
+    let mut is = was.clone();
+    is.deform(&moved).unwrap();
+    let here = DAffine3::IDENTITY;
+    let small = Shape::mesh([DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p * 0.1), [[0, 1, 2]]).unwrap();
+    for (obstacle, reach) in [(Shape::sphere(0.1).unwrap(), 0.1), (small, 0.0)] {
+        let at = DAffine3::from_translation(DVec3::new(9.0, 0.5, 4.0));
+        let ways = [[(&was, &here), (&is, &here)], [(&obstacle, &at); 2]];
+        let impact = query::time_of_impact_deforming(ways[0], ways[1], &ImpactOptions::default()).unwrap();
+        let time = impact.unwrap().time;
+        assert!((time - (4.0 - reach) / 8.0).abs() < 1e-5, "{time}");
+        let mut world =
+            World::with_options(&WorldOptions { motion: Motion::Swept, ..WorldOptions::default() });
+        let id = world.add(&was, here).unwrap();
+        world.add(&obstacle, at).unwrap();
+        world.proceed();
+        world.set_shape(id, &is).unwrap();
+        assert_eq!(world.test().len(), 1);
+    }
 }
 
 #[test]

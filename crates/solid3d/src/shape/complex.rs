@@ -253,6 +253,11 @@ impl Complex {
         self.primitives.owner(self.primitives.len() as u32 - 1) as usize + 1
     }
 
+    /// The indices of the vertices of all primitives, one primitive after the other.
+    pub fn indices(&self) -> &[u32] {
+        self.primitives.indices()
+    }
+
     /// The indices of the vertices whose hull the primitive is.
     pub fn primitive(&self, primitive: u32) -> &[u32] {
         self.primitives.get(primitive)
@@ -296,7 +301,7 @@ impl Complex {
 
     /// The corners of all primitives, one after the other.
     pub(super) fn corners(&self) -> IndexedPoints<'_> {
-        IndexedPoints::new(&self.vertices, self.primitives.indices())
+        IndexedPoints::new(&self.vertices, self.indices())
             .expect("a primitive has a vertex, and its indices were checked")
     }
 

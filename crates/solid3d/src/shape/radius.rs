@@ -17,8 +17,7 @@ impl Shape {
             Geometry::Capsule(capsule) => capsule.radius() + capsule.half_height(),
             Geometry::Polytope(hull) => hull.polytope().farthest(),
             Geometry::Complex(complex) => {
-                let indices = (0..complex.primitive_count() as u32).flat_map(|i| complex.primitive(i));
-                furthest(indices.map(|&index| complex.vertices()[index as usize]))
+                furthest(complex.indices().iter().map(|&index| complex.vertices()[index as usize]))
             }
         }
     }
@@ -37,11 +36,12 @@ fn furthest(points: impl IntoIterator<Item = DVec3>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Result;
+    use crate::{ComplexShapeBuilder, Result};
 
     #[test]
     fn the_radius_of_each_kind() -> Result<()> {
         let corners = [DVec3::new(1.0, 2.0, 2.0), DVec3::X, DVec3::Y, DVec3::new(9.0, 0.0, 0.0)];
+        let square = [(0.0, 0.0), (1.0, 0.0), (4.0, 3.0), (0.0, 1.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
         let expected = [
             (Shape::sphere(2.0)?, 2.0),
             (Shape::cuboid([2.0, 4.0, 4.0])?, 3.0),
@@ -50,6 +50,7 @@ mod tests {
             (Shape::capsule(1.0, 4.0)?, 3.0),
             (Shape::convex_hull(&corners[..3])?, 3.0),
             (Shape::mesh(corners, [[0, 1, 2]])?, 3.0), // no primitive names the fourth vertex
+            (ComplexShapeBuilder::new(square).simple_polygon(&[0, 1, 2, 3]).build()?, 5.0),
         ];
         for (shape, radius) in expected {
             assert!((shape.radius() - radius).abs() < 1e-15, "{}: {}", shape.kind(), shape.radius());

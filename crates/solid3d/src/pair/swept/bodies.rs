@@ -82,8 +82,8 @@ pub(crate) fn deformation(from: &Shape, to: &Shape) -> Aabb {
     let still = Aabb::new(DVec3::ZERO, DVec3::ZERO);
     match (from.class(), to.class()) {
         (Class::Complex(was), Class::Complex(is)) if from.is_deformation_of(to) => {
-            let indices = (0..is.primitive_count() as u32).flat_map(|i| is.primitive(i)).map(|&i| i as usize);
-            Aabb::of_points(indices.map(|i| is.vertices()[i] - was.vertices()[i]))
+            let way = |&i: &u32| is.vertices()[i as usize] - was.vertices()[i as usize];
+            Aabb::of_points(is.indices().iter().map(way))
         }
         _ => still,
     }

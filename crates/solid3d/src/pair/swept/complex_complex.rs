@@ -11,7 +11,7 @@ use crate::pair::Scratch;
 
 pub(super) fn encounter(a: MovingComplex, b: MovingComplex, scratch: &mut Scratch) -> Encounter {
     // The first walk is through the larger tree: what it leaves out is most.
-    let (large, small) = if a.to.0.primitive_count() < b.to.0.primitive_count() { (b, a) } else { (a, b) };
+    let (large, small) = if a.to.0.tree().len() < b.to.0.tree().len() { (b, a) } else { (a, b) };
     let size = size(large.reaches(), small.reaches());
     let (in_large, in_small) =
         (TreeSpace::new(&large, size, STRAIGHT), TreeSpace::new(&small, size, STRAIGHT));
