@@ -98,7 +98,7 @@ pub struct ContactOptions {
     /// least 0; 0 by default. World units.
     pub margin: f64,
     /// The most points of a manifold: the deepest, and those furthest from it and each other. At least one is kept. `None`, which is the
-    /// default, for all of them.
+    /// default, for all of them. Cost: the product of how many there are and how many are kept.
     pub max_points: Option<usize>,
 }
 

@@ -120,20 +120,19 @@ pub(super) fn reduce(points: &mut Vec<Touch>, normal: DVec3, most: usize) {
         let v = points[i].on_a - points[j].on_a;
         (v - normal * v.dot(normal)).length_squared()
     };
-    let deepest = (0..points.len())
-        .max_by(|&i, &j| points[i].depth.total_cmp(&points[j].depth).then(j.cmp(&i)))
-        .unwrap_or(0);
-    let mut kept = vec![deepest];
-    let mut distance: Vec<f64> = (0..points.len()).map(|i| across(i, deepest)).collect();
+    let first_of_most = |value: &dyn Fn(usize) -> f64| {
+        (0..points.len()).max_by(|&i, &j| value(i).total_cmp(&value(j)).then(j.cmp(&i))).unwrap_or(0)
+    };
+    let mut next = first_of_most(&|i| points[i].depth);
+    let (mut kept, mut distance) = (Vec::new(), vec![f64::INFINITY; points.len()]);
     while kept.len() < most {
-        let next = (0..points.len())
-            .filter(|i| !kept.contains(i))
-            .max_by(|&i, &j| distance[i].total_cmp(&distance[j]).then(j.cmp(&i)))
-            .expect("there are more points than are kept");
         kept.push(next);
+        // It is no longer sought.
+        distance[next] = f64::NEG_INFINITY;
         for (i, nearest) in distance.iter_mut().enumerate() {
             *nearest = nearest.min(across(i, next));
         }
+        next = first_of_most(&|i| distance[i]);
     }
     kept.sort_unstable();
     *points = kept.into_iter().map(|i| points[i]).collect();
