@@ -81,36 +81,42 @@ impl<'a> Section<'a> {
                 touches.push([vertex(i), vertex(if to == 0.0 { j } else { i })]);
             }
         }
-        self.sort(&mut crossings, axis, counters);
+        self.sort(&mut crossings, |crossing| crossing, axis, counters);
         self.segments.extend(crossings.chunks_exact(2).map(|ends| [ends[0], ends[1]]));
         if !touches.is_empty() {
-            self.add(touches, counters);
+            self.add(touches, axis, counters);
         }
     }
 
-    /// Sorts by rounded coordinates first, along the axis closest to the line's direction; then exactly, by insertion, which
-    /// finds little to do.
-    fn sort(&self, crossings: &mut Vec<Crossing>, axis: DVec3, counters: &mut Counters) {
-        if crossings.len() > 2 {
+    /// Sorts by where each is: by rounded coordinates first, along the axis closest to the line's direction; then exactly, by insertion,
+    /// which finds little to do.
+    fn sort<T: Copy>(
+        &self,
+        items: &mut Vec<T>,
+        place: impl Fn(&T) -> &Crossing,
+        axis: DVec3,
+        counters: &mut Counters,
+    ) {
+        if items.len() > 2 {
             let closest = (0..3).max_by(|&i, &j| axis[i].abs().total_cmp(&axis[j].abs())).unwrap_or(0);
             let sign = axis[closest].signum();
-            let mut keyed: Vec<(f64, Crossing)> =
-                crossings.iter().map(|&c| (sign * self.point(c)[closest], c)).collect();
+            let key = |item: &T| sign * self.point(*place(item))[closest];
+            let mut keyed: Vec<(f64, T)> = items.iter().map(|item| (key(item), *item)).collect();
             keyed.sort_by(|(x, _), (y, _)| x.total_cmp(y));
-            crossings.clear();
-            crossings.extend(keyed.into_iter().map(|(_, crossing)| crossing));
+            items.clear();
+            items.extend(keyed.into_iter().map(|(_, item)| item));
         }
-        insertion_sort(crossings, |x, y| self.order(x, y, counters));
+        insertion_sort(items, |x, y| self.order(place(x), place(y), counters));
     }
 
     /// Adds segments that may overlap.
-    fn add(&mut self, segments: Vec<[Crossing; 2]>, counters: &mut Counters) {
+    fn add(&mut self, segments: Vec<[Crossing; 2]>, axis: DVec3, counters: &mut Counters) {
         let mut all = std::mem::take(&mut self.segments);
         for [x, y] in segments {
             let forward = self.order(&x, &y, counters).is_le();
             all.push(if forward { [x, y] } else { [y, x] });
         }
-        insertion_sort(&mut all, |[x, _], [y, _]| self.order(x, y, counters));
+        self.sort(&mut all, |[begin, _]| begin, axis, counters);
         for [begin, end] in all {
             match self.segments.last().copied() {
                 Some([_, last]) if self.order(&begin, &last, counters).is_le() => {

@@ -66,3 +66,24 @@ fn work_of_the_two_approaches() {
         assert_eq!(scene(n, 3)[2][1].vertices(), pairs[2][1].vertices(), "the counts repeat");
     }
 }
+
+/// Corners that lie in the other's plane are in order at once, whichever way the polygon runs.
+#[test]
+fn tips_in_a_plane_take_comparisons_in_proportion() {
+    let tips = 1000;
+    let far = 2.0 * f64::from(tips);
+    let table = [(-far, -far), (far, -far), (far, far), (-far, far)].map(|(x, y)| DVec3::new(x, y, 0.0));
+    let teeth = (0..tips).map(f64::from).flat_map(|x| [DVec3::X * x, DVec3::new(x + 0.5, 0.0, 1.0)]);
+    let back = [DVec3::new(far, 0.0, 3.0), DVec3::new(-1.0, 0.0, 3.0)];
+    let mut comb: Vec<DVec3> = teeth.chain(back).collect();
+    for _ in 0..2 {
+        let mut counters = Counters::default();
+        assert!(intersect_sorted(
+            &Polygon::new(&*comb).unwrap(),
+            &Polygon::new(table).unwrap(),
+            &mut counters
+        ));
+        assert!(counters.comparisons < 5 * tips as u64, "{counters:?}");
+        comb.reverse();
+    }
+}
