@@ -408,7 +408,9 @@ fn other_shapes_are_solid_already_or_never() {
     let error = point_shape(DVec3::ZERO).into_solid().unwrap_err();
     assert_eq!(error.to_string(), "shape is a complex shape; it must be a mesh");
     assert!(!point_shape(DVec3::ZERO).is_solid());
-    let twice = solid(&cube(1.0)).into_solid().unwrap();
+    let once = solid(&cube(1.0));
+    let twice = once.clone().into_solid().unwrap();
+    assert_eq!(twice.vertices().unwrap().as_ptr(), once.vertices().unwrap().as_ptr(), "it stays shared");
     assert!(twice.is_solid() && !cube(1.0).shape().is_solid());
 }
 

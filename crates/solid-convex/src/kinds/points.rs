@@ -81,8 +81,9 @@ impl Support for IndexedPoints<'_> {
     }
 }
 
-fn furthest(points: impl Iterator<Item = DVec3>, direction: DVec3) -> DVec3 {
-    let mut best = DVec3::ZERO;
+fn furthest(points: impl Iterator<Item = DVec3> + Clone, direction: DVec3) -> DVec3 {
+    // The first, where no product is a number.
+    let mut best = points.clone().next().unwrap_or_default();
     let mut best_dot = f64::NEG_INFINITY;
     for p in points {
         let dot = p.dot(direction);
@@ -101,4 +102,17 @@ pub(super) fn reach(points: impl Iterator<Item = DVec3>) -> DVec3 {
 pub(super) fn mean(points: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
     let share = 1.0 / points.clone().count() as f64;
     points.map(|p| p * share).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Law: a support point is one of the object, also where products overflow.
+    #[test]
+    fn products_may_overflow() {
+        let points = [DVec3::X * 1e100, DVec3::new(1e100, 1.0, 0.0)];
+        assert_eq!(Points::new(&points).unwrap().support(DVec3::X * -1e300), points[0]);
+        assert_eq!(Points::new(&points).unwrap().support(DVec3::NAN), points[0]);
+    }
 }

@@ -200,6 +200,8 @@ impl Shape {
     /// ```
     pub fn into_solid(mut self) -> Result<Shape> {
         match &mut self.geometry {
+            // What is solid stays shared.
+            Geometry::Complex(complex) if complex.is_solid() => {}
             Geometry::Complex(complex) if complex.is_mesh() => Arc::make_mut(complex).solidify()?,
             Geometry::Complex(_) => return Err(Error::NotAMesh { kind: self.kind() }),
             _ => {}
