@@ -7,7 +7,7 @@ mod common;
 use std::path::PathBuf;
 use std::process::Command;
 
-use common::{Linking, compile, crate_folder, has, library_folder, run, succeed, text};
+use common::{Linking, compile, crate_folder, has, library_folder, run, succeed, text, to_load_from};
 
 const PROGRAMS: [&str; 8] = [
     "shapes.c",
@@ -190,6 +190,6 @@ fn the_readme_is_right() {
     let mut cc = Command::new("cc");
     cc.arg("-I").arg(crate_folder().join("include")).arg(source).arg("-o").arg(&program);
     cc.arg("-L").arg(library_folder()).arg("-lsolid");
-    succeed(cc.arg(format!("-Wl,-rpath,{}", library_folder().display())));
+    succeed(cc.arg(to_load_from(&library_folder())));
     assert_eq!(text(&run(program).stdout), block("text\n", "ouch"));
 }

@@ -9,7 +9,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::{crate_folder, has, library_folder, run, succeed, text};
+use common::{crate_folder, has, library_folder, run, succeed, text, to_load_from};
 
 /// Installs the library that the tests were built with.
 fn install(name: &str) -> PathBuf {
@@ -37,7 +37,7 @@ fn pkg_config_builds_clients() {
     let shared = prefix.join("shared");
     let mut cc = Command::new("cc");
     cc.arg(&source).args(flags(&prefix, &["--cflags", "--libs"])).arg("-lm").arg("-o").arg(&shared);
-    succeed(cc.arg(format!("-Wl,-rpath,{}", prefix.join("lib").display())));
+    succeed(cc.arg(to_load_from(&prefix.join("lib"))));
     run(&shared);
 
     let alone = prefix.join("static");

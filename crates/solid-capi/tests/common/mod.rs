@@ -34,6 +34,11 @@ pub fn has(program: &str) -> bool {
     found
 }
 
+/// What tells the linker where a program finds its library: before it looks into the folders that cargo names, where an older one may lie.
+pub fn to_load_from(folder: &Path) -> String {
+    format!("-Wl,--disable-new-dtags,-rpath,{}", folder.display())
+}
+
 /// Compiles a source of `tests/c`, and returns the program.
 pub fn compile(source: &str, linking: Linking, flags: &[&str]) -> PathBuf {
     let path = crate_folder().join("tests/c").join(source);
@@ -47,7 +52,7 @@ pub fn compile(source: &str, linking: Linking, flags: &[&str]) -> PathBuf {
     match linking {
         Linking::Shared => {
             compiler.arg("-L").arg(&libraries).arg("-lsolid").arg("-lm");
-            compiler.arg(format!("-Wl,-rpath,{}", libraries.display()));
+            compiler.arg(to_load_from(&libraries));
         }
         Linking::Static => {
             compiler.arg(libraries.join("libsolid.a")).args(SYSTEM_LIBRARIES);
