@@ -93,6 +93,48 @@ static void double_buffered(void) {
     dtDeleteShape(small);
 }
 
+static void set_cube(double *vertices, double x, double y) {
+    int i;
+    for (i = 0; i < 8; i++) {
+        vertices[3 * i] = i & 1 ? x + 1 : x - 1;
+        vertices[3 * i + 1] = i & 2 ? y + 1 : y - 1;
+        vertices[3 * i + 2] = i & 4 ? 1 : -1;
+    }
+}
+
+/* Smart response looks at the primitives that collide now, also in the first frame in which a single polyhedron deforms: not at the nearer
+   one of the previous frame. */
+static void first_deformation(void) {
+    double fixed[2 * 8 * 3], moving[8 * 3];
+    const DtCollData *data = &records[0].data;
+    DtShapeRef two = dtNewComplexShape(), one;
+    set_cube(fixed, 0, 0);
+    set_cube(fixed + 8 * 3, 10, 0);
+    dtVertexBase(fixed);
+    dtVertexRange(DT_POLYHEDRON, 0, 8);
+    dtVertexRange(DT_POLYHEDRON, 8, 8);
+    dtEndComplexShape();
+    one = dtNewComplexShape();
+    set_cube(moving, 0, 0);
+    dtVertexBase(moving);
+    dtVertexRange(DT_POLYHEDRON, 0, 8);
+    dtEndComplexShape();
+    dtSetDefaultResponse(record, DT_SMART_RESPONSE, NULL);
+    dtCreateObject(&sheet, two);
+    dtCreateObject(&other, one);
+    dtTranslate(10, 3, 0);
+    CHECK(test() == 0);
+    dtProceed();
+    set_cube(moving, -10, -3);
+    dtChangeVertexBase(one, moving);
+    CHECK(test() == 1);
+    CHECK(NEAR(data->normal[0], -8) && NEAR(data->normal[1], -1) && NEAR(data->normal[2], 0));
+    dtDeleteObject(&sheet);
+    dtDeleteObject(&other);
+    dtDeleteShape(two);
+    dtDeleteShape(one);
+}
+
 /* A single polyhedron, and a shape with vertices of both kinds. */
 static void polyhedra(void) {
     double vertices[4 * 3] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -143,6 +185,7 @@ static void polyhedra(void) {
 int main(void) {
     in_place();
     double_buffered();
+    first_deformation();
     polyhedra();
     return finish();
 }

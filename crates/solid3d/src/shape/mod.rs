@@ -330,11 +330,12 @@ impl Shape {
         }
     }
 
-    /// Whether the primitives of the two have the same numbers: both are convex, or one mesh or complex shape, deformed or not.
+    /// Whether the primitives of the two have the same numbers: both are convex, or of one primitive, or one mesh or complex shape,
+    /// deformed or not.
     pub(crate) fn has_primitives_of(&self, other: &Shape) -> bool {
         match (&self.geometry, &other.geometry) {
             (Geometry::Complex(a), Geometry::Complex(b)) => a.same_primitives(b),
-            (Geometry::Complex(_), _) | (_, Geometry::Complex(_)) => false,
+            (Geometry::Complex(one), _) | (_, Geometry::Complex(one)) => one.tree().len() == 1,
             _ => true,
         }
     }
