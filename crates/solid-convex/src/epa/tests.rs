@@ -10,6 +10,7 @@ use crate::difference::Difference;
 use crate::gjk::{self, End, Goal, descend};
 use crate::testing::{for_each_pair, in_cube, placement, shapes};
 use crate::{Capsule, Cone, Cuboid, Cylinder, Locus, Points, Polytope, Sphere, Support, Witness};
+use rand::Rng;
 use solid_oracle::generate::seeded;
 
 fn at(x: f64, y: f64, z: f64) -> DAffine3 {
@@ -500,4 +501,56 @@ fn a_support_mapping_that_lies_is_survived() {
         let calls = liar.0.load(std::sync::atomic::Ordering::Relaxed) - seed;
         assert!(calls as usize <= 4 * super::EXPANSIONS_PER_VERTEX * VERTICES_MAX, "{calls} calls");
     }
+}
+
+/// What is round about one axis has its depth in a circle of directions at once: that of the half-planes at the axis.
+#[test]
+fn coaxial_shapes_have_the_depth_of_their_profiles() {
+    let mut rng = seeded(291);
+    let mut count = 0;
+    for case in 0..1000 {
+        let mut size = || rng.random_range(0.2..2.0);
+        let mut object = |kind| -> Box<dyn Support> {
+            match kind {
+                0 => Box::new(Cylinder::new(size(), size()).unwrap()),
+                1 => Box::new(Cone::new(size(), size()).unwrap()),
+                _ => Box::new(Capsule::new(size(), size()).unwrap()),
+            }
+        };
+        let (a, b) = (object(case % 3), object(case / 3 % 3));
+        let turn = [DQuat::IDENTITY, DQuat::from_scaled_axis(DVec3::splat(size()))][case / 9 % 2];
+        let at_a = DAffine3::from_quat(turn);
+        let at_b = at_a * at(0.0, [0.0, 0.1, -0.05][case / 18 % 3], 0.0);
+        let Some(found) = penetration(&*a, &at_a, &*b, &at_b) else { continue };
+        count += 1;
+        let height = |angle: f64| {
+            let n = turn * DVec3::new(angle.cos(), angle.sin(), 0.0);
+            let furthest = |of: &dyn Support, at: &DAffine3, n: DVec3| {
+                at.transform_point3(of.support(at.matrix3.transpose() * n)).dot(n)
+            };
+            furthest(&*a, &at_a, -n) + furthest(&*b, &at_b, n)
+        };
+        // It may have several valleys, each of which is narrowed down to.
+        let step = TAU / 4000.0;
+        let narrowed = |i: i32| {
+            let (mut low, mut high) = (step * f64::from(i - 1), step * f64::from(i + 1));
+            for _ in 0..60 {
+                let third = (high - low) / 3.0;
+                if height(low + third) < height(high - third) {
+                    high -= third;
+                } else {
+                    low += third;
+                }
+            }
+            height(low)
+        };
+        let is_valley = |i: &i32| {
+            [i - 1, i + 1].iter().all(|&j| height(step * f64::from(*i)) <= height(step * f64::from(j)))
+        };
+        let expected = (-1000..=1000).filter(is_valley).map(narrowed).fold(f64::INFINITY, f64::min);
+        assert!((found.depth - expected).abs() <= 1e-12, "case {case}: {found:?}, {expected}");
+        let between = at_b.transform_point3(found.points.on_b) - at_a.transform_point3(found.points.on_a);
+        assert!((between - found.direction * found.depth).length() <= 1e-12, "case {case}: {found:?}");
+    }
+    assert!(count > 900, "{count} of 1,000 overlap");
 }

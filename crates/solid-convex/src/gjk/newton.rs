@@ -164,7 +164,7 @@ impl<'a> Span<'a> {
                 curvature += DMat2::from_cols(bend * bend.x, bend * bend.y) * self.weights[i];
             }
         }
-        let inverse = curvature.inverse();
+        let inverse = inverse(curvature);
         let mut turn = inverse * across(x);
         if self.len == 2 {
             let along = inverse * e;
@@ -175,6 +175,20 @@ impl<'a> Span<'a> {
         }
         s * turn.x + t * turn.y
     }
+}
+
+/// The inverse of a symmetric matrix; of one that is nearly singular it leads nowhere along what it takes to nothing. That is how coaxial shapes bend:
+/// they are as deep in each other all around their axis.
+fn inverse(symmetric: DMat2) -> DMat2 {
+    /// Of the greater eigenvalue.
+    const SINGULAR: f64 = 1e-7;
+    let determinant = symmetric.determinant();
+    let trace = symmetric.x_axis.x + symmetric.y_axis.y;
+    // The lesser eigenvalue is about the determinant by the greater.
+    if determinant.abs() > SINGULAR * trace * trace {
+        return symmetric.inverse();
+    }
+    symmetric * (1.0 / (trace * trace))
 }
 
 /// Turns a normal, and moves the points of a simplex along with it, until these are furthest against it where what they span has its closest

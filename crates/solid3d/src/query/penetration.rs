@@ -44,8 +44,8 @@ pub struct Penetration {
 /// the size of the data apart, and 1e-12 where one is a sliver or a needle, or flat. What is thinner than 1e-3 of its length and meets a
 /// corner with its end may leave 1e-8 open, and what is thinner than 1e-10 of it, 1e-3. Where cones, cylinders or stretched round shapes
 /// take part, they are within 1e-7 of the depth ([`DEPTH_TOLERANCE`](solid_convex::epa::DEPTH_TOLERANCE)), of which the upper is nearly
-/// always exact to 1e-13 of the size, unless these have their shortest translations in very many directions at once, as coaxial cones
-/// and cylinders do: then within 1e-3, and 5e-2 for concentric ellipsoids that are the same in all of them.
+/// always exact to 1e-13 of the size. Where these have their shortest translations in a circle of directions at once, as coaxial cones
+/// and cylinders do, the lower may be 1e-3 off; for concentric ellipsoids, which may have them in all directions, both 5e-2.
 ///
 /// Cost: some hundred nanoseconds for two boxes, some microseconds for other convex shapes, less with a [`PairCache`](super::PairCache); for two
 /// meshes little more than that of [`intersecting_primitives`](super::intersecting_primitives), as only a few pairs that may be the deepest
