@@ -5,6 +5,7 @@
 use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
 use solid_convex::unit_scale;
 
 use crate::bounds::Aabb;
@@ -107,10 +108,11 @@ impl Facets {
 fn merged(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Facet> {
     let corner = |index: u32| points[index as usize];
     let cross = |[i, j, k]: [u32; 3]| (corner(j) - corner(i)).cross(corner(k) - corner(i));
-    let mut beyond = HashMap::new();
+    // Of a flat hull a diagonal is run through the same way by a triangle of either side.
+    let mut beyond: HashMap<[u32; 2], SmallVec<[usize; 2]>> = HashMap::new();
     for (index, &[i, j, k]) in triangles.iter().enumerate() {
         for edge in [[i, j], [j, k], [k, i]] {
-            beyond.insert(edge, index);
+            beyond.entry(edge).or_default().push(index);
         }
     }
     let mut seeds: Vec<usize> = (0..triangles.len()).collect();
@@ -131,7 +133,7 @@ fn merged(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Facet> {
             let [i, j, k] = triangles[index];
             members.extend([i, j, k]);
             for edge in [[j, i], [k, j], [i, k]] {
-                if let Some(&other) = beyond.get(&edge) {
+                for &other in beyond.get(&edge).into_iter().flatten() {
                     let same_side = cross(triangles[other]).dot(normal) >= -FLATNESS;
                     if !taken[other] && same_side && triangles[other].iter().all(in_plane) {
                         taken[other] = true;
