@@ -27,8 +27,10 @@ struct Encounter<'a> {
     other: Other<'a>,
     /// What tells in closed form how a triangle lies to the body, once it was asked for.
     told: OnceCell<(Option<Inside<'a>>, Option<Polytope>)>,
-    /// The primitives that meet the body, or are near it; ascending.
+    /// The primitives that meet the body, or with a margin are as near to it; ascending.
     found: &'a [u32],
+    /// Those that meet it; ascending.
+    met: &'a [u32],
     /// Whether the soup is the second of the pair.
     mirrored: bool,
     /// Whether some primitive that meets the body had contacts where they are in each other, and whether some had none.
@@ -44,12 +46,18 @@ pub(super) fn soup_body(
     mirrored: bool,
     scratch: &mut Scratch,
 ) -> Vec<Patch> {
-    let (Part::Soup(complex), Part::Body(kind, support)) = (soup, body) else { return Vec::new() };
+    let (&Part::Soup(complex), Part::Body(kind, support)) = (soup, body) else { return Vec::new() };
     let (placed_soup, placed_body) = if mirrored { (pair.b, pair.a) } else { (pair.a, pair.b) };
     let [map_a, map_b] = &pair.maps;
     let [map_soup, map_body] = if mirrored { [map_b, map_a] } else { [map_a, map_b] };
     let convex: PlacedConvex = (*support, placed_body.placement);
-    let found = near_body(pair, (complex, placed_soup.placement), convex, mirrored, scratch);
+    let soup = (complex, placed_soup.placement);
+    let met = met_by_body(soup, convex, scratch);
+    let near = (pair.margin > 0.0).then(|| {
+        let (_, margins) = pair.margins(&pair.placing());
+        beside_body(soup, convex, margins[usize::from(mirrored)], scratch)
+    });
+    let found = near.as_ref().unwrap_or(&met);
     if found.is_empty() {
         return Vec::new();
     }
@@ -68,7 +76,8 @@ pub(super) fn soup_body(
         stars: &Stars::new(complex, map_soup, found.len()),
         other: Other { primitive: 0, support: *support, map: map_body, corners, radius },
         told: OnceCell::new(),
-        found: &found,
+        found,
+        met: &met,
         body: face::Placed::new(kind, map_body),
         mirrored,
         answered: Cell::new(false),
@@ -77,7 +86,7 @@ pub(super) fn soup_body(
     let mut patches = encounter.patches();
     if encounter.unanswered.get() && !encounter.answered.get() {
         // Where a body leaves an edge last it may lean over that, and not meet it.
-        let near = beside_body((complex, placed_soup.placement), convex, 0.0, scratch);
+        let near = beside_body(soup, convex, 0.0, scratch);
         patches.extend(encounter.patch_at_a_ridge(&near));
     }
     patches
@@ -86,7 +95,7 @@ pub(super) fn soup_body(
 impl Encounter<'_> {
     /// The contacts of all that was found, and of what the body leans over.
     fn patches(&self) -> Vec<Patch> {
-        let mut overhang = Overhang::new(self.stars, self.other, self.found);
+        let mut overhang = Overhang::new(self.stars, self.other, self.met);
         let mut patches: Vec<Patch> =
             self.found.iter().filter_map(|&primitive| self.patch(primitive, &mut overhang)).collect();
         let behind = overhang.found.iter().filter_map(|&(triangle, out)| self.patch_behind(triangle, out));
@@ -144,7 +153,10 @@ impl Encounter<'_> {
     /// A normal out of a primitive along which the body leaves it, the contacts along that, if any, and whether the two meet.
     fn way_out(&self, side: &Side) -> Option<(DVec3, Vec<Touch>, bool)> {
         Some(match side.flat() {
-            Some(normal) => (normal, self.over(side, normal), self.pair.margin == 0.0),
+            Some(normal) => {
+                let meets = self.met.binary_search(&side.body.primitive).is_ok();
+                (normal, self.over(side, normal), meets)
+            }
             None => {
                 let meeting = self.meeting(side)?;
                 let corrected = match side.corrected(meeting.normal * self.sign(), meeting.tilt)? {
@@ -215,19 +227,8 @@ impl Encounter<'_> {
     }
 }
 
-/// The primitives of a soup that meet a body; with a margin, those whose boxes are as near. Ascending: in an order that does not
-/// depend on the tree.
-fn near_body(
-    pair: &Pair,
-    soup: (&Complex, &DAffine3),
-    body: PlacedConvex,
-    mirrored: bool,
-    scratch: &mut Scratch,
-) -> Vec<u32> {
-    if pair.margin > 0.0 {
-        let (_, margins) = pair.margins(&pair.placing());
-        return beside_body(soup, body, margins[usize::from(mirrored)], scratch);
-    }
+/// The primitives of a soup that meet a body. Ascending: in an order that does not depend on the tree.
+fn met_by_body(soup: (&Complex, &DAffine3), body: PlacedConvex, scratch: &mut Scratch) -> Vec<u32> {
     let mut found = Vec::new();
     let _ = complex_convex::meeting_primitives(soup, body, scratch, &mut |primitive, _| {
         found.push(primitive);
