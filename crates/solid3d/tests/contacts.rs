@@ -510,6 +510,57 @@ fn a_margin_does_not_lead_through_walls() {
     assert!(near > cases / 3);
 }
 
+/// What is wholly inside a solid leaves it by the shortest way out, with any margin: also where that reaches a wall, from inside.
+#[test]
+fn a_margin_does_not_turn_what_is_inside() {
+    let ring = [(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (2.0, 2.0), (2.0, 4.0), (0.0, 4.0)];
+    let level = |z: f64| ring.map(|(x, y)| DVec3::new(x, y, z));
+    let caps = [[0_u32, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]];
+    let caps = caps.into_iter().flat_map(|[i, j, k]| [[i, k, j], [i + 6, j + 6, k + 6]]);
+    let sides = (0..6).map(|i| [i, (i + 1) % 6]).flat_map(|[i, j]| [[i, j, i + 6], [j, j + 6, i + 6]]);
+    let corner = Shape::mesh([level(0.0), level(1.0)].concat(), caps.chain(sides).collect::<Vec<_>>());
+    let corner = corner.unwrap().into_solid().unwrap();
+    let place = at(1.0, 1.0, 0.8);
+    for shape in [Shape::sphere(0.1).unwrap(), Shape::cuboid([0.2; 3]).unwrap()] {
+        for margin in [0.0, 0.05, 0.15, 0.5] {
+            let found =
+                query::contacts(&shape, &place, &corner, &DAffine3::IDENTITY, &within(margin)).unwrap();
+            assert_eq!((found.len(), found[0].normal), (1, DVec3::Z), "{margin}: {found:#?}");
+            assert!((deepest(&found) - 0.3).abs() < 1e-12, "{margin}: {found:#?}");
+        }
+    }
+}
+
+/// What leans over is as deep with a margin as without.
+#[test]
+fn a_margin_loses_nothing_of_what_leans_over() {
+    let plate =
+        DMat3::from_cols(DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, -0.5, -3.0), DVec3::new(0.0, 0.0, 0.03));
+    let plate = DAffine3::from_mat3(plate);
+    let corners =
+        [(-64.0, -64.0), (-64.0, 64.0), (64.0, -64.0), (64.0, 64.0)].map(|(x, z)| DVec3::new(x, 0.0, z));
+    let (ground, below) = (Shape::mesh(corners, [[0, 1, 2], [1, 3, 2]]).unwrap(), at(0.3, -0.3, -2.0));
+    for margin in [0.0, 1e-6, 0.01, 0.05, 0.075, 0.2] {
+        let found = query::contacts(&cube(), &plate, &ground, &below, &within(margin)).unwrap();
+        assert!((deepest(&found) - 0.45).abs() < 1e-12, "{margin}: {found:#?}");
+    }
+}
+
+/// A flat hull has one face on either side, whatever its form, as a hull and as a polygon.
+#[test]
+fn a_flat_hull_is_one_face() {
+    let corners = [(-5.0, -5.0), (5.0, -5.0), (6.0, 5.0), (-5.0, 5.0)].map(|(x, z)| DVec3::new(x, 0.0, z));
+    let polygon = ComplexShapeBuilder::new(corners).polygon(&[0, 1, 2, 3]).build().unwrap();
+    for plate in [Shape::convex_hull(&corners).unwrap(), polygon] {
+        for (x, z) in (-4..=4).flat_map(|x| (-4..=4).map(move |z| (f64::from(x), f64::from(z)))) {
+            for (y, up) in [(0.49, DVec3::Y), (-0.49, DVec3::NEG_Y)] {
+                let found = only(&cube(), &at(x, y, z), &plate, &DAffine3::IDENTITY);
+                assert_flat(&found, up, 0.01, 4);
+            }
+        }
+    }
+}
+
 /// Sliding over a floor of triangles gives what one big box would: its normal, and the corners of what slides.
 #[test]
 fn internal_edges_have_no_normals() {

@@ -118,7 +118,8 @@ fn closest_points(a: PlacedConvex, b: PlacedConvex) -> Closest {
     gjk::closest_points(a.0, a.1, b.0, b.1)
 }
 
-fn is_solid(placed: &Placed) -> bool {
+/// Whether it is a mesh that has an inside.
+pub(super) fn is_solid(placed: &Placed) -> bool {
     matches!(placed.shape.class(), Class::Complex(complex) if complex.is_solid())
 }
 

@@ -37,6 +37,7 @@ use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 use solid_convex::{Penetration, Support, epa, gjk};
 
+use super::approach::is_solid;
 use super::depth::of_common;
 use super::frame::{Around, Frame};
 use super::reach::reach;
@@ -233,8 +234,10 @@ fn contacts_at_length(
     if patches.iter().any(|patch| !patch.is_inward) {
         patches.retain(|patch| !patch.is_inward);
     }
-    if patches.is_empty() {
-        patches.extend(soup::whole(&pair, scratch));
+    // Nothing touches what is wholly inside a solid; with a margin there may be walls near it, from the wrong side.
+    let is_inside = |scratch: &mut _| [a, b].iter().any(is_solid) && !apart(scratch);
+    if !patches.iter().any(Patch::touches) && (patches.is_empty() || is_inside(scratch)) {
+        patches = soup::whole(&pair, scratch).into_iter().collect();
     }
     let regions = region::regions(&part_a, &part_b, patches);
     regions.into_iter().map(|region| pair.manifold(region.normal, region.points, options)).collect()
@@ -265,6 +268,11 @@ fn is_hollow(placed: Placed) -> bool {
 }
 
 impl Patch {
+    /// Whether the surfaces are together here.
+    fn touches(&self) -> bool {
+        self.touches.iter().any(|touch| touch.depth >= -SAME_DEPTH)
+    }
+
     /// Whether the surfaces are in each other here.
     fn is_deep(&self) -> bool {
         self.touches.iter().any(|touch| touch.depth > SAME_DEPTH)
