@@ -91,6 +91,40 @@ fn a_cast_is_when_shapes_first_meet() {
     assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))));
 }
 
+/// Shapes that are apart at the start by hardly more than rounding have a normal, as all that do not intersect; where they part they do not meet.
+#[test]
+fn next_to_each_other_they_have_a_normal() {
+    let (block, here) = (Shape::cuboid([1.0; 3]).unwrap(), DAffine3::IDENTITY);
+    let cast = |gap: f64, motion: DVec3| {
+        let there = DAffine3::from_translation(DVec3::X * -(1.0 + gap));
+        let meet = query::intersects(&block, &there, &block, &here).unwrap();
+        (meet, query::cast_shape(&block, &there, motion, &block, &here, DVec3::ZERO).unwrap())
+    };
+    for gap in [1e-13, 4e-14, 2e-14, 1e-14, 1e-15, 0.0] {
+        let (meet, found) = cast(gap, DVec3::X);
+        let found = found.unwrap();
+        assert!(found.time <= gap && found.normal.is_none() == meet, "{gap}: {found:?}");
+        assert!(found.normal.is_none_or(|normal| (normal + DVec3::X).length() < 1e-6), "{gap}: {found:?}");
+        for motion in [DVec3::NEG_X, DVec3::ZERO] {
+            assert_eq!(cast(gap, motion).1.is_some(), meet, "{gap}, {motion}");
+        }
+    }
+    assert!(!cast(2e-14, DVec3::X).0 && cast(1e-15, DVec3::X).0);
+}
+
+/// Balls that come from afar stop no further off than others.
+#[test]
+fn from_afar_balls_come_as_near() {
+    let (ball, here) = (Shape::sphere(1.0).unwrap(), DAffine3::IDENTITY);
+    for far in [10.0, 1e2, 1e4, 1e6] {
+        let from = DAffine3::from_translation(DVec3::X * -far);
+        let motion = DVec3::X * 1.5 * far;
+        let found = query::cast_shape(&ball, &from, motion, &ball, &here, DVec3::ZERO).unwrap().unwrap();
+        let gap = -2.0 - (motion.x * found.time - far);
+        assert!((-1e-14 * far..=4e-10_f64.max(1e-14 * far)).contains(&gap), "{far}: {gap}");
+    }
+}
+
 /// Two meshes by their trees, and primitive by primitive.
 #[test]
 fn meshes_agree_with_all_pairs_of_primitives() {

@@ -14,7 +14,7 @@ use super::descent::{End, Goal, descend_after};
 use super::lean::{Lean, Search, Sure};
 use super::pairs::Pair;
 use super::task::{self, Task};
-use super::{TOUCHING_ERROR, Witness, closest_points, intersects};
+use super::{Outcome, TOUCHING_ERROR, Witness, closest_points, intersection, intersects};
 use crate::Support;
 use crate::difference::{Difference, MinkowskiDifference, SUPPORT_ERROR, SupportPoint};
 use crate::rounded::Core;
@@ -143,16 +143,29 @@ where
         }
         (lambda, gap_before) = (next, gap);
     }
-    Some(match normal {
-        None => {
-            let points = closest_points(a, placement_a, b, placement_b).points;
-            Impact { time: 0.0, normal: None, points }
-        }
-        Some(normal) => {
-            let (normal, points) = contact((&core_a, &at_a(lambda)), (&core_b, &at_b), normal, &known);
-            Impact { time: lambda, normal: Some(normal), points }
-        }
-    })
+    let Some(normal) = normal else { return at_once(a, placement_a, motion, b, placement_b) };
+    let (normal, points) = contact((&core_a, &at_a(lambda)), (&core_b, &at_b), normal, &known);
+    Some(Impact { time: lambda, normal: Some(normal), points })
+}
+
+/// The impact of objects that meet at the start, or are so little apart that no gap is left of it; `None` of those where they part.
+fn at_once<A, B>(
+    a: &A,
+    placement_a: &DAffine3,
+    motion: DVec3,
+    b: &B,
+    placement_b: &DAffine3,
+) -> Option<Impact>
+where
+    A: Support + ?Sized,
+    B: Support + ?Sized,
+{
+    let normal = match intersection(a, placement_a, b, placement_b) {
+        Outcome::Separated { axis } if axis.dot(motion) >= 0.0 => return None,
+        Outcome::Separated { axis } => Some(axis),
+        _ => None,
+    };
+    Some(Impact { time: 0.0, normal, points: closest_points(a, placement_a, b, placement_b).points })
 }
 
 /// The normal and the points of a contact, from the normal of a plane that parted the objects shortly before, and the points that the

@@ -2,6 +2,7 @@
 
 use fearless_simd::Simd;
 use glam::DVec3;
+use solid_convex::gjk::CAST_ERROR;
 use solid_convex::{Impact, Witness, unit_scale};
 
 use super::GAP_MIN;
@@ -23,7 +24,8 @@ pub(in crate::pair) fn cast<S: Simd>(simd: S, a: Placed, motion: DVec3, b: Place
     let scale = unit_scale(radius_a + radius_b + between.abs().element_sum() + motion.abs().element_sum());
     let (start, way, radii) = (between * scale, motion * scale, (radius_a + radius_b) * scale);
     let distance = start.length();
-    if distance - radii <= GAP_MIN {
+    // Of balls that are small beside the way a gap would be seen.
+    if distance - radii <= GAP_MIN || radii * CAST_ERROR < GAP_MIN {
         return None;
     }
     let (approach, square) = (-start.dot(way), way.length_squared());
