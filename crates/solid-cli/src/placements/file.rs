@@ -154,7 +154,9 @@ impl Lines<'_> {
         while end < bytes.len() && matches!(bytes[end], b'\n' | b'\r') {
             end += 1;
         }
-        self.line += bytes[self.at..end].iter().filter(|&&byte| byte == b'\n').count() as u64;
+        let ends_line =
+            |&i: &usize| bytes[i] == b'\n' || bytes[i] == b'\r' && bytes.get(i + 1) != Some(&b'\n');
+        self.line += (self.at..end).filter(ends_line).count() as u64;
         self.at = end;
         self.line
     }
@@ -199,6 +201,8 @@ mod tests {
         assert_eq!((line, message.as_str()), (4, "there is no object \"shpi\"; did you mean \"ship\"?"));
         let (line, message) = mistake("0,ship,1,0,0,0,0,0,1\n1,ship,1,0,0,0,0,0\n");
         assert_eq!((line, message.as_str()), (3, "there are 8 fields; expected 9, as in the header"));
+        let (line, _) = mistake("0,ship,1,0,0,0,0,0,1\r\r\n1,ship,1,0,0,0,0,0,1\r2,ship,1,0\r");
+        assert_eq!(line, 5);
         let (line, message) = mistake("0,\"ship\nwreck\",1,0,0,0,0,0,1");
         assert!(line == 2 && message.starts_with("there is no object \"ship\\nwreck\""), "{message}");
         assert_eq!(mistake("0,ship,1,0,0,0,0,0,0").0, 2);
@@ -226,7 +230,7 @@ mod tests {
         fn no_text_panics(body in "[0-9a-z,.\"\r\n -]{0,60}", any in ".{0,60}") {
             let _ = read(&any);
             if let Err((line, _)) = read(&format!("{HEADER}{body}")) {
-                prop_assert!(line >= 1 && line as usize <= 2 + body.matches('\n').count());
+                prop_assert!(line >= 1 && line as usize <= 2 + body.matches(['\n', '\r']).count());
             }
         }
     }

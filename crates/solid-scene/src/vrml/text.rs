@@ -37,6 +37,10 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<String, SceneError> {
     if !text.strip_prefix(HEADER).is_some_and(ends) {
         return fail("has no VRML97 header; expected the first line \"#VRML V2.0 utf8\"");
     }
+    if text.contains('\r') {
+        // As all that follows counts lines.
+        text = text.replace("\r\n", "\n").replace('\r', "\n");
+    }
     text.push('\n');
     Ok(text)
 }
@@ -60,6 +64,12 @@ mod tests {
         );
         assert!(message(b"").contains("no VRML97 header"));
         assert!(message(b"#VRML V2.0 utf88").contains("no VRML97 header"));
+    }
+
+    #[test]
+    fn lines_end_with_any_mark() {
+        let text = decode(Path::new("a.wrl"), b"#VRML V2.0 utf8\r\nShape {\r}\n\r").unwrap();
+        assert_eq!(text, "#VRML V2.0 utf8\nShape {\n}\n\n\n");
     }
 
     #[test]
