@@ -683,6 +683,15 @@ fn a_channel_without_a_node_is_passed_over() {
     assert_eq!(file.parse_animation(Some("1")).unwrap().warnings, [""; 0]);
 }
 
+/// A scene need not have nodes.
+#[test]
+fn an_empty_scene_is_one() {
+    let mut file = everything();
+    let expected = pose(&file.parse().unwrap(), 2.0);
+    file.add("scenes", json!({"name": "empty"}));
+    assert_eq!(pose(&file.parse().unwrap(), 2.0), expected);
+}
+
 /// A skin has no effect where no vertex follows a joint, and why is said.
 #[test]
 fn a_mesh_that_follows_no_joint_is_warned_of() {

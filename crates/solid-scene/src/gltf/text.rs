@@ -13,6 +13,13 @@ use serde_json::{Result, Value, from_slice, from_value, json};
 pub(super) struct Rest {
     nodes: Vec<Node>,
     animations: Vec<Animation>,
+    scenes: Vec<Scene>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct Scene {
+    nodes: Option<IgnoredAny>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -73,21 +80,29 @@ impl Rest {
             animations.flat_map(|(i, animation)| (0..animation.channels.len()).map(move |j| (i, j)));
         channels.filter(|&(animation, channel)| !self.has_target(animation, channel))
     }
+
+    /// What a file need not have, and the crate's types want: where, under what name, and what stands for nothing.
+    fn left_out(&self) -> impl Iterator<Item = (String, &str, Value)> {
+        let target = |(animation, channel)| {
+            (format!("/animations/{animation}/channels/{channel}/target"), "node", json!(0))
+        };
+        let empty = self.scenes.iter().enumerate().filter(|(_, scene)| scene.nodes.is_none());
+        let nodes = empty.map(|(i, _)| (format!("/scenes/{i}"), "nodes", json!([])));
+        self.without_target().map(target).chain(nodes)
+    }
 }
 
 /// Parses a text. In the crate's types a channel that names no node names node 0: ask [`Rest::has_target`].
 pub(super) fn parse(text: &[u8]) -> Result<(Root, Rest)> {
     check_object(text)?;
     let rest: Rest = from_slice(text)?;
-    if rest.without_target().next().is_none() {
+    if rest.left_out().next().is_none() {
         return Ok((from_slice(text)?, rest));
     }
     let mut value: Value = from_slice(text)?;
-    for (animation, channel) in rest.without_target() {
-        if let Some(Value::Object(target)) =
-            value.pointer_mut(&format!("/animations/{animation}/channels/{channel}/target"))
-        {
-            target.insert("node".to_owned(), json!(0));
+    for (place, name, nothing) in rest.left_out() {
+        if let Some(Value::Object(object)) = value.pointer_mut(&place) {
+            object.insert(name.to_owned(), nothing);
         }
     }
     Ok((from_value(value)?, rest))
