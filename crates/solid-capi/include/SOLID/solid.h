@@ -9,9 +9,10 @@
  *
  * Numbers. Coordinates and entries of placements are finite and at most 1e100 in magnitude; sizes are at least 0 and at
  * most 1e100. Answers are right beyond 1e-12 of the size of the two objects and their distance, in any unit of length;
- * within it objects touch, and objects that touch collide.
+ * within it objects touch, and objects that touch collide. Points, segments and triangles are decided against each other
+ * exactly, where their rounded coordinates are: what touches on paper may be apart by the rounding of its placement.
  *
- * Threads. Any function may be called from any thread at any time. Objects, shapes and responses are common to all
+ * Threads. Any function may be called from any thread while that runs. Objects, shapes and responses are common to all
  * threads. The current object is the one that the calling thread created or selected last; a thread that never did so
  * has the one that any thread created or selected last. A complex shape is built by one thread. Responses run on the
  * thread that called dtTest, without any lock held. Two threads that call dtTest at the same time both make the callbacks.

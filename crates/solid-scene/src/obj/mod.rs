@@ -31,10 +31,10 @@ fn parse(bytes: &[u8], stem: &str, split: bool) -> Result<Part> {
     parse_text(&text, stem, split).map_err(|fault| not_text(&text).unwrap_or(fault))
 }
 
-/// What to say of a text that is none: where there is a character that no text has. Where all else is right it does no harm.
+/// What to say of a text that is none: where there is a character, not of a comment, that no text has. Where all else is right it does no harm.
 fn not_text(text: &str) -> Option<Fault> {
     let is_of_no_text = |byte: &u8| matches!(byte, 0..=0x08 | 0x0e..=0x19 | 0x1b..=0x1f | 0x7f);
-    lines(text).find_map(|(line, text)| {
+    lines(text).filter(|(_, text)| !text.starts_with('#')).find_map(|(line, text)| {
         let byte = text.bytes().find(is_of_no_text)?;
         let message =
             format!("there is the byte {byte:#04x}, which no text has; expected an OBJ file, which is text");
@@ -141,7 +141,7 @@ mod tests {
         }
     }
 
-    /// Bytes of which nothing can be made are named; in a comment of a good file they do no harm.
+    /// Bytes of which nothing can be made are named; in a comment they do no harm.
     #[test]
     fn what_is_no_text_is_named() {
         let message = |byte: &str| {
@@ -149,6 +149,8 @@ mod tests {
         };
         assert_eq!(refused("\0\u{1}binary"), (Some(1), message("0x00")));
         assert_eq!(refused("\nx\r\nv 1 \u{1b}"), (Some(3), message("0x1b")));
+        let (line, told) = refused("# caf\u{7f}\nv 0 0 0\nf 1 2 3\n");
+        assert!(line == Some(3) && !told.contains("0x7f"), "{told}");
         assert_eq!(refused("v 0 0 0\rv\tx y\u{c}\nf \u{7f}"), (Some(3), message("0x7f")));
         assert!(parse(b"# \0\xff\nv 0 0 0\np 1\n\x1a", "stem", false).is_ok());
     }
