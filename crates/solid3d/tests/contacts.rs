@@ -546,6 +546,27 @@ fn a_margin_loses_nothing_of_what_leans_over() {
     }
 }
 
+/// A rim that is furthest at one of its corners has it once.
+#[test]
+fn no_point_of_a_rim_comes_twice() {
+    let (slab, below) = (Shape::cuboid([4.0, 1.0, 4.0]).unwrap(), at(0.0, -0.5, 0.0));
+    let mut rims = 0;
+    for shape in [Shape::cylinder(0.5, 1.0).unwrap(), Shape::cone(0.5, 1.0).unwrap()] {
+        for i in 0..64 {
+            let (x, z) = (f64::from(i) * TAU / 64.0).sin_cos();
+            let axis = DVec3::new(x, 0.0, z);
+            let tilt = DAffine3::from_axis_angle(axis, 0.003);
+            let found = only(&shape, &(at(0.0, 0.49, 0.0) * tilt), &slab, &below);
+            rims += usize::from(found.points.len() > 8);
+            for (k, x) in found.points.iter().enumerate() {
+                let apart = |y: &ContactPoint| x.point_on_a.distance(y.point_on_a);
+                assert!(found.points[..k].iter().all(|y| apart(y) > 1e-6), "{i}: {found:#?}");
+            }
+        }
+    }
+    assert!(rims > 100, "{rims}");
+}
+
 /// A flat hull has one face on either side, whatever its form, as a hull and as a polygon.
 #[test]
 fn a_flat_hull_is_one_face() {

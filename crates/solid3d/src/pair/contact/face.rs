@@ -324,16 +324,16 @@ impl<'a> Placed<'a> {
         Face { corners, normal: side, number: 0, cosine }
     }
 
-    /// A circle across the axis y: corners at places that stay with the body, and, when it is tilted, the furthest point.
+    /// A circle across the axis y: corners at places that stay with the body, and, where it reaches further than these, the furthest point.
     fn rim(&self, radius: f64, y: f64, first: u32, local: DVec3) -> Corners {
-        /// How far a circle reaches beyond a polygon of so many corners, in radii, at most: 1 - cos(pi / 16).
-        const BEYOND: f64 = 0.019_3;
         let corner = |(x, z): (f64, f64), vertex| self.corner(DVec3::new(radius * x, y, radius * z), vertex);
         let mut corners: Corners = (0..RIM).map(|i| corner(on_circle(i), first + i)).collect();
-        if BEYOND * radius * DVec2::new(local.x, local.z).length() > SAME_DEPTH {
-            let (x, z) = azimuth(local);
-            let turn = z.atan2(x) / TAU;
-            let before = (turn - turn.floor()) * f64::from(RIM);
+        let (x, z) = azimuth(local);
+        let turn = z.atan2(x) / TAU;
+        let before = (turn - turn.floor()) * f64::from(RIM);
+        let beside = (before - before.round()) * TAU / f64::from(RIM);
+        let beyond = 0.5 * beside * beside * radius;
+        if beyond * DVec2::new(local.x, local.z).length() > SAME_DEPTH {
             corners.insert((before as usize + 1).min(RIM as usize), corner((x, z), 2 * RIM + 2));
         }
         corners
