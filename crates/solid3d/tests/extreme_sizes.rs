@@ -292,3 +292,45 @@ fn a_triangle_next_to_nothing_is_a_point() {
         }
     }
 }
+
+/// A coordinate that is nothing beside the others takes no point out of a solid.
+#[test]
+fn a_point_that_is_nearly_on_a_plane_of_corners_stays_inside() {
+    let block = squares_of_a_cube().into_solid().unwrap();
+    let here = DAffine3::IDENTITY;
+    let ball = Shape::sphere(1e-3).unwrap();
+    for tiny in [0.0, 5e-324, 1e-323, 1e-200, 1e-100, 1e-20] {
+        for y in [tiny, -tiny] {
+            let point = DVec3::new(-0.75, y, 0.5);
+            assert!(query::contains_point(&block, &here, point).unwrap(), "{y:e}");
+            assert_eq!(query::closest_point(&block, &here, point).unwrap().distance, 0.0, "{y:e}");
+            assert_eq!(query::signed_distance(&block, &here, point).unwrap().distance, -0.25, "{y:e}");
+            assert!(
+                query::intersects(&block, &here, &ball, &DAffine3::from_translation(point)).unwrap(),
+                "{y:e}"
+            );
+        }
+    }
+}
+
+/// A cube from -1 to 1 whose sides are four squares each, of two triangles.
+fn squares_of_a_cube() -> Shape {
+    let (mut corners, mut triangles) = (Vec::new(), Vec::new());
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let first = corners.len() as u32;
+            for (u, v) in (-1..=1).flat_map(|u| (-1..=1).map(move |v| (f64::from(u), f64::from(v)))) {
+                let mut corner = DVec3::ZERO;
+                (corner[axis], corner[(axis + 1) % 3], corner[(axis + 2) % 3]) = (side, u, v);
+                corners.push(corner);
+            }
+            for at in [0, 1, 3, 4].map(|at| first + at) {
+                let (turned, square) = (side < 0.0, [at, at + 3, at + 4, at + 1]);
+                let order = if turned { [0, 3, 2, 1] } else { [0, 1, 2, 3] };
+                let [p, q, r, s] = order.map(|i: usize| square[i]);
+                triangles.extend([[p, q, r], [p, r, s]]);
+            }
+        }
+    }
+    Shape::mesh(corners, triangles).unwrap()
+}

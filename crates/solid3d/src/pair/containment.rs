@@ -14,6 +14,7 @@ use super::crossing::crossing;
 use super::frame::Frame;
 use super::reach::image_reach;
 use crate::bounds::Aabb;
+use crate::exact::plain;
 use crate::shape::Complex;
 use crate::tree::{PlacedBox, Relative};
 
@@ -41,6 +42,7 @@ impl<'a> PlacedSolid<'a> {
     /// Whether a point of the common frame is in the solid. The walk goes along a ray from the point: by the triangles that
     /// it crosses, the winding number is counted.
     pub fn contains(&self, point: DVec3, scratch: &mut Scratch) -> bool {
+        let point = plain(point);
         let bounds = self.mesh.bounds().inflated(self.relative.slack_in_a);
         let local = self.relative.b_to_a.transform_point3(point);
         if !bounds.contains(&Aabb::new(local, local)) {
@@ -65,7 +67,7 @@ impl<'a> PlacedSolid<'a> {
 
     fn triangle(&self, primitive: u32) -> [DVec3; 3] {
         let indices = self.mesh.primitive(primitive);
-        each([0, 1, 2], |i| self.to_common.transform_point3(self.mesh.vertices()[indices[i] as usize]))
+        each([0, 1, 2], |i| plain(self.to_common.transform_point3(self.mesh.vertices()[indices[i] as usize])))
     }
 }
 
