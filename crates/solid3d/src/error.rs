@@ -272,6 +272,14 @@ pub(crate) fn at_least_zero(argument: &'static str, value: f64) -> Result<()> {
     if value >= 0.0 { Ok(()) } else { Err(Error::Negative { argument, value }) }
 }
 
+/// Refuses coordinates that are not finite or out of range.
+pub(crate) fn bounded(argument: &'static str, value: DVec3) -> Result<()> {
+    match value.abs().cmple(DVec3::splat(MAGNITUDE_MAX)).all() {
+        true => Ok(()),
+        false => Err(Error::Coordinates { argument, value }),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,8 +4,7 @@ use glam::DVec3;
 use solid_convex::unit_scale;
 
 use super::boxes::{EVALUATION_ERROR, Search, Trilinear, earliest};
-use crate::error::{Error, Result};
-use crate::query::bounded;
+use crate::error::{Error, Result, bounded};
 
 /// Four vertices, at the start and at the end of their way.
 ///

@@ -9,7 +9,7 @@ use solid_convex::{Impact, gjk};
 use super::complex_convex::convex_in_complex;
 use super::frame::{Frame, ROUNDINGS, slack};
 use super::table::{PlacedComplex, PlacedConvex, convex};
-use super::{Placed, Relation, Scratch, intersection};
+use super::{Mirror, Placed, Relation, Scratch, intersection};
 use crate::bounds::Aabb;
 use crate::placement::inverse_linear;
 use crate::shape::Class;
@@ -37,7 +37,7 @@ pub(crate) fn cast(a: Placed, motion: DVec3, b: Placed, scratch: &mut Scratch) -
         (Class::Convex(_), Class::Convex(_)) => unreachable!("convex shapes were answered"),
         (Class::Complex(a), Class::Convex(b)) => complex_convex((a, at_a), motion, (b, at_b), scratch),
         (Class::Convex(a), Class::Complex(b)) => {
-            complex_convex((b, at_b), -motion, (a, at_a), scratch).map(mirrored)
+            complex_convex((b, at_b), -motion, (a, at_a), scratch).mirrored()
         }
         (Class::Complex(a), Class::Complex(b)) => complex_complex((a, at_a), motion, (b, at_b), scratch),
     }
@@ -49,11 +49,6 @@ fn at_start(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<Impact> {
         Relation::Common(points) => Some(Impact { time: 0.0, normal: None, points }),
         Relation::Separated { .. } => None,
     }
-}
-
-fn mirrored(impact: Impact) -> Impact {
-    use super::Mirror;
-    Impact { normal: impact.normal.mirrored(), points: impact.points.mirrored(), ..impact }
 }
 
 /// The earliest impact so far, and the time up to which one is of interest.

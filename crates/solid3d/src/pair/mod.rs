@@ -59,7 +59,7 @@ pub(crate) use ray::{Hits, Wanted, first_hit, ray_hits};
 pub(crate) use reach::{world_bounds, world_bounds_into};
 pub(crate) use scratch::Scratch;
 use solid_convex::gjk::Glance;
-use solid_convex::{Closest, Polytope, Witness, gjk};
+use solid_convex::{Closest, Impact, Polytope, Witness, gjk};
 pub use surface::SignedDistance;
 pub(crate) use surface::surface_point;
 pub use swept::Path;
@@ -191,6 +191,12 @@ impl Mirror for Relation {
 impl Mirror for Closest {
     fn mirrored(self) -> Self {
         Closest { distance: self.distance, points: self.points.mirrored() }
+    }
+}
+
+impl Mirror for Impact {
+    fn mirrored(self) -> Self {
+        Impact { normal: self.normal.mirrored(), points: self.points.mirrored(), ..self }
     }
 }
 

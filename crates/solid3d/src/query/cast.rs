@@ -1,10 +1,10 @@
 //! Shapes that move along straight lines.
 
 use glam::{DAffine3, DVec3};
-use solid_convex::{Impact, MAGNITUDE_MAX};
+use solid_convex::Impact;
 
 use super::{placed, unchecked};
-use crate::error::{Error, Result};
+use crate::error::{Result, bounded};
 use crate::pair::{self, Placed, Scratch};
 use crate::shape::Shape;
 
@@ -87,13 +87,5 @@ impl ShapeCast {
             point: pair::midpoint(a, b, &impact.points) + moved,
             normal: impact.normal,
         }
-    }
-}
-
-/// Whether each coordinate is finite and in range.
-pub(crate) fn bounded(argument: &'static str, value: DVec3) -> Result<()> {
-    match value.abs().cmple(DVec3::splat(MAGNITUDE_MAX)).all() {
-        true => Ok(()),
-        false => Err(Error::Coordinates { argument, value }),
     }
 }

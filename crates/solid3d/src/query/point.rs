@@ -5,15 +5,14 @@ use std::sync::LazyLock;
 
 use glam::{DAffine3, DVec3};
 
-use super::cast::bounded;
 use super::{Distance, distance, intersects, placed, unchecked};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, bounded};
 use crate::pair::{self, ClosestPoint, Placed};
 use crate::placement::direction;
 use crate::shape::{Shape, ShapeKind};
 
 /// Whether a point is in a placed shape: in a convex shape or a solid mesh, or on the surface of a mesh or a complex shape.
-/// Exact for solid meshes, for corners as placed; for convex shapes right beyond 1e-12 of the size of the data.
+/// Right beyond 1e-12 of the size of the data; of solid meshes beyond the rounding of their placed corners, some 1e-15 of it.
 ///
 /// ```
 /// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};

@@ -8,6 +8,7 @@ use std::ops::{Index, IndexMut};
 use slotmap::{Key, KeyData};
 use solid_convex::simd::prefetch;
 
+use super::candidates::PairKey;
 use super::object::{Object, ObjectId};
 use crate::broad::Proxy;
 use crate::broad::room::push;
@@ -115,6 +116,16 @@ impl Arena {
     pub fn iter(&self) -> impl Iterator<Item = (ObjectId, &Object)> {
         let slots = (0..).zip(&self.slots);
         slots.filter_map(|(at, slot)| slot.object.as_ref().map(|object| (self.id_of(at), object)))
+    }
+
+    /// Two of them in the order of pairs.
+    pub fn in_order(&self, a: ObjectId, b: ObjectId) -> (ObjectId, ObjectId) {
+        if self[a].order <= self[b].order { (a, b) } else { (b, a) }
+    }
+
+    /// The place of a pair in the order; the earlier object first.
+    pub fn key(&self, a: ObjectId, b: ObjectId) -> PairKey {
+        (self[a].order, self[b].order)
     }
 
     /// Their ids.

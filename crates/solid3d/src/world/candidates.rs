@@ -279,7 +279,7 @@ impl World {
         for &PairChange { pair, proxies, overlaps } in broad.changes() {
             if overlaps {
                 let [a, b] = proxies.map(|proxy| objects.id_of(proxy));
-                let (a, b) = if objects[a].order <= objects[b].order { (a, b) } else { (b, a) };
+                let (a, b) = objects.in_order(a, b);
                 candidates.begin(pair, a, b);
             } else {
                 candidates.end(pair);
@@ -323,15 +323,5 @@ impl World {
             clearances.grow(boxes.iter_mut().map(|(slot, bounds)| (objects.id_of(*slot), bounds)));
         });
         broad.flush();
-    }
-
-    /// Two objects of the world in the order of pairs.
-    pub(super) fn in_order(&self, a: ObjectId, b: ObjectId) -> (ObjectId, ObjectId) {
-        if self.objects[a].order <= self.objects[b].order { (a, b) } else { (b, a) }
-    }
-
-    /// The place of a pair in the order; the earlier object first.
-    pub(super) fn key(&self, a: ObjectId, b: ObjectId) -> PairKey {
-        (self.objects[a].order, self.objects[b].order)
     }
 }

@@ -4,10 +4,10 @@ use glam::{DAffine3, DVec3};
 use solid_convex::gjk::CAST_ERROR;
 
 use super::{ObjectId, World};
-use crate::error::Result;
+use crate::error::{Result, bounded};
 use crate::pair::{Placed, world_bounds};
 use crate::placement;
-use crate::query::{ShapeCast, bounded, cast_of};
+use crate::query::{ShapeCast, cast_of};
 use crate::shape::Shape;
 use crate::tree::TreeRay;
 

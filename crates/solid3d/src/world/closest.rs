@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::{ObjectId, World};
 use crate::bounds::Aabb;
 use crate::broad::matters;
-use crate::error::{Result, at_least_zero};
-use crate::query::{self, ClosestPoint, bounded};
+use crate::error::{Result, at_least_zero, bounded};
+use crate::query::{self, ClosestPoint};
 
 /// The point of an object that is closest to another point.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -72,7 +72,7 @@ impl Examiner<'_> {
             (Some(_), outcome) => was_plain && outcome == Outcome::Plain,
         };
         if !is_as_it_was {
-            let key = (self.objects[a].order, self.objects[b].order);
+            let key = self.objects.key(a, b);
             push_of_part(&mut news.changed, (place, key, outcome));
         }
     }

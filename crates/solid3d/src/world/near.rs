@@ -73,7 +73,7 @@ impl World {
         in_pool(Workers::is_worth_entering(self.work_ahead()), || self.look_at_changed());
         let mut near: Vec<Near> = self.candidates.near().copied().collect();
         // Each key waits for the memory of two objects.
-        near.sort_by_cached_key(|near| self.key(near.a, near.b));
+        near.sort_by_cached_key(|near| self.objects.key(near.a, near.b));
         near
     }
 

@@ -207,7 +207,7 @@ impl World {
     /// The response that holds for a pair.
     pub fn response(&self, a: ObjectId, b: ObjectId) -> Result<Response> {
         self.check_pair(a, b)?;
-        let (first, second) = self.in_order(a, b);
+        let (first, second) = self.objects.in_order(a, b);
         Ok(self.responses.of(first, second))
     }
 

@@ -136,7 +136,7 @@ impl World {
         }
         // What depends on the way of a swept object is brought up to date with its box.
         self.refresh();
-        let (a, b) = self.in_order(a, b);
+        let (a, b) = self.objects.in_order(a, b);
         let mut described = Vec::new();
         let Self { objects, responses, caching, workers, statistics, .. } = self;
         let examiner = Examiner { objects, responses, caching: *caching };

@@ -6,11 +6,11 @@ use solid_convex::unit_scale;
 
 use super::DynamicTree;
 use super::fat_box::FatBox;
-use super::node::{Kind, lanes};
+use super::node::Kind;
 use super::tree::ROOT;
 use crate::bounds::Aabb;
 use crate::broad::{Proxy, ROUNDING_ALONG, bound_along, bound_in};
-use crate::tree::{RayProbe, Space, TreeRay, push_unless_far};
+use crate::tree::{RayProbe, Space, TreeRay, bits, push_unless_far};
 
 /// Coordinates whose greatest is from this on, up to its inverse, are told by a [`RayProbe`].
 const REACH_MIN: f64 = 1.0 / (1_u64 << 40) as f64;
@@ -57,7 +57,7 @@ impl DynamicTree {
                     let node = &self.tree.nodes[index as usize];
                     let (hits, enters) = probe.entries(simd, node.sides(), left);
                     let from = stack.len();
-                    for lane in lanes(hits) {
+                    for lane in bits(hits) {
                         match node.child(lane) {
                             Kind::Leaf(proxy) => self.tight.prefetch(proxy),
                             Kind::Node(index) => prefetch(&self.tree.nodes[index as usize]),
@@ -105,7 +105,7 @@ impl DynamicTree {
         stack.push(ROOT);
         while let Some(index) = stack.pop() {
             let node = &self.tree.nodes[index as usize];
-            for lane in lanes(node.overlap_mask(simd, region)) {
+            for lane in bits(node.overlap_mask(simd, region)) {
                 match node.child(lane) {
                     Kind::Leaf(proxy) => self.visit_leaf(proxy, overlaps, &mut 0.0, visit),
                     Kind::Node(index) => stack.push(index),

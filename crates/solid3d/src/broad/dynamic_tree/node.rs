@@ -200,18 +200,6 @@ fn best(lanes: &[f32; WIDTH], is_better: impl Fn(f32, f32) -> bool) -> f32 {
     better(a, b)
 }
 
-/// Visits the set bits of a mask of lanes, lowest first.
-#[inline]
-pub(super) fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (mask != 0).then(|| {
-            let lane = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            lane
-        })
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use rand::Rng;

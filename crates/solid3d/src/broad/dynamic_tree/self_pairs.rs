@@ -3,9 +3,10 @@
 use fearless_simd::Simd;
 use solid_convex::simd::{dispatch, prefetch};
 
-use super::node::{Kind, Place, lanes};
+use super::node::{Kind, Place};
 use super::tree::Tree;
 use crate::broad::Proxy;
+use crate::tree::bits;
 
 /// Two lanes whose boxes overlap.
 pub(super) type Lanes = [Place; 2];
@@ -44,19 +45,19 @@ impl Tree {
             match [a, b] {
                 [Kind::Node(a), Kind::Node(b)] => {
                     visits += 2;
-                    for lane in lanes(self.nodes[a as usize].overlap_mask(simd, &box_b)) {
+                    for lane in bits(self.nodes[a as usize].overlap_mask(simd, &box_b)) {
                         self.meet(simd, [a, b], lane, !0, stack, visit);
                     }
                 }
                 [Kind::Leaf(_), Kind::Node(below)] => {
                     visits += 1;
-                    for lane in lanes(self.nodes[below as usize].overlap_mask(simd, &box_a)) {
+                    for lane in bits(self.nodes[below as usize].overlap_mask(simd, &box_a)) {
                         self.found([places[0], Place::new(below, lane)], stack, visit);
                     }
                 }
                 [Kind::Node(below), Kind::Leaf(_)] => {
                     visits += 1;
-                    for lane in lanes(self.nodes[below as usize].overlap_mask(simd, &box_b)) {
+                    for lane in bits(self.nodes[below as usize].overlap_mask(simd, &box_b)) {
                         self.found([Place::new(below, lane), places[1]], stack, visit);
                     }
                 }
@@ -78,7 +79,7 @@ impl Tree {
         visit: &mut impl FnMut(Proxy, Proxy),
     ) {
         let lane_box = self.nodes[a as usize].lane_box(lane);
-        for other in lanes(self.nodes[b as usize].overlap_mask(simd, &lane_box) & others) {
+        for other in bits(self.nodes[b as usize].overlap_mask(simd, &lane_box) & others) {
             self.found([Place::new(a, lane), Place::new(b, other)], stack, visit);
         }
     }

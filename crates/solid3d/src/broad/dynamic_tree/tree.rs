@@ -9,9 +9,10 @@ use fearless_simd::Simd;
 use solid_convex::simd::dispatch;
 
 use super::fat_box::FatBox;
-use super::node::{Child, Kind, Node, Place, PlaceCell, WIDTH, lanes};
+use super::node::{Child, Kind, Node, Place, PlaceCell, WIDTH};
 use crate::broad::Proxy;
 use crate::broad::room::{push, room};
+use crate::tree::bits;
 
 /// No node stays deeper than this after a flush; recursion and stacks are bounded by it.
 pub(super) const DEPTH_MAX: usize = 64;
@@ -165,7 +166,7 @@ impl Tree {
         while let Some(at) = stack.pop() {
             visits += 1;
             let node = &self.nodes[at as usize];
-            for lane in lanes(node.overlap_mask(simd, b)) {
+            for lane in bits(node.overlap_mask(simd, b)) {
                 match node.child(lane) {
                     Kind::Node(below) => stack.push(below),
                     Kind::Leaf(proxy) => visit(proxy),

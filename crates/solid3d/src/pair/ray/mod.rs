@@ -11,10 +11,10 @@ pub(crate) use convex::first_hit;
 use glam::{DMat3, DVec3};
 
 use super::{Placed, Scratch};
-use crate::error::{Error, Result, at_least_zero};
+use crate::error::{Error, Result, at_least_zero, bounded};
 use crate::placement::direction;
 use crate::shape::Class;
-use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN};
+use solid_convex::MAGNITUDE_MIN;
 
 /// A ray or a segment: the points `origin + t * direction` of the world for `t` from 0 to `max`.
 ///
@@ -57,10 +57,6 @@ impl Ray {
 
     /// The ray itself when it can be cast.
     pub(crate) fn checked(&self) -> Result<&Ray> {
-        let bounded = |argument, value: DVec3| match value.abs().cmple(DVec3::splat(MAGNITUDE_MAX)).all() {
-            true => Ok(()),
-            false => Err(Error::Coordinates { argument, value }),
-        };
         bounded("ray.origin", self.origin)?;
         bounded("ray.direction", self.direction)?;
         if self.direction.abs().max_element() < MAGNITUDE_MIN {
