@@ -1,8 +1,8 @@
 //! The directions of vectors of any length.
 
-use std::ops::RangeInclusive;
-
 use glam::DVec3;
+
+use crate::size::PLAIN;
 
 /// The unit vector along a vector of any length; `None` for zero.
 pub fn direction(v: DVec3) -> Option<DVec3> {
@@ -12,8 +12,6 @@ pub fn direction(v: DVec3) -> Option<DVec3> {
 /// The length of a vector, and the unit vector along it, without overflow or underflow on the way; `None` for zero.
 #[inline(always)]
 pub fn length_and_direction(v: DVec3) -> Option<(f64, DVec3)> {
-    /// Squares of lengths that lose no digits.
-    const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
     let square = v.length_squared();
     if PLAIN.contains(&square) {
         let length = square.sqrt();

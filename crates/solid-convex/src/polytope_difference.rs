@@ -1,15 +1,11 @@
 //! The Minkowski difference of two placed polytopes, for kernels.
 
-use std::ops::RangeInclusive;
-
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::{DAffine3, DVec3};
 
 use crate::difference::{Difference, MinkowskiDifference, NO_VERTEX, SupportPoint, start_along};
+use crate::size::PLAIN_SQUARES;
 use crate::{MAGNITUDE_MAX, Polytope, Support, unit_scale};
-
-/// Squared lengths of the axes of a plain placement: no product of theirs overflows or loses digits.
-const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
 
 /// The least squared volume between the axes of a plain placement, brought to unit length. Far above what rounding makes of nothing.
 const PLAIN_VOLUME_SQUARED: f64 = 1e-18;

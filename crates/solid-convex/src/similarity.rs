@@ -1,19 +1,15 @@
 //! Placements that turn and scale alike in all directions: known nearly, by two numbers, or closely, of two at once, by wide instructions.
 
-use std::ops::RangeInclusive;
-
 use fearless_simd::{Simd, f64x2, f64x4, mask64x4, prelude::*};
 use glam::{DAffine3, DVec3};
 
 use crate::MAGNITUDE_MAX;
+use crate::size::PLAIN_SQUARES;
 
 /// How far the scalar products of a placement's rows, or columns, relative to their squared length, may be from those of
 /// perpendicular ones of equal length. Products of a dozen rotations in f64 are within it. By Gershgorin's circles what it lets through
 /// changes no length by more than one and a half of it, when it is asked of rows, and no less of columns.
 pub const SKEW_MAX: f64 = 256.0 / (1u64 << 53) as f64;
-
-/// Squares of scales that are plain: no product of a few of them overflows or loses digits.
-const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
 
 /// How much less the squared volume of a placement may be than the cube of its mean squared stretch, relative to that, to be taken for nearly a similarity:
 /// some hundred times the rounding error of the two.

@@ -1,6 +1,7 @@
 //! What sizes a shape may have.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
 /// The largest magnitude of a coordinate, a size or an entry of a placement, in its own unit.
 ///
@@ -9,6 +10,12 @@ pub const MAGNITUDE_MAX: f64 = 1e100;
 
 /// The least size of a shape, in its own unit: products of three sizes still do not vanish.
 pub const MAGNITUDE_MIN: f64 = 1e-100;
+
+/// Squares of lengths that lose no digits.
+pub(crate) const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
+
+/// Squares of scales that are plain: no product of a few of them overflows or loses digits.
+pub(crate) const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
 
 /// A size that no shape can have.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::{Nearest, Penetration};
 use crate::difference::{Difference, SUPPORT_ERROR};
-use crate::gjk::TOUCHING_ERROR;
+use crate::gjk::BEYOND_TOUCHING;
 use crate::simd::dispatch;
 use crate::{Support, Witness};
 
@@ -25,9 +25,6 @@ const REACH: f64 = 4.0;
 
 /// So much may the height of the facet of two edges at right angles be off.
 const TILT: f64 = CROSS_ERROR * REACH;
-
-/// Depths that are known to be at least this are beyond what GJK may take for a gap.
-const DEPTH_MIN: f64 = 4.0 * TOUCHING_ERROR;
 
 /// Bounds that are further apart, in the unit of the difference, are for the search to narrow: where edges are nearly parallel, and
 /// span a facet that may be the nearest.
@@ -87,7 +84,7 @@ struct Slabs {
 }
 
 /// How deep two parallelepipeds are in each other; `None` for other objects, and where that is not certain to
-/// [`BOUNDS_APART_MAX`], or not more than [`DEPTH_MIN`].
+/// [`BOUNDS_APART_MAX`], or not more than [`BEYOND_TOUCHING`].
 pub(super) fn penetration<A, B>(difference: &Difference<A, B>) -> Option<Penetration>
 where
     A: Support + ?Sized,
@@ -96,7 +93,7 @@ where
     let (local, edges, middle) = difference.half_edges()?;
     let zonotope = dispatch!(simd => Zonotope::new(simd, edges, middle));
     let (facet, lower) = zonotope.nearest()?;
-    let certain = lower > DEPTH_MIN && facet.height - lower <= BOUNDS_APART_MAX;
+    let certain = lower > BEYOND_TOUCHING && facet.height - lower <= BOUNDS_APART_MAX;
     if !certain {
         return None;
     }

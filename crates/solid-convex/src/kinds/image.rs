@@ -1,13 +1,9 @@
 //! How far the images of what the kinds consist of reach, under linear maps: closed forms of [`image_bounds`](crate::Support::image_bounds).
 
-use std::ops::RangeInclusive;
-
 use glam::DVec3;
 
+use crate::size::PLAIN;
 use crate::unit_scale;
-
-/// Squares of lengths that lose no digits.
-pub(super) const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
 
 /// How far the image of a segment, disc or ball of radius 1 reaches along each axis, from the images of one, two or three unit vectors that
 /// span it at right angles: the lengths of the rows of the map. Rows are right up to a rounding error of the longest.

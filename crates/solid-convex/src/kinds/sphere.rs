@@ -2,9 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::image::{PLAIN, reach, symmetric};
+use super::image::{reach, symmetric};
 use crate::gjk::Balls;
-use crate::size::positive;
+use crate::size::{PLAIN, positive};
 use crate::{Locus, SizeError, Support, unit_scale};
 
 /// A ball centred at the origin (thesis, section 4.4.2).

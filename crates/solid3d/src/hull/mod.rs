@@ -27,6 +27,9 @@ use facets::Polygons;
 use glam::DVec3;
 pub(crate) use outline::outline;
 
+/// The most points that [`Hull::of`] takes.
+pub(crate) const POINTS_MAX: usize = (u32::MAX / 8) as usize;
+
 /// The convex hull of finitely many points, as indices into the caller's points.
 ///
 /// The points are not kept: a deformed copy of them can be used with the same hull as long as it stays convex.
@@ -76,7 +79,7 @@ impl Hull {
     /// assert_eq!(Hull::of(&[]), None);
     /// ```
     pub fn of(points: &[DVec3]) -> Option<Hull> {
-        assert!(points.len() <= (u32::MAX / 8) as usize, "too many points: {}", points.len());
+        assert!(points.len() <= POINTS_MAX, "too many points: {}", points.len());
         if let Some(i) = points.iter().position(|p| !p.is_finite()) {
             panic!("point {i} is not finite: {}", points[i]);
         }

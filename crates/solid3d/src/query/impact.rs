@@ -103,7 +103,7 @@ pub fn time_of_impact_deforming(
     options: &ImpactOptions,
 ) -> Result<Option<Impact>> {
     let (a, b) = (moving("a", ["from_a", "to_a"], a)?, moving("b", ["from_b", "to_b"], b)?);
-    impact_of(&a, &b, options, &mut Scratch::default())
+    Scratch::with(|scratch| impact_of(&a, &b, options, scratch))
 }
 
 /// The same for what was checked, but for the options.

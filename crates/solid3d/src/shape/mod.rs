@@ -34,10 +34,7 @@ pub use solid::OpenEdge;
 pub(crate) use surface::{Surface, boundary};
 
 use crate::error::{Error, Result};
-use crate::hull::Hull;
-
-/// The most points that [`Hull::of`] takes.
-const POINTS_MAX: usize = (u32::MAX / 8) as usize;
+use crate::hull::{Hull, POINTS_MAX};
 
 /// Geometry in its own space. Cheap to clone: clones share the geometry.
 ///

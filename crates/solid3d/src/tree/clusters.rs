@@ -16,14 +16,11 @@ use crate::threads::both;
 use crate::threads::share;
 
 /// Fewer primitives have no clusters: a tree of 5,000 triangles is built fast enough, and with clusters a pair of them takes 5 % more box
-/// tests. Of 100,000 it is 2 %, and as many tests of primitives.
+/// tests. Of 100,000 it is 2 %, and as many tests of primitives. So many are worth another thread.
 const PRIMITIVES_MIN: usize = 1 << 13;
 
 /// Primitives for each cell of the grid. A surface goes through some of the cells only, and has several times as many in each.
 const PRIMITIVES_PER_CELL: usize = 32;
-
-/// So many primitives are worth another thread.
-const PRIMITIVES_MANY: usize = 1 << 13;
 
 /// Equal cells that divide a box.
 struct Grid {
@@ -122,7 +119,7 @@ impl Clusters {
         }
         let (mut joints, mut by_cell, mut ends) = (Vec::new(), Vec::new(), Vec::new());
         let (cut, sort) = (|| joints = cut(&mut items, &counts), || (by_cell, ends) = sort(&cells, &counts));
-        both(count >= PRIMITIVES_MANY, cut, sort);
+        both(true, cut, sort);
         let mut start = 0;
         let mut clusters = Vec::with_capacity(items.len() + 1);
         for cell in items.iter().map(|item| item.index as usize) {
@@ -184,7 +181,7 @@ fn fill(grid: &Grid, cells: &mut [u32], pack: &(impl Fn(u32) -> PackedBox + Sync
         table
     };
     #[cfg(feature = "rayon")]
-    if share(cells.len(), PRIMITIVES_MANY) {
+    if share(cells.len(), PRIMITIVES_MIN) {
         // A table for each thread. What is in a cell does not depend on who found it.
         let part = cells.len().div_ceil(rayon::current_num_threads());
         let parts = cells.par_chunks_mut(part).enumerate();

@@ -25,6 +25,8 @@ use fearless_simd::{Simd, f32x8, f64x4};
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::simd::{each, part};
 
+use crate::bounds::abs;
+
 /// 8u for `f32`: see the module.
 pub(super) const MARGIN: f64 = 4.0 * f32::EPSILON as f64;
 
@@ -219,9 +221,4 @@ fn lower<S: Simd>(simd: S, v: f64x4<S>) -> f64x4<S> {
 #[inline(always)]
 fn within<S: Simd>(simd: S, v: f64x4<S>) -> f64x4<S> {
     v.simd_gt(one(simd, -HUGE)).select(v, one(simd, -HUGE)).min(one(simd, HUGE))
-}
-
-#[inline(always)]
-fn abs(m: &DMat3) -> DMat3 {
-    DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs())
 }

@@ -14,6 +14,7 @@ use super::patch::{Patch, Vector, dot, transposed_product};
 use super::slabs::{Eight, Slabs};
 use super::squares::{raised, reaching};
 use super::{Place, Tree};
+use crate::placement::row_norm;
 
 /// Two trees, in a space in which distances count.
 pub(crate) struct Facing<'t> {
@@ -60,8 +61,7 @@ impl<'t> Faces<'t> {
         let [at_a, at_b] = &facing.placements;
         let (of_a, of_b) = (linear(at_a, a), linear(at_b, b));
         let offset = at_a.transform_point3(a.normal.origin) - at_b.transform_point3(b.normal.origin);
-        let reach = |m: &DMat3| (m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs()).max_element();
-        let unit = reach(&of_a) + reach(&of_b) + offset.abs().max_element();
+        let unit = row_norm(&of_a) + row_norm(&of_b) + offset.abs().max_element();
         if !unit.is_normal() || !unit.recip().is_normal() {
             return None;
         }

@@ -95,7 +95,7 @@ impl World {
     ) -> Result<Option<Impact>> {
         self.check_pair(a, b)?;
         let [a, b] = [a, b].map(|id| self.objects[id].moving());
-        impact_of(&a, &b, options, &mut Scratch::default())
+        Scratch::with(|scratch| impact_of(&a, &b, options, scratch))
     }
 
     /// Where an object is tested.

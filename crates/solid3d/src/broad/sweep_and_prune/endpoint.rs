@@ -30,6 +30,12 @@ impl Endpoint {
     pub fn side(&self) -> Side {
         if self.key & 1 == 0 { Side::Lower } else { Side::Upper }
     }
+
+    /// Whether `self` may stand before `other`: minima come before maxima at equal values, so touching counts.
+    pub fn precedes(&self, other: &Endpoint) -> bool {
+        self.value < other.value
+            || self.value == other.value && (self.side() == Side::Lower || other.side() == Side::Upper)
+    }
 }
 
 /// The endpoints on one axis.

@@ -18,7 +18,7 @@ mod pair_set;
 
 use super::{BroadPhase, Counters, PairChange, PairId, Proxy, assert_valid, matters};
 use crate::bounds::Aabb;
-use endpoint::{Endpoint, Sequence, Side};
+use endpoint::{Sequence, Side};
 use pair_set::PairSet;
 
 /// Swaps a frame may spend, per box alive, before further moves are sorted in as a batch. A swap costs about 9 ns, a
@@ -358,14 +358,6 @@ impl BroadPhase for SweepAndPrune {
         });
         let in_use = self.states.iter().filter(|s| !matches!(s, State::Absent | State::Gone)).count();
         assert_eq!(in_use as u64, self.alive);
-    }
-}
-
-impl Endpoint {
-    /// Whether `self` may stand before `other`: minima come before maxima at equal values, so touching counts.
-    fn precedes(&self, other: &Endpoint) -> bool {
-        self.value < other.value
-            || self.value == other.value && (self.side() == Side::Lower || other.side() == Side::Upper)
     }
 }
 
