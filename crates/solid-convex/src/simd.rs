@@ -5,7 +5,7 @@
 //! is chosen here, at run time. It changes no bit of any answer: no kernel contracts a product and a sum, and ties go to the
 //! lowest lane or index.
 //!
-//! What walks the trees of meshes is compiled once more, for AVX-512, where a machine has it: it takes up to a fifth less time there. Questions
+//! What walks the trees of meshes, but along rays, is compiled once more, for AVX-512, where a machine has it: it takes up to a fifth less time there. Questions
 //! about two convex shapes and broad phases run the AVX2 code, being no faster, some slower by 3 to 8 %. SSE2 alone runs the scalar code, which
 //! the compiler vectorises by itself. Each further copy of the kernels costs seconds of everybody's build.
 //!

@@ -7,12 +7,12 @@ use robust::{Coord, Coord3D};
 
 /// No predicate loses a bit while coordinates other than zero are at least this: their last bits are at least
 /// 2^(-300 - 52), and the product of three such bits is still a positive number.
-pub(crate) const MAGNITUDE_MIN: f64 = power_of_two(-300);
+pub(crate) const PREDICATE_MIN: f64 = power_of_two(-300);
 
 /// A point in a unit near the size of the data, where coordinates too small for exact products count as zero.
 #[inline]
 pub(crate) fn plain(p: DVec3) -> DVec3 {
-    p.map(|x| if x.abs() < MAGNITUDE_MIN { 0.0 } else { x })
+    p.map(|x| if x.abs() < PREDICATE_MIN { 0.0 } else { x })
 }
 
 /// Positive where `a`, `b`, `c` turn to the left.

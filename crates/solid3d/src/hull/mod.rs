@@ -1,4 +1,4 @@
-//! The convex hull of points, with the adjacency of its vertices that hill climbing needs.
+//! The convex hull of points, with the adjacency of its vertices, for those who climb it. (The library's own hulls look support points up.)
 //!
 //! All decisions are exact: they are signs of determinants from `robust`. So no tolerance is asked for, and none is
 //! hidden; nearly coplanar points make slender facets, exactly coplanar ones make one facet.

@@ -6,7 +6,7 @@ use solid_convex::{MAGNITUDE_MAX, unit_scale};
 use super::Polygon;
 use super::chain::{Base, Chain, scaled};
 use super::error::{PolygonError, Result};
-use super::exact::{MAGNITUDE_MIN, flatten, same_strict_side, turn};
+use super::exact::{fits, flatten, same_strict_side, turn};
 use super::segment;
 use crate::bounds::Aabb;
 
@@ -24,9 +24,7 @@ pub(super) fn meets(polygon: &Polygon, bounds: &Aabb) -> Result<bool> {
     let corner = |x: DVec3| x.map(|x| if x.is_finite() { x } else { 2.0 * reach * x.signum() });
     let bounds = Aabb::new(corner(bounds.min), corner(bounds.max));
     let box_reach = bounds.min.abs().max(bounds.max.abs());
-    let fits = |x: f64| x == 0.0 || (MAGNITUDE_MIN..=1e80).contains(&x.abs());
-    let box_fits = [bounds.min, bounds.max].iter().all(|p| p.to_array().into_iter().all(fits));
-    if polygon.fits_predicates && box_fits {
+    if polygon.fits_predicates && [bounds.min, bounds.max].into_iter().all(fits) {
         return Ok(meets_chain(&polygon.chain, &bounds));
     }
     let scale = unit_scale(reach.max(box_reach.max_element()));

@@ -1,14 +1,19 @@
 //! Exact signs for polygons, and the coordinates for which they are exact.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
-use crate::exact::power_of_two;
-pub(super) use crate::exact::{MAGNITUDE_MIN, flatten, height, orient2d as turn, plain, same_strict_side};
+use crate::exact::{PREDICATE_MIN, power_of_two};
+pub(super) use crate::exact::{flatten, height, orient2d as turn, plain, same_strict_side};
 pub(super) use crate::exact::{segments_meet, segments_meet_in_space};
 
 /// No predicate overflows while coordinates are at most this: a determinant of three differences stays below
 /// 6 * (2^301)^3, with room for the splitting constant of exact products.
-pub(super) const MAGNITUDE_MAX: f64 = power_of_two(300);
+const PREDICATE_MAX: f64 = power_of_two(300);
+
+/// Whether signs are exact of a point as it is.
+pub(super) fn fits(p: DVec3) -> bool {
+    p.to_array().into_iter().all(|x| x == 0.0 || (PREDICATE_MIN..=PREDICATE_MAX).contains(&x.abs()))
+}
 
 /// Whether two segments of a plane cross: each has its ends strictly on both sides of the other's line.
 pub(super) fn segments_cross(p: DVec2, q: DVec2, r: DVec2, s: DVec2) -> bool {

@@ -128,8 +128,7 @@ impl Polygon {
         if !allowed {
             return Err(PolygonError::NotFlat { index: farthest, deviation: plane.deviation, tolerance });
         }
-        let fits = |x: f64| x == 0.0 || (exact::MAGNITUDE_MIN..=exact::MAGNITUDE_MAX).contains(&x.abs());
-        let fits_predicates = vertices.iter().all(|p| p.to_array().into_iter().all(fits));
+        let fits_predicates = vertices.iter().copied().all(exact::fits);
         let chain = if fits_predicates {
             Chain::new(vertices, plane.normal)
         } else {

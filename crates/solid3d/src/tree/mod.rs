@@ -29,7 +29,8 @@
 //! | `ray_probe` | a ray, or a box that moves along one, against eight boxes |
 //! | `ray`, `cast_pairs` | queries along a ray or for a moving box, for two trees that move; nearest first |
 //! | `furthest` | what is furthest along a direction |
-//! | `nearest`, `metric`, `nearest_pairs` | branch and bound: one query, tree against tree |
+//! | `insertion`, `broods` | subtrees that are yet to be visited, the nearest first |
+//! | `near`, `nearest`, `metric`, `squares`, `nearest_pairs` | branch and bound: one query, tree against tree |
 //! | `slabs`, `patch` | how flat what hangs in each lane is; the lane's box cut by that |
 //! | `parting`, `facing` | by that, for tree against tree: what is apart though boxes overlap; better bounds on distances |
 //!
@@ -39,7 +40,7 @@
 //! 2. No overlapping pair is lost, whatever the affine map, the sizes and the distance from the origin; none nearer than the
 //!    reported distance either.
 //! 3. A build of boxes scaled by a power of two gives the same bits; so does a refit of unchanged boxes.
-//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but the upper nodes of a build, the search for slabs and that for what is furthest.
+//! 4. The depth is bounded ([`DEPTH_MAX`]), and nothing recurses but a build, the search for slabs and that for what is furthest.
 //! 5. Every order is a function of the input alone, not of the number of threads.
 
 mod beam;

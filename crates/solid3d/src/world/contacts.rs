@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::query::{self, ContactOptions, Manifold};
 
 impl World {
-    /// All contacts of two objects where they are now, whatever their response: see [`query::contacts`](crate::query::contacts). In the
+    /// All contacts of two objects where they are now, whatever their response: see [`query::contacts`]. In the
     /// order in which they are given, normals point from `b` to `a`. Nothing is cached.
     ///
     /// ```
