@@ -258,3 +258,25 @@ fn winding_numbers_tell_inside_from_outside() {
     println!("{inside} of {cases} inside");
     assert!((0.3..=0.7).contains(&(f64::from(inside) / f64::from(cases))));
 }
+
+/// Next to an edge the winding number keeps as many digits as the distance from it has: here ends are seen in opposite directions.
+#[test]
+fn winding_numbers_are_right_next_to_edges() {
+    let corners = [DVec3::new(6e-6, 0.0, -0.5), DVec3::new(0.0, -2e-5, 0.5), DVec3::new(6e-6, 0.0, 0.5)];
+    let here = DAffine3::IDENTITY;
+    let winding = |corners: [DVec3; 3]| {
+        query::winding_number(&Shape::mesh(corners, [[0, 1, 2]]).unwrap(), &here, DVec3::ZERO).unwrap()
+    };
+    let expected = 0.203_613_210_426_085_55; // computed with 60 digits
+    for [i, j, k] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+        assert!((winding([i, j, k].map(|i: usize| corners[i])).abs() - expected).abs() < 1e-15);
+    }
+    let cube = common::cube(1.0).shape();
+    for near in [1e-3, 1e-5, 1e-7, 1e-9] {
+        for (x, y) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 0.3)] {
+            let point = DVec3::new(1.0 - x * near, 1.0 - y * near, 0.25);
+            let (winding, inside) = (query::winding_number(&cube, &here, point).unwrap(), x.min(y) > 0.0);
+            assert!((winding - f64::from(u8::from(inside))).abs() < 1e-15 / near, "{near}: {winding}");
+        }
+    }
+}

@@ -60,7 +60,8 @@ fn at_length(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<Closes
 ///
 /// The sum of the solid angles of all triangles over that of a sphere (Jacobson, Kavan and Sorkine-Hornung, *Robust
 /// Inside-Outside Segmentation using Generalized Winding Numbers*, 2013), each by the formula of Van Oosterom and Strackee, 1983. A
-/// mirroring placement does not turn the mesh inside out. The error is some 1e-16 for each triangle. A shape that is not a mesh
+/// mirroring placement does not turn the mesh inside out. The error is some 1e-16 for each triangle; next to an edge, nearer than a part d of its length, that
+/// over d. A shape that is not a mesh
 /// is an [`Error::NotAMesh`]. Cost: linear.
 ///
 /// ```
@@ -91,7 +92,13 @@ pub fn winding_number(mesh: &Shape, placement: &DAffine3, point: DVec3) -> Resul
 fn half_solid_angle(corners: [DVec3; 3]) -> f64 {
     // Only directions count; unit vectors stay in range whatever the unit of length.
     let [Some(a), Some(b), Some(c)] = corners.map(direction) else { return 0.0 };
-    a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+    // Next to an edge its ends are seen in opposite directions, whose sum is what is left of them.
+    let [a, b, c] = [[a, b, c], [b, c, a], [c, a, b]]
+        .into_iter()
+        .min_by(|[a, b, _], [p, q, _]| a.dot(*b).total_cmp(&p.dot(*q)))
+        .expect("there are three edges");
+    let left = a + b;
+    left.dot(b.cross(c)).atan2(0.5 * left.length_squared() + c.dot(left))
 }
 
 /// The origin as a shape.
