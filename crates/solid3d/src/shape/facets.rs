@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 use solid_convex::unit_scale;
 
+use super::incidence::Incidence;
 use crate::bounds::Aabb;
 use crate::hull::{Hull, outline};
 
@@ -19,9 +20,8 @@ const FLATNESS: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(crate) struct Facets {
     faces: Vec<Facet>,
-    /// The faces at point `i` are `at_point[starts[i]..starts[i + 1]]`.
-    starts: Vec<u32>,
-    at_point: Vec<u32>,
+    /// The faces at each point.
+    at_point: Incidence,
     /// The extreme points: the faces of a hull that is a segment or a point.
     extreme: Vec<u32>,
 }
@@ -48,10 +48,10 @@ impl Facet {
 impl Facets {
     /// The memory that they own, in bytes.
     pub fn bytes(&self) -> usize {
-        let Facets { faces, starts, at_point, extreme } = self;
+        let Facets { faces, at_point, extreme } = self;
         let corners: usize = faces.iter().map(|face| face.corners.capacity()).sum();
-        let indices = corners + starts.capacity() + at_point.capacity() + extreme.capacity();
-        faces.capacity() * size_of::<Facet>() + indices * size_of::<u32>()
+        let indices = corners + extreme.capacity();
+        faces.capacity() * size_of::<Facet>() + indices * size_of::<u32>() + at_point.bytes()
     }
 
     /// The faces of the hull of points, of which there must be one. A flat hull has two, one for each side. O(n log n).
@@ -65,22 +65,8 @@ impl Facets {
         let (triangles, extreme) = hull
             .map_or((Vec::new(), Vec::new()), |hull| (hull.triangles().to_vec(), hull.vertices().to_vec()));
         let faces = merged(&unit, &triangles);
-        let mut starts = vec![0u32; points.len() + 1];
-        for &corner in faces.iter().flat_map(|face| &face.corners) {
-            starts[corner as usize + 1] += 1;
-        }
-        for i in 0..points.len() {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut at_point = vec![0; starts[points.len()] as usize];
-        for (index, face) in (0u32..).zip(&faces) {
-            for &corner in &face.corners {
-                at_point[next[corner as usize] as usize] = index;
-                next[corner as usize] += 1;
-            }
-        }
-        Facets { faces, starts, at_point, extreme }
+        let at_point = Incidence::of(points.len(), faces.iter().map(|face| face.corners.iter().copied()));
+        Facets { faces, at_point, extreme }
     }
 
     /// How many faces there are.
@@ -95,7 +81,7 @@ impl Facets {
 
     /// The faces that have a point for a corner; none when the hull has no faces.
     pub fn at(&self, point: usize) -> &[u32] {
-        &self.at_point[self.starts[point] as usize..self.starts[point + 1] as usize]
+        self.at_point.at(point)
     }
 
     /// The extreme points.

@@ -7,6 +7,7 @@ mod debug;
 mod enclosed;
 mod facets;
 mod hulled;
+mod incidence;
 mod kind;
 mod measures;
 mod parts;

@@ -8,6 +8,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use super::enclosed::Enclosed;
+use super::incidence::Incidence;
 use super::solid::bits;
 use crate::bounds::Aabb;
 
@@ -19,9 +20,8 @@ const FLATNESS: f64 = 1e-9;
 pub(crate) struct Topology {
     /// The first vertex at the position of each.
     welded: Vec<u32>,
-    /// The primitives at welded vertex `i` are `around[starts[i]..starts[i + 1]]`, ascending.
-    starts: Vec<u32>,
-    around: Vec<u32>,
+    /// The primitives at each welded vertex.
+    around: Incidence,
     /// What is known of the surface around each welded vertex of a mesh: whether it [is flat](FLAT), or [not](BENT).
     known: Vec<AtomicU8>,
     enclosed: Enclosed,
@@ -41,9 +41,8 @@ pub(crate) struct Positioned<'a> {
 impl Topology {
     /// The memory that it owns, in bytes.
     pub fn bytes(&self) -> usize {
-        let Topology { welded, starts, around, known, enclosed } = self;
-        let indices = welded.capacity() + starts.capacity() + around.capacity();
-        indices * size_of::<u32>() + known.capacity() + enclosed.bytes()
+        let Topology { welded, around, known, enclosed } = self;
+        welded.capacity() * size_of::<u32>() + around.bytes() + known.capacity() + enclosed.bytes()
     }
 
     /// Cost: O(n).
@@ -51,22 +50,9 @@ impl Topology {
         let mut first_at = HashMap::with_capacity_and_hasher(vertices.len(), RandomState::default());
         let welded: Vec<u32> =
             (0u32..).zip(vertices).map(|(i, &p)| *first_at.entry(bits(p)).or_insert(i)).collect();
-        let corners =
-            primitives.clone().map(|primitive| primitive.iter().map(|&i| welded[i as usize] as usize));
-        let mut starts = vec![0u32; vertices.len() + 1];
-        corners.clone().flatten().for_each(|corner| starts[corner + 1] += 1);
-        for i in 0..vertices.len() {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut around = vec![0; starts[vertices.len()] as usize];
-        for (primitive, corners) in (0u32..).zip(corners) {
-            for corner in corners {
-                around[next[corner] as usize] = primitive;
-                next[corner] += 1;
-            }
-        }
-        Topology { welded, starts, around, known: Vec::new(), enclosed: Enclosed::default() }
+        let corners = primitives.map(|primitive| primitive.iter().map(|&i| welded[i as usize]));
+        let around = Incidence::of(vertices.len(), corners);
+        Topology { welded, around, known: Vec::new(), enclosed: Enclosed::default() }
     }
 
     /// The same of a mesh. Cost: O(n), and O(n log n) for a closed convex one.
@@ -84,8 +70,7 @@ impl Topology {
 
     /// The primitives that have a vertex, or one at its position. A primitive that names it twice comes twice.
     pub fn around(&self, vertex: u32) -> &[u32] {
-        let i = self.welded(vertex) as usize;
-        &self.around[self.starts[i] as usize..self.starts[i + 1] as usize]
+        self.around.at(self.welded(vertex) as usize)
     }
 
     /// What a closed mesh bounds.
