@@ -9,8 +9,12 @@ use super::GAP_MIN;
 use super::similarity::{stretch, to_body};
 use crate::pair::Placed;
 
-/// The gap at the time that is given, in the unit of the pair: above what rounding moves, so that the time is never past the impact.
+/// The gap at the time that is given, in the unit of the pair: above what rounding moves, so that the time is never past the impact. Of balls that are
+/// small beside the way it is less.
 const GAP: f64 = 0.25 * GAP_MIN;
+
+/// How far off a cast may end, relative to how far apart the two start, where that is more than [`CAST_ERROR`] of their size.
+const WAY_ERROR: f64 = 1e-14;
 
 /// When the first, moving by `motion` in a unit of time, meets the second in that time; `Some(None)` when it does not. `None` for other shapes, and for placements
 /// that are not a rotation with a uniform scale; where they are not clearly apart at the start, or do no more than graze each other, GJK has to say. Placements
@@ -24,8 +28,7 @@ pub(in crate::pair) fn cast<S: Simd>(simd: S, a: Placed, motion: DVec3, b: Place
     let scale = unit_scale(radius_a + radius_b + between.abs().element_sum() + motion.abs().element_sum());
     let (start, way, radii) = (between * scale, motion * scale, (radius_a + radius_b) * scale);
     let distance = start.length();
-    // Of balls that are small beside the way a gap would be seen.
-    if distance - radii <= GAP_MIN || radii * CAST_ERROR < GAP_MIN {
+    if distance - radii <= GAP_MIN {
         return None;
     }
     let (approach, square) = (-start.dot(way), way.length_squared());
@@ -39,12 +42,14 @@ pub(in crate::pair) fn cast<S: Simd>(simd: S, a: Placed, motion: DVec3, b: Place
     if nearest > 0.0 {
         return Some(None);
     }
-    let beyond = (distance - (radii + GAP)) * (distance + (radii + GAP));
+    let gap_max = (CAST_ERROR * radii).max(WAY_ERROR * distance);
+    let gap = GAP.min(0.5 * gap_max);
+    let beyond = (distance - (radii + gap)) * (distance + (radii + gap));
     let time = beyond / (approach + (approach * approach - square * beyond).sqrt());
     let there = start + way * time;
     let length = there.length();
     // Where rounding hides when, GJK has to say.
-    if !(0.0..=GAP_MIN).contains(&(length - radii)) {
+    if !(0.0..=gap_max).contains(&(length - radii)) {
         return None;
     }
     let normal = there / length;
