@@ -17,6 +17,17 @@ pub fn shapes() -> Vec<Box<dyn Support>> {
     ]
 }
 
+/// A shape of a kind, by number, whose sizes are told one after the other.
+pub fn of_sizes(kind: usize, mut size: impl FnMut() -> f64) -> Box<dyn Support> {
+    match kind {
+        0 => Box::new(Cylinder::new(size(), size()).unwrap()),
+        1 => Box::new(Cone::new(size(), size()).unwrap()),
+        2 => Box::new(Sphere::new(size()).unwrap()),
+        3 => Box::new(Capsule::new(size(), size()).unwrap()),
+        _ => Box::new(Cuboid::new(DVec3::new(size(), size(), size())).unwrap()),
+    }
+}
+
 /// The faces of an octahedron with corners on the axes x, y and z, on each the greater first.
 pub fn octahedron_faces() -> Vec<[u32; 3]> {
     let face = |i: u32| {

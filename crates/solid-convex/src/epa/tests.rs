@@ -8,7 +8,7 @@ use super::start::start;
 use super::{DEPTH_TOLERANCE, Penetration, VERTICES_MAX, deepen, expand, penetration, zonotope};
 use crate::difference::Difference;
 use crate::gjk::{self, End, Goal, descend};
-use crate::testing::{for_each_pair, in_cube, placement, shapes};
+use crate::testing::{for_each_pair, in_cube, of_sizes, placement, shapes};
 use crate::{Capsule, Cone, Cuboid, Cylinder, Locus, Points, Polytope, Sphere, Support, Witness};
 use rand::Rng;
 use solid_oracle::generate::seeded;
@@ -510,14 +510,8 @@ fn coaxial_shapes_have_the_depth_of_their_profiles() {
     let mut count = 0;
     for case in 0..1000 {
         let mut size = || rng.random_range(0.2..2.0);
-        let mut object = |kind| -> Box<dyn Support> {
-            match kind {
-                0 => Box::new(Cylinder::new(size(), size()).unwrap()),
-                1 => Box::new(Cone::new(size(), size()).unwrap()),
-                _ => Box::new(Capsule::new(size(), size()).unwrap()),
-            }
-        };
-        let (a, b) = (object(case % 3), object(case / 3 % 3));
+        let round = [0, 1, 3];
+        let [a, b] = [case % 3, case / 3 % 3].map(|kind| of_sizes(round[kind], &mut size));
         let turn = [DQuat::IDENTITY, DQuat::from_scaled_axis(DVec3::splat(size()))][case / 9 % 2];
         let at_a = DAffine3::from_quat(turn);
         let at_b = at_a * at(0.0, [0.0, 0.1, -0.05][case / 18 % 3], 0.0);

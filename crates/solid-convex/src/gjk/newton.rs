@@ -264,8 +264,8 @@ mod tests {
 
     use super::super::descent::{Goal, descend_robustly};
     use super::super::distance::{DISTANCE_TOLERANCE, closest_points};
-    use crate::testing::in_cube;
-    use crate::{Capsule, Cone, Cuboid, Cylinder, Locus, Sphere, Support};
+    use crate::testing::{in_cube, of_sizes};
+    use crate::{Locus, Support};
 
     use super::*;
 
@@ -310,16 +310,7 @@ mod tests {
         let mut apart = 0;
         for case in 0..6_000 {
             let mut size = || rng.random_range(0.1..1.5);
-            let mut object = |kind| -> Box<dyn Support> {
-                match kind {
-                    0 => Box::new(Cylinder::new(size(), size()).unwrap()),
-                    1 => Box::new(Cone::new(size(), size()).unwrap()),
-                    2 => Box::new(Sphere::new(size()).unwrap()),
-                    3 => Box::new(Capsule::new(size(), size()).unwrap()),
-                    _ => Box::new(Cuboid::new(DVec3::new(size(), size(), size())).unwrap()),
-                }
-            };
-            let objects = [object(case % 4), object(case / 4 % 5)];
+            let objects = [case % 4, case / 4 % 5].map(|kind| of_sizes(kind, &mut size));
             let [at_a, at_b] = [placement(&mut rng), placement(&mut rng)];
             let [a, b] = objects.map(|object| Counted { object, count: &counts[0] });
             let found = closest_points(&a, &at_a, &b, &at_b);

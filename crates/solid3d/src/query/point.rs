@@ -60,9 +60,8 @@ fn at_length(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<Closes
 ///
 /// The sum of the solid angles of all triangles over that of a sphere (Jacobson, Kavan and Sorkine-Hornung, *Robust
 /// Inside-Outside Segmentation using Generalized Winding Numbers*, 2013), each by the formula of Van Oosterom and Strackee, 1983. A
-/// mirroring placement does not turn the mesh inside out. The error is some 1e-16 for each triangle; next to an edge, nearer than a part d of its length, that
-/// over d. A shape that is not a mesh
-/// is an [`Error::NotAMesh`]. Cost: linear.
+/// mirroring placement does not turn the mesh inside out. The error is some 1e-16 for each triangle; next to an edge, nearer than a part d of
+/// its length, that over d. A shape that is not a mesh is an [`Error::NotAMesh`]. Cost: linear.
 ///
 /// ```
 /// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};

@@ -328,8 +328,8 @@ impl Shape {
         }
     }
 
-    /// Whether the primitives of the two have the same numbers: both are convex, or of one primitive, or one mesh or complex shape,
-    /// deformed or not.
+    /// Whether the primitives of the two have the same numbers: both are convex, or one is and the other has one primitive, or both are one
+    /// mesh or complex shape, deformed or not.
     pub(crate) fn has_primitives_of(&self, other: &Shape) -> bool {
         match (&self.geometry, &other.geometry) {
             (Geometry::Complex(a), Geometry::Complex(b)) => a.same_primitives(b),

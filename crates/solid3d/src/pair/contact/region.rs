@@ -125,8 +125,11 @@ pub(super) fn reduce(points: &mut Vec<Touch>, normal: DVec3, most: usize) {
     };
     let mut next = first_of_most(&|i| points[i].depth);
     let (mut kept, mut distance) = (Vec::new(), vec![f64::INFINITY; points.len()]);
-    while kept.len() < most {
+    loop {
         kept.push(next);
+        if kept.len() == most {
+            break;
+        }
         // It is no longer sought.
         distance[next] = f64::NEG_INFINITY;
         for (i, nearest) in distance.iter_mut().enumerate() {
