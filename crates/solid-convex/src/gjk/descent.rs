@@ -63,9 +63,9 @@ pub(super) const ITERATIONS_MAX: usize = 512;
 /// A step that shortens `v` squared by less than this part of it makes no progress: it is within the rounding error.
 const PROGRESS_MIN: f64 = 4.0 * f64::EPSILON;
 
-/// No step lengthens `v`, but one on slivers may by the rounding error. Beyond this much, squared, rounding hid which part of
-/// the simplex is the closest: then it is a face with the new point, or the step is taken back.
-const GROWTH_MAX: f64 = 4.0;
+/// No step lengthens `v` by more than the rounding error. Where one does, that hid which part of the simplex is the closest: then it is a face with the
+/// new point, or the step is taken back. In the difference's unit of length.
+const GROWTH_MAX: f64 = SUPPORT_ERROR;
 
 /// A lower bound of the distance must exceed the bound on it by this much to end a descent: what a descent to its end would call the
 /// distance may be below the lower bound by the rounding error. In the difference's unit of length.
@@ -166,15 +166,15 @@ where
                 return Descent { end: End::Undecided, v, axis, simplex, beyond: false };
             }
             if members_before.any() {
-                let before = v_before.length_squared();
-                stalled = length_squared > (1.0 - PROGRESS_MIN) * before;
+                stalled = length_squared > (1.0 - PROGRESS_MIN) * v_before.length_squared();
+                let length_max = v_before.length() + GROWTH_MAX;
                 // What is so thin that products of its edges vanish has a closest point that is no number.
-                if length_squared > GROWTH_MAX * before || length_squared.is_nan() {
+                if length_squared > length_max * length_max || length_squared.is_nan() {
                     stalled = true;
                     simplex.restore(members_before);
                     v = v_before;
                     if refinements < REFINEMENTS_MAX
-                        && let Some(normal) = face_with(difference, &mut simplex, p, before)
+                        && let Some(normal) = face_with(difference, &mut simplex, p, length_max)
                     {
                         (v, stalled) = (normal, false);
                         refinements += 1;
@@ -257,13 +257,13 @@ pub(super) fn certifies(v: DVec3, w: DVec3) -> bool {
 }
 
 /// Where rounding hid on which face with a new support point the closest point is: the normal of that face, which the simplex then is;
-/// `None`, and the simplex as it was, where there is none that is about as near as `before`, squared.
+/// `None`, and the simplex as it was, where there is none that is as near as `length_max`.
 #[cold]
 fn face_with<A, B>(
     difference: &Difference<A, B>,
     simplex: &mut Simplex,
     p: SupportPoint,
-    before: f64,
+    length_max: f64,
 ) -> Option<DVec3>
 where
     A: Support + ?Sized,
@@ -271,7 +271,7 @@ where
 {
     let members = simplex.members();
     let normal = if simplex.push_to_face(p) { refined(difference, simplex.points()) } else { None };
-    let normal = normal.filter(|normal| normal.length_squared() <= GROWTH_MAX * before);
+    let normal = normal.filter(|normal| normal.length() <= length_max);
     if normal.is_none() {
         simplex.restore(members);
     }

@@ -4,6 +4,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::seeded;
+use solid_oracle::{Convex, distance_bounds};
 
 use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_robustly, descend_within};
 use super::lean::{Search, Sure};
@@ -259,6 +260,36 @@ fn gaps_beyond_the_stated_error_are_seen() {
         }
     }
     assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases}: not representative");
+}
+
+/// Law: the distance of hulls is right where a corner, or what is between corners, of one nearly meets such of the other. Of coordinates of few digits the closest
+/// point is often exactly at the end of an edge, or on one of a face, so that rounding hides which of them it is on.
+#[test]
+fn distances_of_what_nearly_meets_are_right() {
+    let mut rng = seeded(67);
+    let few_digits =
+        |rng: &mut StdRng| DVec3::from_array([(); 3].map(|()| f64::from(rng.random_range(-2..=2))));
+    let some = |rng: &mut StdRng, points: &[DVec3]| -> DVec3 {
+        [(); 4].map(|()| points[rng.random_range(0..points.len().min(3))] / 4.0).iter().sum()
+    };
+    let (identity, mut apart) = (DAffine3::IDENTITY, 0);
+    for case in 0..60_000 {
+        let [a, b] = [(); 2]
+            .map(|()| -> Vec<DVec3> { (0..rng.random_range(1..9)).map(|_| few_digits(&mut rng)).collect() });
+        let off = few_digits(&mut rng) * 10_f64.powi(rng.random_range(-10..-2));
+        let at_b = DAffine3::from_translation(some(&mut rng, &a) - some(&mut rng, &b) + off);
+        let [hull_a, hull_b] = [&a, &b].map(|points| Polytope::new(points.clone()).unwrap());
+        let distance = closest_points(&hull_a, &identity, &hull_b, &at_b).distance;
+        let [a, b] = [a, b].map(|points| Convex::Hull { points });
+        let (least, most) = distance_bounds(&a, &identity, &b, &at_b);
+        let error = 16.0 * TOUCHING_ERROR; // no coordinate is greater than 8
+        assert!(
+            (least - error..=most + error).contains(&distance),
+            "case {case}: {distance:e}, not in {least:e}..{most:e}"
+        );
+        apart += usize::from(least > 0.0);
+    }
+    assert!(apart > 10_000, "{apart} of 60000: not representative");
 }
 
 /// Balls and capsules, whose distance is that of their cores: the slow twin is a descent on the round surfaces.
