@@ -50,6 +50,12 @@ fn cube_mesh() -> Shape {
     common::cube(0.5).shape()
 }
 
+/// How far the vertices of a placed mesh are along a direction.
+fn reach(mesh: &Shape, at: &DAffine3, along: DVec3) -> f64 {
+    let heights = mesh.vertices().unwrap().iter().map(|&vertex| along.dot(at.transform_point3(vertex)));
+    heights.fold(f64::NEG_INFINITY, f64::max)
+}
+
 fn deepest(manifolds: &[Manifold]) -> f64 {
     manifolds.iter().flat_map(|m| &m.points).map(|point| point.depth).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -320,6 +326,60 @@ fn what_leans_over_is_as_deep_as_it_is() {
     assert!(upward > 4_450, "{upward} of 4,500 are held up");
 }
 
+/// Law: a body that dips into a flat floor is held up, as deep as it is below that: wherever the edges in the floor are, and whatever body.
+#[test]
+fn a_flat_floor_holds_any_body_up() {
+    let mut rng = seeded(SEED);
+    let floors = [1, 2, 9].map(floor);
+    // The tip of a cone that leans over the edge between two triangles, and is below the first alone sooner than above it.
+    let cone = Shape::cone(0.5, 2.0).unwrap();
+    let leaning = at(0.45, 0.816, 0.05) * DAffine3::from_rotation_z(150_f64.to_radians());
+    assert_eq!(only(&cone, &leaning, &floors[0], &DAffine3::IDENTITY).normal, DVec3::Y);
+    for case in 0..20_000 {
+        let shape = common::convex_of_kind(&mut rng, case % 6, [0.3, 0.5, 0.8], 0.2);
+        let turned = DAffine3 { translation: DVec3::ZERO, ..placement(&mut rng, 1.0) };
+        let bounds = query::bounds(&shape, &turned).unwrap();
+        let depth = rng.random_range(0.0001..0.3) * (bounds.max.y - bounds.min.y);
+        let beside = in_cube(&mut rng) * 2.0;
+        let place = at(beside.x, -bounds.min.y - depth, beside.z) * turned;
+        let floor = &floors[case as usize % floors.len()];
+        let found = only(&shape, &place, floor, &DAffine3::IDENTITY);
+        assert!(found.normal.distance(DVec3::Y) < 1e-6, "case {case}: {found:#?}, {depth}");
+        let off = (deepest(&[found]) - depth).abs();
+        assert!(off < 1e-6, "case {case}: {off:e} off {depth}");
+    }
+}
+
+/// Law: so is a curved mesh, of a solid or of a surface alone, by the normal of the floor and not by those of its facets.
+#[test]
+fn a_flat_floor_holds_curved_meshes_up() {
+    let mut rng = seeded(SEED);
+    let (floors, surface) = ([1, 2, 9].map(floor), common::torus(12, 8, 0.3).shape());
+    let solid = surface.clone().into_solid().unwrap();
+    for case in 0..600 {
+        let shape = [&surface, &solid][case % 2];
+        let turned = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..TAU));
+        let low = -reach(shape, &turned, DVec3::NEG_Y);
+        let (beside, depth) = (in_cube(&mut rng) * 2.0, rng.random_range(0.001..0.02));
+        let place = at(beside.x, -low - depth, beside.z) * turned;
+        let floor = &floors[case % floors.len()];
+        let (found, swapped) = (
+            contacts(shape, &place, floor, &DAffine3::IDENTITY),
+            contacts(floor, &DAffine3::IDENTITY, shape, &place),
+        );
+        for (found, up) in [(&found, DVec3::Y), (&swapped, DVec3::NEG_Y)] {
+            let is_up = |region: &Manifold| region.normal.distance(up) < 1e-9;
+            assert!(!found.is_empty() && found.iter().all(is_up), "case {case}: {found:#?}");
+            assert!((deepest(found) - depth).abs() < 1e-9, "case {case}: {found:#?}, {depth}");
+        }
+        let gap = rng.random_range(0.001..0.1);
+        let above = at(0.0, depth + gap, 0.0) * place;
+        let near = query::contacts(shape, &above, floor, &DAffine3::IDENTITY, &within(1.5 * gap)).unwrap();
+        assert!(near.iter().all(|region| region.normal.distance(DVec3::Y) < 1e-9), "case {case}: {near:#?}");
+        assert!((deepest(&near) + gap).abs() < 1e-9, "case {case}: {near:#?}, {gap}");
+    }
+}
+
 /// The ridge of a roof of small triangles has the normals that the edge of a wedge has, and faces their own.
 #[test]
 fn a_ridge_of_small_triangles_is_an_edge() {
@@ -483,6 +543,19 @@ fn what_is_inside_a_surface_is_near_its_triangles() {
         found.iter().flat_map(|m| &m.points).all(|point| (point.depth + 0.5).abs() < 1e-12),
         "{found:#?}"
     );
+    // And of a solid that is not convex: a shell, thin as a leaf, in a box that is sheared.
+    let shell = common::joined([common::cube(1.0), common::cube(-0.25)]).shape().into_solid().unwrap();
+    let leaf = DMat3::from_cols_array_2d(&[
+        [0.0008, -0.0004, -0.0012],
+        [-0.045, 0.0056, -0.0059],
+        [0.057, 0.0096, -0.005],
+    ]);
+    let sheared =
+        DMat3::from_cols_array_2d(&[[-0.145, -0.127, -0.084], [0.772, -1.295, 0.631], [-0.272, 0.037, 0.41]]);
+    let [leaf, sheared] = [leaf, sheared].map(DAffine3::from_mat3);
+    let gap = query::distance(&shell, &leaf, &hollow, &sheared).unwrap().distance;
+    let found = query::contacts(&shell, &leaf, &hollow, &sheared, &within(1.5 * gap)).unwrap();
+    assert!((deepest(&found) + gap).abs() < 1e-12, "{found:#?}, {gap}");
     let solid = hollow.into_solid().unwrap();
     assert!(deepest(&query::contacts(&solid, &here, &ball, &inside, &within(0.25)).unwrap()) > 0.5);
 }

@@ -208,6 +208,11 @@ impl Complex {
         self.positioned().is_some_and(|mesh| self.topology().is_flat(mesh, primitive))
     }
 
+    /// Whether a primitive is a triangle whose surroundings are in its plane, as far as they go.
+    pub fn is_level(&self, primitive: u32) -> bool {
+        self.positioned().is_some_and(|mesh| self.topology().is_level(mesh, primitive))
+    }
+
     fn positioned(&self) -> Option<Positioned<'_>> {
         Some(Positioned { vertices: &self.vertices, triangles: self.triangles()? })
     }

@@ -22,14 +22,15 @@ pub(crate) struct Topology {
     welded: Vec<u32>,
     /// The primitives at each welded vertex.
     around: Incidence,
-    /// What is known of the surface around each welded vertex of a mesh: whether it [is flat](FLAT), or [not](BENT).
+    /// What is known of the surface around each welded vertex of a mesh: whether it [is flat](FLAT), also [where it ends](LEVEL), or [not](BENT).
     known: Vec<AtomicU8>,
     enclosed: Enclosed,
 }
 
 const UNKNOWN: u8 = 0;
 const BENT: u8 = 1;
-const FLAT: u8 = 2;
+const LEVEL: u8 = 2;
+const FLAT: u8 = 3;
 
 /// A mesh at some positions, whose primitives are its triangles.
 #[derive(Clone, Copy)]
@@ -80,30 +81,36 @@ impl Topology {
 
     /// Whether the surroundings of a triangle are in its plane on all sides: such a surface has no other normal there.
     pub fn is_flat(&self, mesh: Positioned, triangle: u32) -> bool {
-        mesh.triangles[triangle as usize].iter().all(|&corner| self.is_flat_around(mesh, self.welded(corner)))
+        mesh.triangles[triangle as usize].iter().all(|&corner| self.known_around(mesh, corner) == FLAT)
     }
 
-    /// Whether the surface around a welded vertex is flat, and without an edge there. It is looked at once.
-    fn is_flat_around(&self, mesh: Positioned, vertex: u32) -> bool {
+    /// The same, but for where the surface ends, if it does: what there is, is in that plane.
+    pub fn is_level(&self, mesh: Positioned, triangle: u32) -> bool {
+        mesh.triangles[triangle as usize].iter().all(|&corner| self.known_around(mesh, corner) != BENT)
+    }
+
+    /// How flat the surface around a vertex is. It is looked at once.
+    fn known_around(&self, mesh: Positioned, vertex: u32) -> u8 {
+        let vertex = self.welded(vertex);
         let known = &self.known[vertex as usize];
         match known.load(Ordering::Relaxed) {
             UNKNOWN => {
-                let is_flat = self.look_around(mesh, vertex);
-                known.store(if is_flat { FLAT } else { BENT }, Ordering::Relaxed);
-                is_flat
+                let found = self.look_around(mesh, vertex);
+                known.store(found, Ordering::Relaxed);
+                found
             }
-            state => state == FLAT,
+            found => found,
         }
     }
 
-    fn look_around(&self, Positioned { vertices, triangles }: Positioned, vertex: u32) -> bool {
+    fn look_around(&self, Positioned { vertices, triangles }: Positioned, vertex: u32) -> u8 {
         let here = vertices[vertex as usize];
         let (mut before, mut after) = (SmallVec::<[u32; 8]>::new(), SmallVec::<[u32; 8]>::new());
         let mut plane = None;
         for &triangle in self.around(vertex) {
             let Some(corners) = self.spread(triangles[triangle as usize]) else { continue };
             // The triangle from this vertex on.
-            let Some(first) = corners.iter().position(|&corner| corner == vertex) else { return false };
+            let Some(first) = corners.iter().position(|&corner| corner == vertex) else { return BENT };
             let [next, last] = [1, 2].map(|step| corners[(first + step) % 3]);
             after.push(next);
             before.push(last);
@@ -112,13 +119,14 @@ impl Topology {
             let normal = *plane.get_or_insert(across);
             let rises = |arm: &DVec3| normal.dot(*arm).abs() > FLATNESS * arm.length();
             if normal.dot(across) <= 0.0 || arms.iter().any(rises) {
-                return false;
+                return BENT;
             }
         }
         // All around: what one triangle ends with another begins with.
         before.sort_unstable();
         after.sort_unstable();
-        before == after && before.windows(2).all(|pair| pair[0] != pair[1])
+        let is_closed = before == after && before.windows(2).all(|pair| pair[0] != pair[1]);
+        if is_closed { FLAT } else { LEVEL }
     }
 
     /// The corners of a triangle, welded; `None` where two of them are one.

@@ -223,8 +223,9 @@ fn contacts_at_length(
         return Vec::new();
     }
     let mut patches = pair.patches(&part_a, &part_b, scratch);
-    // What is apart has a normal of each surface between them, and none that leads through one.
-    if options.margin > 0.0 && patches.iter().any(Patch::is_deep) && apart(scratch) {
+    // What is apart has a normal of each surface between them, and none that leads through one, as what is inside of a hollow one may have or miss.
+    let is_doubtful = patches.iter().any(Patch::is_deep) || hollow && patches.is_empty();
+    if options.margin > 0.0 && is_doubtful && apart(scratch) {
         if hollow {
             (part_a, part_b) = (surface(a), surface(b));
             patches = pair.patches(&part_a, &part_b, scratch);

@@ -16,9 +16,6 @@ use super::other::Other;
 use super::stars::{LEVEL, SAME_NORMAL, Shortest, Stars, is_parallel};
 use super::{Meeting, face, through};
 
-/// A normal whose cosine with that of the triangle is beyond this tells the side on which the other is.
-const SIDE_COSINE: f64 = 0.2;
-
 /// A primitive of a soup, and what it is in contact with.
 pub(super) struct Side<'a> {
     stars: &'a Stars<'a>,
@@ -91,9 +88,49 @@ impl<'a> Side<'a> {
     /// The normal of a triangle with a flat surface around it, to the side on which the way out is shorter.
     pub fn flat(&self) -> Option<DVec3> {
         let is_flat = self.stars.is_flat(self.body.primitive);
-        let normal = is_flat.then_some(self.body.plane)??;
+        Some(self.shorter(is_flat.then_some(self.body.plane)??))
+    }
+
+    /// The normal of a triangle beside one of another soup, if all around it is in its plane and that is the normal to leave it along. Out of a solid, and
+    /// against the other where that is of one; of two surfaces the smaller one tells, by the side of the other's triangle that it is on.
+    pub fn level_beside(&self, beside: &Side, out: impl FnOnce() -> Option<Corrected>) -> Option<DVec3> {
+        let normal = self.body.plane?;
+        // Where it ends, the surface has others.
+        if !self.stars.is_flat(self.body.primitive) && !self.is_own(out()?.normal()) {
+            return None;
+        }
+        let is_smaller = || self.stars.size() < beside.stars.size();
+        let facing = beside.outward().or_else(|| is_smaller().then(|| beside.toward(self.stars))?);
+        Some(match (self.outward(), facing) {
+            (Some(outward), _) => outward,
+            (None, Some(facing)) if normal.dot(facing) > 0.0 => -normal,
+            (None, Some(_)) => normal,
+            (None, None) => self.toward(beside.stars)?,
+        })
+    }
+
+    /// The normal of a triangle, to the side on which more of another soup is.
+    fn toward(&self, other: &Stars) -> Option<DVec3> {
+        let normal = self.body.plane?;
+        let [low, high] = other.extremes(normal);
+        Some(if low + high < 2.0 * normal.dot(self.corners[0]) { -normal } else { normal })
+    }
+
+    /// Whether all around a triangle is in its plane.
+    pub fn is_level(&self) -> bool {
+        self.stars.is_level_around(self.body.primitive)
+    }
+
+    /// The normal of a triangle of a solid, out of that.
+    fn outward(&self) -> Option<DVec3> {
+        let orientation = self.stars.orientation;
+        self.body.plane.filter(|_| orientation != 0.0).map(|normal| normal * orientation)
+    }
+
+    /// A normal or its opposite: to the side on which the way out is shorter.
+    fn shorter(&self, normal: DVec3) -> DVec3 {
         let [depth, opposite] = self.other.depths(self.corners, normal);
-        Some(if depth <= opposite { normal } else { -normal })
+        if depth <= opposite { normal } else { -normal }
     }
 
     /// Whether a normal is that of the triangle, or its opposite.
@@ -125,9 +162,7 @@ impl<'a> Side<'a> {
 
     /// Whether a normal points into a solid.
     pub fn is_inward(&self, out: DVec3) -> bool {
-        let orientation = self.stars.orientation;
-        let points_in = |normal: DVec3| orientation * normal.dot(out) < -SAME_NORMAL;
-        orientation != 0.0 && self.body.plane.is_some_and(points_in)
+        self.outward().is_some_and(|outward| outward.dot(out) < -SAME_NORMAL)
     }
 
     /// The normal, which may be off by a tilt, if the surface has it where it is touched; else that of the triangle, or of a face next to it.
@@ -144,14 +179,7 @@ impl<'a> Side<'a> {
         if self.has_ball_beside(normal) {
             return None;
         }
-        let side = if self.stars.orientation != 0.0 {
-            self.stars.orientation
-        } else if cosine.abs() > SIDE_COSINE {
-            cosine
-        } else {
-            normal.dot(self.other.center() - self.corners[0])
-        };
-        let own = normal * side.signum();
+        let own = self.outward().unwrap_or_else(|| self.shorter(normal));
         Some(self.shorter_around(own).map_or(Corrected::Replaced(own), Corrected::Adopted))
     }
 

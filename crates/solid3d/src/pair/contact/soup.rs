@@ -3,6 +3,7 @@
 //! Where the surface is flat all around a triangle it has one normal only, and no penetration depth needs to be searched for; else that
 //! is corrected as [`side`](super::side) says.
 
+use std::cell::LazyCell;
 use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
@@ -18,7 +19,7 @@ use super::difference::{self, Polytope};
 use super::other::Other;
 use super::side::{Corrected, Side};
 use super::stars::Stars;
-use super::{Meeting, Pair, Patch, Touch, face, leave_across};
+use super::{Meeting, Pair, Patch, SAME_DEPTH, Touch, face, leave_across};
 use crate::shape::{Body, Complex};
 use crate::tree::{LeafPairs, bits, pairs_on};
 
@@ -99,34 +100,64 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let (hull_a, hull_b) = (a.primitive_hull(i), b.primitive_hull(j));
         let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
         let (corners_a, corners_b) = (stars_a.corners(i), stars_b.corners(j));
-        let in_each_other = must.then(|| way_of([&corners_a, &corners_b])).flatten();
-        let meeting = match in_each_other {
-            Some(way) => way.meeting(false).touching(),
-            None => pair.meeting(&hull_a, &hull_b, must)?,
-        };
         let placed_a = face::Placed::of_primitive(&body_a, i, map_a, &corners_a);
         let placed_b = face::Placed::of_primitive(&body_b, j, map_b, &corners_b);
         let other_a = Other { primitive: i, support: &hull_a, map: map_a, corners: &corners_a, radius: 0.0 };
         let other_b = Other { primitive: j, support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
         let of_a = Side::new(&stars_a, placed_a, &corners_a, other_b);
         let of_b = Side::new(&stars_b, placed_b, &corners_b, other_a);
-        let (in_a, in_b) = (&of_a.body, &of_b.body);
-        let (normal, touches) = match of_b.corrected(meeting.normal, meeting.tilt)? {
-            Corrected::Replaced(normal) => (normal, pair.over(in_a, in_b, normal, false)),
-            on_b => match (of_a.corrected(-meeting.normal, meeting.tilt)?, on_b) {
-                (Corrected::Replaced(normal), _) => (-normal, pair.over(in_a, in_b, -normal, true)),
-                (_, Corrected::Adopted(normal)) => (normal, pair.across(in_a, in_b, normal)),
-                (Corrected::Adopted(normal), _) => (-normal, pair.across(in_a, in_b, -normal)),
-                (_, kept) => {
-                    let meeting = Meeting { normal: kept.normal(), ..meeting };
-                    (meeting.normal, pair.touches(in_a, in_b, &meeting))
-                }
-            },
+        let meeting = LazyCell::new(|| match must.then(|| way_of([&corners_a, &corners_b])).flatten() {
+            Some(way) => Some(way.meeting(false).touching()),
+            None => pair.meeting(&hull_a, &hull_b, must),
+        });
+        let (normal, touches) = match level_touches(pair, [&of_a, &of_b], must, || *meeting) {
+            Some(found) => found,
+            None => touches(pair, &of_a, &of_b, &(*meeting)?)?,
         };
         let is_inward = of_a.is_inward(-normal) || of_b.is_inward(normal);
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     };
     found.into_iter().filter_map(patch).collect()
+}
+
+/// The contacts of two triangles of which one has all around it in its plane, and the other has not: along the normal of that.
+fn level_touches(
+    pair: &Pair,
+    sides: [&Side; 2],
+    must: bool,
+    meeting: impl FnOnce() -> Option<Meeting>,
+) -> Option<(DVec3, Vec<Touch>)> {
+    let [in_a, in_b] = sides.map(|side| &side.body);
+    let of_first = match sides.map(Side::is_level) {
+        [true, false] => true,
+        [false, true] => false,
+        _ => return None,
+    };
+    let (level, beside, sign) = if of_first { (sides[0], sides[1], -1.0) } else { (sides[1], sides[0], 1.0) };
+    beside.body.plane?;
+    let corrected = || meeting().and_then(|meeting| level.corrected(meeting.normal * sign, meeting.tilt));
+    let normal = level.level_beside(beside, corrected)? * sign;
+    let mut touches = pair.over(in_a, in_b, normal, of_first);
+    // What does not meet is not in each other either, but on the other side.
+    touches.retain(|touch| must || touch.depth <= SAME_DEPTH);
+    Some((normal, touches))
+}
+
+/// The contacts of two primitives, along a normal that the surfaces have; `None` where there is none.
+fn touches(pair: &Pair, of_a: &Side, of_b: &Side, meeting: &Meeting) -> Option<(DVec3, Vec<Touch>)> {
+    let (in_a, in_b) = (&of_a.body, &of_b.body);
+    Some(match of_b.corrected(meeting.normal, meeting.tilt)? {
+        Corrected::Replaced(normal) => (normal, pair.over(in_a, in_b, normal, false)),
+        on_b => match (of_a.corrected(-meeting.normal, meeting.tilt)?, on_b) {
+            (Corrected::Replaced(normal), _) => (-normal, pair.over(in_a, in_b, -normal, true)),
+            (_, Corrected::Adopted(normal)) => (normal, pair.across(in_a, in_b, normal)),
+            (Corrected::Adopted(normal), _) => (-normal, pair.across(in_a, in_b, -normal)),
+            (_, kept) => {
+                let meeting = Meeting { normal: kept.normal(), ..*meeting };
+                (meeting.normal, pair.touches(in_a, in_b, &meeting))
+            }
+        },
+    })
 }
 
 /// The shortest way out of two triangles that have a common point.

@@ -115,7 +115,9 @@ impl Encounter<'_> {
             if meets {
                 let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
                 (if is_told { &self.answered } else { &self.unanswered }).set(true);
-                if !self.body.is_ball() && side.is_own(out) {
+                // A ball that is not stretched meets the triangle in front of its deepest point.
+                let is_round = matches!(self.other.corners, [_]);
+                if !is_round && side.is_own(out) {
                     overhang.look(primitive, out);
                 }
             }

@@ -180,6 +180,25 @@ impl<'a> Stars<'a> {
         self.complex.is_flat(triangle)
     }
 
+    /// The least and the greatest height of the box around the soup along a direction.
+    pub fn extremes(&self, direction: DVec3) -> [f64; 2] {
+        let bounds = self.complex.bounds();
+        let middle = direction.dot(self.map.point(bounds.center()));
+        let reach = (self.map.linear().transpose() * direction).abs().dot(0.5 * (bounds.max - bounds.min));
+        [middle - reach, middle + reach]
+    }
+
+    /// How large the soup is: by the boxes along the axes.
+    pub fn size(&self) -> f64 {
+        let extent = |[low, high]: [f64; 2]| high - low;
+        DVec3::AXES.iter().map(|axis| extent(self.extremes(*axis))).sum()
+    }
+
+    /// Whether the surface around a triangle is in its plane, as far as it goes.
+    pub fn is_level_around(&self, triangle: u32) -> bool {
+        self.complex.is_level(triangle)
+    }
+
     /// Whether so many primitives are around a vertex that what was found there is kept.
     pub fn is_hub(&self, vertex: u32) -> bool {
         self.around(vertex).len() > self.hub_min
