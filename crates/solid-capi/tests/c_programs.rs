@@ -9,7 +9,7 @@ use std::process::Command;
 
 use common::{Linking, compile, crate_folder, has, library_folder, run, succeed, text, to_load_from};
 
-const PROGRAMS: [&str; 8] = [
+const PROGRAMS: [&str; 9] = [
     "shapes.c",
     "objects.c",
     "responses.c",
@@ -17,6 +17,7 @@ const PROGRAMS: [&str; 8] = [
     "callbacks.c",
     "errors.c",
     "frames.c",
+    "ending.c",
     "manual.c",
 ];
 

@@ -44,7 +44,8 @@ DtShapeRef dtSphere(DtScalar radius);
 
 /*
  * Begins a complex shape: the union of the polytopes that are given from here to dtEndComplexShape. The reference can be
- * used once the shape is ended. Between them, this thread can begin no other complex shape: NULL is returned then.
+ * used once the shape is ended. Between them, this thread can begin no other complex shape: NULL is returned then. So it may
+ * be where the thread is ending: in destructors of C++ globals and of thread-specific data.
  */
 DtShapeRef dtNewComplexShape(void);
 

@@ -177,7 +177,11 @@ pub unsafe extern "C" fn dtChangeVertexBase(shape: DtShapeRef, base: *const c_vo
 pub extern "C" fn dtDeleteShape(shape: DtShapeRef) {
     call("dtDeleteShape", (), || {
         let shape = Reference::from(shape);
-        let given_up = with_slot(|slot| Ok(slot.take_if(|builder| builder.reference == shape).is_some()))?;
+        let give_up = |slot: &RefCell<Option<Builder>>| {
+            slot.borrow_mut().take_if(|builder| builder.reference == shape).is_some()
+        };
+        // A thread that is ending builds none.
+        let given_up = BUILDER.try_with(give_up).unwrap_or(false);
         if given_up { Ok(()) } else { Engine::lock().delete_shape(shape) }
     });
 }
