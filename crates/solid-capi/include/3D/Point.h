@@ -14,13 +14,14 @@ public:
     Point(const double v[3]) : Vector(v) {}
     // The point whose position vector is v.
     Point(const Vector& v) : Vector(v) {}
-};
 
-inline Point operator+(const Point& p, const Vector& v) { return Point(p[0] + v[0], p[1] + v[1], p[2] + v[2]); }
-inline Point operator-(const Point& p, const Vector& v) { return Point(p[0] - v[0], p[1] - v[1], p[2] - v[2]); }
-inline Vector operator-(const Point& p, const Point& q) { return Vector(p[0] - q[0], p[1] - q[1], p[2] - q[2]); }
-// Or either of the two before would do.
-inline Vector operator-(const Vector& v, const Point& p) { return Vector(v[0] - p[0], v[1] - p[1], v[2] - p[2]); }
+    // Members, so that an array beside a point or a vector is taken for a Vector, and for nothing else.
+    Point operator+(const Vector& v) const { return Vector(*this) += v; }
+    Point operator-(const Vector& v) const { return Vector(*this) -= v; }
+    Vector operator-(const Point& q) const { return Vector(*this) -= q; }
+    Vector operator-(const float q[3]) const { return Vector(*this) -= q; }
+    Vector operator-(const double q[3]) const { return Vector(*this) -= q; }
+};
 
 inline Scalar distance2(const Point& p, const Point& q) { return (p - q).length2(); }
 inline Scalar distance(const Point& p, const Point& q) { return (p - q).length(); }

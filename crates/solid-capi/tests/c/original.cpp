@@ -59,6 +59,21 @@ static void points_and_vectors() {
     CHECK(t(p) == p + v && t * p == t(p) && t.inverse()(v) == Point());
 }
 
+// An array of either type is a Vector, on either side.
+template <class T> static void arrays() {
+    const T a[3] = {1, 2, 3};
+    const Point p(3, 2, 1);
+    const Vector v(0, 4, 0);
+    CHECK(p - a == Vector(2, 0, -2) && a - p == Vector(-2, 0, 2) && p + a == Point(4, 4, 4) && a + p == p + a);
+    CHECK(v - a == Vector(-1, 2, -3) && a - v == Vector(1, -2, 3) && v + a == Vector(1, 6, 3) && a + v == v + a);
+    Point q = p - a;
+    Vector w = p - a;
+    CHECK(q == w && q - a == w - a);
+    q -= a;
+    w += a;
+    CHECK(q == Point(1, -2, -5) && w == p && moved(p + v) == p + v + Vector(1, 0, 0) && moved(p - v) == p - v + Vector(1, 0, 0));
+}
+
 static void arithmetic() {
     CHECK(NEAR(rads(180), SCALAR_PI) && NEAR(degs(TWO_PI), 360));
     CHECK(sgn(-3) == -1 && sgn(0) == 0 && sgn(0.1) == 1 && eqz(1e-11) && eqz(0) && !eqz(-0.1));
@@ -94,6 +109,8 @@ static void responses() {
 
 int main() {
     points_and_vectors();
+    arrays<float>();
+    arrays<double>();
     arithmetic();
     responses();
     return finish();
