@@ -17,6 +17,9 @@ here=$(cd "$(dirname "$0")" && pwd)
 prefix=${DESTDIR:-}$1
 version=$(sed -n '/^\[workspace.package\]/,/^$/s/^version = "\(.*\)"/\1/p' "$here/../../Cargo.toml")
 
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
 if [ $# -eq 2 ]; then
     built=$2
 else
@@ -25,12 +28,11 @@ else
         /*) ;;
         *) target=$PWD/$target ;;
     esac
-    (cd "$here/../.." && cargo build --release -p solid-capi --target-dir "$target")
-    built=$target/release
+    # Cargo tells where the libraries are: for a target that is configured they have a folder of their own.
+    (cd "$here/../.." && cargo build --release -p solid-capi --target-dir "$target" \
+        --message-format json-render-diagnostics >"$scratch/messages")
+    built=$(sed -n 's/.*"\([^"]*\)\/libsolid\.a".*/\1/p' "$scratch/messages")
 fi
-
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
 
 # Without its debug information the library is a tenth of the size.
 cp "$built/libsolid.so" "$scratch/libsolid.so"

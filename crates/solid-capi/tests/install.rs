@@ -80,19 +80,23 @@ fn cmake_builds_clients() {
     run(build.join("client_solid_static"));
 }
 
-#[test]
-fn a_relative_target_folder_is_one_of_the_caller() {
-    /// In place of cargo, which would take minutes: puts the libraries where cargo does.
+/// Installs below a folder, which is made anew, what cargo is told to build from there.
+fn install_from(caller: &str, settings: &[(&str, &str)]) -> PathBuf {
+    /// In place of cargo, which would take minutes: puts the libraries where cargo does, and tells it as cargo does.
     const CARGO: &str = r#"#!/bin/sh
 target=$CARGO_TARGET_DIR
 while [ $# -gt 0 ]; do
     if [ "$1" = --target-dir ]; then target=$2; fi
     shift
 done
-mkdir -p "$target/release"
-cp "$LIBRARIES/libsolid.so" "$LIBRARIES/libsolid.a" "$target/release/"
+built=$target/${CARGO_BUILD_TARGET:+$CARGO_BUILD_TARGET/}release
+mkdir -p "$built"
+cp "$LIBRARIES/libsolid.so" "$LIBRARIES/libsolid.a" "$built/"
+echo '{"reason":"compiler-artifact","filenames":["'"$target"'/release/deps/libsolid3d.rlib"],"fresh":true}'
+echo '{"reason":"compiler-artifact","filenames":["'"$built"'/libsolid.so","'"$built"'/libsolid.a"],"fresh":true}'
+echo '{"reason":"build-finished","success":true}'
 "#;
-    let caller = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("caller");
+    let caller = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(caller);
     let _ = fs::remove_dir_all(&caller);
     fs::create_dir_all(caller.join("bin")).expect("the folder can be made");
     fs::write(caller.join("bin/cargo"), CARGO).expect("the folder can be written");
@@ -102,8 +106,25 @@ cp "$LIBRARIES/libsolid.so" "$LIBRARIES/libsolid.a" "$target/release/"
     let mut script = Command::new("sh");
     script.arg(crate_folder().join("install.sh")).arg("prefix").current_dir(&caller);
     script.env("PATH", format!("{}:{path}", caller.join("bin").display())).env("LIBRARIES", library_folder());
-    succeed(script.env("CARGO_TARGET_DIR", "target folder").env_remove("DESTDIR"));
+    script.env_remove("DESTDIR").env_remove("CARGO_BUILD_TARGET").envs(settings.iter().copied());
+    succeed(&mut script);
+    caller
+}
+
+#[test]
+fn a_relative_target_folder_is_one_of_the_caller() {
+    let caller = install_from("caller", &[("CARGO_TARGET_DIR", "target folder")]);
     for file in ["target folder/release/libsolid.so", "prefix/lib/libsolid.so", "prefix/lib/libsolid.a"] {
+        assert!(caller.join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
+fn what_is_built_for_a_configured_target_is_installed() {
+    let settings = [("CARGO_TARGET_DIR", "target"), ("CARGO_BUILD_TARGET", "some-target")];
+    let caller = install_from("caller_with_target", &settings);
+    for file in ["target/some-target/release/libsolid.so", "prefix/lib/libsolid.so", "prefix/lib/libsolid.a"]
+    {
         assert!(caller.join(file).is_file(), "{file}");
     }
 }
