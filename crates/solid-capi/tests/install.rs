@@ -27,6 +27,17 @@ fn flags(prefix: &Path, options: &[&str]) -> Vec<String> {
     text(&succeed(&mut pkg_config).stdout).split_whitespace().map(String::from).collect()
 }
 
+/// Whether programs can be linked without any shared library; a word when not.
+fn has_static_libc() -> bool {
+    let path = text(&succeed(Command::new("cc").arg("-print-file-name=libc.a")).stdout);
+    // Where there is none, the name comes back as it is.
+    let found = Path::new(path.trim()).is_absolute();
+    if !found {
+        eprintln!("skipped: there is no static C library on this machine");
+    }
+    found
+}
+
 #[test]
 fn pkg_config_builds_clients() {
     if !(has("cc") && has("pkg-config")) {
@@ -46,6 +57,13 @@ fn pkg_config_builds_clients() {
     cc.arg(&source).args(libraries.iter().map(|flag| flag.replace("-lsolid", "-l:libsolid.a")));
     succeed(cc.arg("-o").arg(&alone));
     run(&alone);
+
+    if has_static_libc() {
+        let whole = prefix.join("whole");
+        let mut cc = Command::new("cc");
+        succeed(cc.arg("-static").arg(&source).args(&libraries).arg("-o").arg(&whole));
+        run(&whole);
+    }
 }
 
 #[test]
@@ -78,6 +96,9 @@ fn cmake_builds_clients() {
     succeed(Command::new("cmake").arg("--build").arg(&build));
     run(build.join("client_solid"));
     run(build.join("client_solid_static"));
+    if has_static_libc() {
+        run(build.join("client_whole"));
+    }
 }
 
 /// Installs below a folder, which is made anew, what cargo is told to build from there.

@@ -12,8 +12,8 @@ pub enum Linking {
     Static,
 }
 
-/// What Rust's standard library needs from the system, when it is linked into a C program.
-const SYSTEM_LIBRARIES: [&str; 5] = ["-lgcc_s", "-lpthread", "-ldl", "-lm", "-lc"];
+/// What Rust's standard library needs from the system, when it is linked into a C program; compilers name what unwinds themselves.
+const SYSTEM_LIBRARIES: [&str; 3] = ["-lpthread", "-ldl", "-lm"];
 
 pub fn crate_folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
