@@ -42,9 +42,9 @@ impl World {
     /// their closest or deepest points. In the order of the results of a [`test`](World::test); without pairs whose response is
     /// [`Response::Ignore`].
     ///
-    /// Exactly the pairs that [`query::intersects`](crate::query::intersects), or of which
-    /// [`query::distance_within`](crate::query::distance_within) the clearance is less than it. The distance is that, which is
-    /// [`query::distance`](crate::query::distance) but for its last bits, and where that is 0, less
+    /// Exactly the pairs for which [`query::intersects`](crate::query::intersects) is true, or
+    /// [`query::distance_within`](crate::query::distance_within) their clearance finds a distance that is less than it. The distance
+    /// is that, which is [`query::distance`](crate::query::distance) but for its last bits, and where that is 0, less
     /// the depth of [`query::penetration`](crate::query::penetration). This is apart from [`test`](World::test): what is near but
     /// apart is no collision, has no event, and may be asked for before or after a test, or not at all.
     ///
