@@ -66,11 +66,11 @@ fn read(file: &Path) -> Result<Part, SceneError> {
     Ok(Part { objects, motion: Box::new(animation), duration, unit: "metre", warnings, files })
 }
 
-/// The end of the last first cycle.
+/// The end of the last first cycle of those that run.
 fn duration(graph: &Graph) -> Result<f64, SceneError> {
     let mut duration = 0.0_f64;
     for &node in &graph.sensors {
-        duration = duration.max(Sensor::read(graph, node)?.first_cycle_end());
+        duration = Sensor::read(graph, node)?.first_cycle_end().map_or(duration, |end| duration.max(end));
     }
     Ok(duration)
 }

@@ -46,14 +46,18 @@ impl Sensor {
         }
     }
 
-    /// When its first cycle is over.
-    pub fn first_cycle_end(&self) -> f64 {
-        self.start + self.cycle
+    /// When its first cycle is over, or it is stopped in that; `None` where it never runs.
+    pub fn first_cycle_end(&self) -> Option<f64> {
+        self.enabled.then(|| self.stopped_by(self.start + self.cycle))
     }
 
-    /// When it stops. A stopTime that is not after the startTime is ignored.
-    fn end(&self) -> f64 {
-        let end = if self.looping { f64::INFINITY } else { self.first_cycle_end() };
+    /// When it stops.
+    pub fn end(&self) -> f64 {
+        self.stopped_by(if self.looping { f64::INFINITY } else { self.start + self.cycle })
+    }
+
+    /// An end, or the stopTime where that is earlier. One that is not after the startTime is ignored.
+    fn stopped_by(&self, end: f64) -> f64 {
         if self.stop > self.start { end.min(self.stop) } else { end }
     }
 }

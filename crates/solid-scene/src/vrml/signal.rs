@@ -14,6 +14,13 @@ use crate::text::quoted;
 /// A signal, by its place in [`Signals`].
 pub(super) type SignalId = usize;
 
+/// An event, and when it was sent.
+#[derive(Clone, Debug)]
+struct Sent {
+    time: f64,
+    event: Event,
+}
+
 /// What a field receives, as a function of time.
 #[derive(Clone, Debug)]
 enum Signal {
@@ -21,7 +28,7 @@ enum Signal {
     Fraction(Sensor),
     /// An interpolator and what drives it.
     Interpolated(Interpolator, SignalId),
-    /// The last of several that sends something.
+    /// What was sent last by one of several; of what was sent at one time, that of the last.
     Last(Vec<SignalId>),
 }
 
@@ -34,24 +41,32 @@ pub(super) struct Signals {
 impl Signals {
     /// Evaluates all signals at a time; `None` for those that have sent nothing yet.
     pub fn at(&self, time: f64) -> Vec<Option<Event>> {
-        let mut events: Vec<Option<Event>> = Vec::with_capacity(self.signals.len());
+        let mut sent: Vec<Option<Sent>> = Vec::with_capacity(self.signals.len());
         for signal in &self.signals {
-            let event = signal.at(time, &events);
-            events.push(event);
+            let event = signal.at(time, &sent);
+            sent.push(event);
         }
-        events
+        sent.into_iter().map(|sent| Some(sent?.event)).collect()
     }
 }
 
 impl Signal {
-    fn at(&self, time: f64, events: &[Option<Event>]) -> Option<Event> {
+    fn at(&self, time: f64, sent: &[Option<Sent>]) -> Option<Sent> {
         match self {
-            Signal::Fraction(sensor) => sensor.fraction(time).map(Event::Number),
-            Signal::Interpolated(interpolator, input) => match events[*input] {
-                Some(Event::Number(fraction)) => Some(interpolator.at(fraction)),
+            Signal::Fraction(sensor) => {
+                let event = Event::Number(sensor.fraction(time)?);
+                Some(Sent { time: time.min(sensor.end()), event })
+            }
+            Signal::Interpolated(interpolator, input) => match sent[*input] {
+                Some(Sent { time, event: Event::Number(fraction) }) => {
+                    Some(Sent { time, event: interpolator.at(fraction) })
+                }
                 _ => None,
             },
-            Signal::Last(inputs) => inputs.iter().rev().find_map(|&input| events[input].clone()),
+            Signal::Last(inputs) => {
+                let sent = inputs.iter().filter_map(|&input| sent[input].as_ref());
+                sent.max_by(|a, b| a.time.total_cmp(&b.time)).cloned()
+            }
         }
     }
 }
@@ -64,7 +79,7 @@ pub(super) struct SignalBuilder<'a> {
     /// For each signal, how many points its events hold.
     point_counts: Vec<Option<usize>>,
     /// What the signals send at time 0.
-    start: Vec<Option<Event>>,
+    start: Vec<Option<Sent>>,
     /// The signal of each field asked for; `Pending` while it is being followed.
     known: HashMap<Slot, Known>,
     depth: usize,
@@ -133,7 +148,7 @@ impl<'a> SignalBuilder<'a> {
 
     /// What a signal sends at time 0.
     pub fn start(&self, signal: SignalId) -> Option<&Event> {
-        self.start[signal].as_ref()
+        self.start[signal].as_ref().map(|sent| &sent.event)
     }
 
     /// How many points each event of a signal holds; `None` when that changes.

@@ -116,6 +116,23 @@ fn the_last_of_several_routes_wins_once_it_sends() {
     assert_near(origin(&scene, 5.5), 0.5 * DVec3::Y);
 }
 
+/// Law: of sensors that run one after the other the later counts, in whichever order their ROUTEs stand.
+#[test]
+fn what_was_sent_last_counts_and_not_the_last_route() {
+    let nodes = "DEF T Transform { children Shape { geometry Box {} } }
+         DEF C TimeSensor {} DEF D TimeSensor { startTime 5 stopTime 5.75 }
+         DEF I PositionInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 1 0 0 ] }
+         DEF J PositionInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 0 1 0 ] }
+         ROUTE C.fraction_changed TO I.set_fraction ROUTE D.fraction_changed TO J.set_fraction";
+    let routes = ["ROUTE I.value_changed TO T.translation", "ROUTE J.value_changed TO T.translation"];
+    for [first, second] in [[0, 1], [1, 0]] {
+        let scene = scene(&format!("{nodes} {} {}", routes[first], routes[second]));
+        assert_near(origin(&scene, 2.0), DVec3::X);
+        assert_near(origin(&scene, 5.5), 0.5 * DVec3::Y);
+        assert_near(origin(&scene, 9.0), 0.75 * DVec3::Y);
+    }
+}
+
 #[test]
 fn a_loop_of_routes_is_cut() {
     let scene = scene(
@@ -169,6 +186,18 @@ fn the_duration_is_that_of_the_longest_sensor() {
     assert_eq!(scene("Shape { geometry Box {} }").duration(), 0.0);
     let text = "TimeSensor { cycleInterval 3 loop TRUE } TimeSensor { startTime 2 cycleInterval 2 }";
     assert_eq!(scene(text).duration(), 4.0);
+}
+
+#[test]
+fn a_sensor_lasts_while_it_runs() {
+    let duration = |fields: &str| {
+        scene(&format!("TimeSensor {{}} TimeSensor {{ startTime 2 cycleInterval 8 {fields} }}")).duration()
+    };
+    assert_eq!(duration("enabled FALSE"), 1.0);
+    assert_eq!(duration("stopTime 5"), 5.0);
+    assert_eq!(duration("stopTime 5 loop TRUE"), 5.0);
+    assert_eq!(duration("stopTime 50 loop TRUE"), 10.0);
+    assert_eq!(duration("stopTime 2"), 10.0);
 }
 
 #[test]
