@@ -40,10 +40,10 @@ impl Sensor {
         if !self.looping && cycles >= 1.0 {
             return Some(1.0);
         }
-        match cycles.fract() {
-            0.0 if cycles > 0.0 => Some(1.0),
-            fraction => Some(fraction),
-        }
+        // An end of a cycle may come out a little late by rounding.
+        let error = 2.0 * f64::EPSILON * (self.start.abs() + elapsed) / self.cycle;
+        let fraction = cycles.fract();
+        Some(if cycles >= 0.5 && fraction <= error { 1.0 } else { fraction })
     }
 
     /// When its first cycle is over, or it is stopped in that; `None` where it never runs.
@@ -84,6 +84,22 @@ mod tests {
         assert_eq!(sensor.fraction(3.0), Some(1.0));
         assert_eq!(sensor.fraction(3.5), Some(0.25));
         assert_eq!(sensor.fraction(5.0), Some(1.0));
+    }
+
+    /// Law: whatever the decimals, the end of a cycle is no jump to its start.
+    #[test]
+    fn a_cycle_ends_with_1_also_where_its_end_is_rounded() {
+        for (start, cycle) in [(4, 2), (1, 2), (3, 7), (12345, 1), (0, 3)] {
+            let seconds = |tenths: i32| f64::from(tenths) / 10.0;
+            let sensor = Sensor { looping: true, start: seconds(start), cycle: seconds(cycle), ..ONCE };
+            assert_eq!(sensor.fraction(sensor.start), Some(0.0));
+            for n in 1..1000 {
+                let end = sensor.fraction(seconds(start + n * cycle)).expect("it runs");
+                assert!((1.0 - 1e-12..=1.0).contains(&end), "{start} + {n} * {cycle}: {end}");
+            }
+            let after = sensor.fraction(seconds(start + 999 * cycle) + 1e-6).expect("it runs");
+            assert!((0.0..2e-5).contains(&after), "{after}");
+        }
     }
 
     #[test]
