@@ -29,9 +29,12 @@ fn continued(line: &str) -> Option<&str> {
     line.trim_end().strip_suffix('\\')
 }
 
-/// A comment goes to the end of its line, even if that is a backslash (`# C:\models\`).
+/// A comment goes to the end of its line, even if that is a backslash (`# C:\models\`). Within the name of a group or object it
+/// begins after white space only: exporters number them `part#1`.
 fn without_comment(line: &str) -> &str {
-    line.split('#').next().unwrap_or(line)
+    let is_name = matches!(line.split_whitespace().next(), Some("g" | "o"));
+    let begins = |&(at, _): &(usize, &str)| !is_name || line[..at].ends_with(char::is_whitespace);
+    line.match_indices('#').find(begins).map_or(line, |(at, _)| &line[..at])
 }
 
 #[cfg(test)]

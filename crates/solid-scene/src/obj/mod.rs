@@ -98,6 +98,27 @@ mod tests {
         assert_eq!(seen, [("stem", 1), ("a", 2), ("b", 1)]);
     }
 
+    /// The names of the objects that a text is split into, over one vertex, with how many points each has.
+    fn split(text: &str) -> Vec<(String, usize)> {
+        let part = parse(format!("v 0 0 0\n{text}").as_bytes(), "stem", true).unwrap();
+        part.objects.into_iter().map(|object| (object.name, object.shape.primitive_count())).collect()
+    }
+
+    #[test]
+    fn groups_of_two_objects_are_two() {
+        let seen = split("o door\np 1\ng handle\np 1\no wall\ng handle\np 1 1\no door\np 1\ng handle\np 1\n");
+        let expected = [("door", 2), ("handle", 2), ("handle", 2)];
+        assert_eq!(seen, expected.map(|(name, count)| (name.to_owned(), count)));
+        // A group that is named as its object is another part of it.
+        assert_eq!(split("o a\np 1\ng a\np 1\n").len(), 2);
+    }
+
+    #[test]
+    fn a_name_may_hold_what_begins_a_comment() {
+        let seen = split("g part#1\np 1#one\ng part#2 # two\np 1\no #3\np 1\n#g 4\n");
+        assert_eq!(seen, ["part#1", "part#2", ""].map(|name| (name.to_owned(), 1)));
+    }
+
     #[test]
     fn lines_continue() {
         let text = "v 0 0 0\nv 1 0 \\\n 0\nv 0 1 0\nf 1 2 \\\n3\nf 1 2 9\n";

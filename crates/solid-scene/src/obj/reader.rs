@@ -51,7 +51,10 @@ pub(super) fn read(text: &str, first_group: &str) -> Result<Statements> {
 struct Reader {
     read: Statements,
     group: usize,
-    group_named: HashMap<String, usize>,
+    /// The name of the object that goes on, which may have groups.
+    object: String,
+    /// The groups by their object, and their own name where they have one.
+    group_named: HashMap<(String, Option<String>), usize>,
     /// The greatest index so far and its line: vertices may follow the faces that name them.
     greatest: (u32, usize),
 }
@@ -59,7 +62,7 @@ struct Reader {
 impl Reader {
     fn new(first_group: &str) -> Self {
         let read = Statements { groups: vec![first_group.to_owned()], ..Statements::default() };
-        Reader { read, group: 0, group_named: HashMap::new(), greatest: (0, 0) }
+        Reader { read, group: 0, object: String::new(), group_named: HashMap::new(), greatest: (0, 0) }
     }
 
     fn statement(&mut self, line: usize, statement: &str) -> Result<()> {
@@ -69,7 +72,11 @@ impl Reader {
             Some("f" | "fo") => self.element(ElementKind::Face, words, line)?,
             Some("l") => self.element(ElementKind::Line, words, line)?,
             Some("p") => self.element(ElementKind::Points, words, line)?,
-            Some("g" | "o") => self.enter_group(&words.collect::<Vec<_>>().join(" ")),
+            Some("o") => {
+                self.object = words.collect::<Vec<_>>().join(" ");
+                self.enter_group(&self.object.clone(), false);
+            }
+            Some("g") => self.enter_group(&words.collect::<Vec<_>>().join(" "), true),
             Some("curv" | "curv2" | "surf") => self.read.free_forms += 1,
             _ => {}
         }
@@ -122,9 +129,11 @@ impl Reader {
         }
     }
 
-    fn enter_group(&mut self, name: &str) {
+    /// Goes on with a group of the object, or with the object itself.
+    fn enter_group(&mut self, name: &str, is_of_object: bool) {
         let groups = &mut self.read.groups;
-        self.group = *self.group_named.entry(name.to_owned()).or_insert_with(|| {
+        let key = (self.object.clone(), is_of_object.then(|| name.to_owned()));
+        self.group = *self.group_named.entry(key).or_insert_with(|| {
             groups.push(name.to_owned());
             groups.len() - 1
         });
