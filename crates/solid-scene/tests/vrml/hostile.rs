@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
+use solid_scene::Scene;
 
 use crate::files::{Folder, error, load, load_file, scene, warnings};
 
@@ -140,14 +141,45 @@ fn an_extrusion_of_too_many_points_is_an_error() {
     );
 }
 
+/// A face set of one face around the z axis, whose corners alternate between two distances from it, and its end.
+fn star(corners: usize, radii: [f64; 2]) -> Scene {
+    let point = |i: usize| {
+        let (sin, cos) = (std::f64::consts::TAU * i as f64 / corners as f64).sin_cos();
+        format!("{} {} 0,", radii[i % 2] * cos, radii[i % 2] * sin)
+    };
+    let points: String = (0..corners).map(point).collect();
+    let index: String = (0..corners).map(|i| format!("{i} ")).collect();
+    scene(&format!(
+        "Shape {{ geometry IndexedFaceSet {{ coord Coordinate {{ point [ {points} ] }} coordIndex [ {index} ] }} }}"
+    ))
+}
+
+/// Of a convex face of any number of corners a fan is right; of a concave one ears are, of which no more are cut than take little time.
 #[test]
-fn a_face_of_too_many_corners_is_a_fan_with_a_warning() {
-    let corners = "0 1 2 3 ".repeat(10_000);
+fn only_a_concave_face_of_too_many_corners_is_a_fan_with_a_warning() {
+    let warning = "IndexedFaceSet: 1 polygon without an area, or concave with more than 5000 corners, is a fan \
+                   that is folded over";
+    for (corners, radii, expected) in
+        [(8_000, [1.0, 1.0], None), (4_000, [1.0, 0.5], None), (8_000, [1.0, 0.5], Some(warning))]
+    {
+        let scene = star(corners, radii);
+        assert_eq!(scene.objects()[0].shape().primitive_count(), corners - 2);
+        assert_eq!(warnings(&scene), Vec::from_iter(expected), "{corners} {radii:?}");
+    }
+}
+
+/// Law: how many faces are folded over is told once for a node.
+#[test]
+fn faces_that_are_folded_over_are_counted() {
+    let corners = "1 2 3 0 ".repeat(2_500);
     let points = "coord Coordinate { point [ 0 0 0, 2 0 0, .5 .5 0, 0 2 0 ] }";
-    let scene =
-        scene(&format!("Shape {{ geometry IndexedFaceSet {{ {points} coordIndex [ {corners} ] }} }}"));
-    assert_eq!(scene.objects()[0].shape().primitive_count(), 39_998);
-    assert_eq!(warnings(&scene), ["IndexedFaceSet: a face of more than 2000 corners is taken as convex"]);
+    let scene = scene(&format!(
+        "Shape {{ geometry IndexedFaceSet {{ {points} coordIndex [ {corners} -1 {corners} -1 1 2 3 0 ] }} }}"
+    ));
+    assert_eq!(scene.objects()[0].shape().primitive_count(), 2 * 9_998 + 2);
+    let warning = "IndexedFaceSet: 2 polygons without an area, or concave with more than 5000 corners, are fans \
+                   that are folded over";
+    assert_eq!(warnings(&scene), [warning]);
 }
 
 #[test]

@@ -60,12 +60,14 @@ impl Builder<'_> {
             return;
         }
         let last = (soup.vertices.len() - section.len()) as u32;
+        let mut folded = 0;
         for (flag, first) in [("beginCap", 0), ("endCap", last)] {
             if self.graph.flag(node, flag) {
                 let corners: Vec<u32> = corners.iter().map(|corner| first + corner).collect();
-                self.face(node, &corners, soup);
+                folded += usize::from(Self::face(&corners, soup));
             }
         }
+        self.warn_of_folded(node, folded);
     }
 }
 

@@ -14,19 +14,20 @@ impl Builder<'_> {
         let Coordinates { points, deformation } = self.coordinates(node)?;
         let mut soup = Soup { vertices: points, ..Soup::default() };
         let graph = self.graph;
-        let mut small = 0;
+        let (mut small, mut folded) = (0, 0);
         for face in graph.integers(node, "coordIndex").split(|&index| index == -1) {
             let corners = self.vertices(node, face, soup.vertices.len())?;
             match corners.len() {
                 0 => {}
                 1 | 2 => small += 1,
-                _ => self.face(node, &corners, &mut soup),
+                _ => folded += usize::from(Self::face(&corners, &mut soup)),
             }
         }
         if small > 0 {
             let faces = if small == 1 { "1 face has".to_owned() } else { format!("{small} faces have") };
             self.warn(node, format!("{faces} fewer than three corners; passed over"));
         }
+        self.warn_of_folded(node, folded);
         self.soup(node, soup, deformation)
     }
 }

@@ -19,7 +19,7 @@ use super::limits::ELEMENTS_MAX;
 use super::signal::SignalBuilder;
 use super::warnings::Warnings;
 use crate::error::SceneError;
-use crate::polygon::{EARCUT_CORNERS_MAX, triangulate};
+use crate::polygon::{Cut, folded_warning, triangulate};
 use crate::soup::Soup;
 use crate::text::counted;
 
@@ -137,12 +137,16 @@ impl<'a> Builder<'a> {
         Ok(Some(Geometry { shape, degenerate, deformation }))
     }
 
-    /// Adds the triangles of a face.
-    fn face(&mut self, node: Node, corners: &[u32], soup: &mut Soup) {
-        if corners.len() > EARCUT_CORNERS_MAX {
-            self.warn(node, format!("a face of more than {EARCUT_CORNERS_MAX} corners is taken as convex"));
+    /// Adds the triangles of a face. Says whether they are folded over.
+    fn face(corners: &[u32], soup: &mut Soup) -> bool {
+        triangulate(corners, &soup.vertices, &mut soup.triangles) == Cut::Folded
+    }
+
+    /// Warns of faces of a node that are folded over, where there are some.
+    fn warn_of_folded(&mut self, node: Node, count: usize) {
+        if let Some(warning) = folded_warning(count) {
+            self.warn(node, warning);
         }
-        triangulate(corners, &soup.vertices, &mut soup.triangles);
     }
 
     /// Indices of `count` points, checked.
