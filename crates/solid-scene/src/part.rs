@@ -6,6 +6,9 @@ use solid3d::Shape;
 
 use crate::pose::ObjectPose;
 
+/// Bytes in the names of all objects of a file together: each keeps its own, which many may have of one node or mesh.
+pub(crate) const NAMES_MAX: usize = 1 << 28;
+
 /// A file's share of a scene.
 #[derive(Debug)]
 pub(crate) struct Part {

@@ -16,7 +16,7 @@ use super::mesh::{self, Geometry};
 use super::motion::{Deformation, GltfMotion, Moved};
 use super::skin::Skin;
 use crate::fault::Result;
-use crate::part::{Part, PartObject};
+use crate::part::{NAMES_MAX, Part, PartObject};
 use crate::soup::Soup;
 use crate::text::quoted;
 
@@ -58,6 +58,8 @@ struct Reader<'a> {
     objects: Vec<PartObject>,
     /// Nodes in the paths of these.
     in_paths: usize,
+    /// Bytes in their names.
+    in_names: usize,
     motion: GltfMotion,
     warnings: Vec<String>,
 }
@@ -74,6 +76,7 @@ impl<'a> Reader<'a> {
             shapes,
             objects: Vec::new(),
             in_paths: 0,
+            in_names: 0,
             motion,
             warnings,
         }
@@ -128,6 +131,13 @@ impl<'a> Reader<'a> {
             return Err(
                 format!("the paths from the roots to the objects have more than {PATHS_MAX} nodes").into()
             );
+        }
+        self.in_names += object.name.len();
+        if self.in_names > NAMES_MAX {
+            return Err(format!("the names of the objects have more than {NAMES_MAX} bytes in all").into());
+        }
+        if let Some(deformation) = &moved.deformation {
+            self.document.spend(3 * deformation.geometry.soup.vertices.len(), "positions of what deforms")?;
         }
         self.objects.push(object);
         self.motion.objects.push(moved);

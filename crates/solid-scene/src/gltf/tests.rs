@@ -646,6 +646,47 @@ fn instances_are_checked() {
     );
 }
 
+/// Each instance keeps the name, and the positions where the mesh changes its form.
+#[test]
+fn instances_take_no_memory_without_end() {
+    let of_instances = |count: usize| {
+        let mut file = instances();
+        let translations = file.floats("VEC3", count, &vec![0.0; 3 * count]);
+        set(
+            &mut file,
+            "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes",
+            json!({"TRANSLATION": translations}),
+        );
+        file
+    };
+    let mut file = of_instances(257);
+    file.0["nodes"][0]["name"] = json!("n".repeat(1 << 20));
+    assert_eq!(file.refused(), "node 0: the names of the objects have more than 268435456 bytes in all");
+    // A mesh of many vertices, which grows.
+    let growing = |count: usize| {
+        let mut file = of_instances(count);
+        let positions = file.floats(
+            "VEC3",
+            1000,
+            &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0].repeat(250),
+        );
+        let primitive = json!({"attributes": {"POSITION": positions}, "targets": [{"POSITION": positions}]});
+        let mesh = file.add("meshes", json!({"primitives": [primitive]}));
+        file.0["nodes"][0]["mesh"] = json!(mesh);
+        let times = file.floats("SCALAR", 2, &[0.0, 1.0]);
+        file.0["animations"] = json!([{
+            "samplers": [{"input": times, "output": times}],
+            "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}],
+        }]);
+        file
+    };
+    assert_eq!(growing(300).parse().unwrap().objects.len(), 301);
+    assert_eq!(
+        growing(400).refused(),
+        "node 0: positions of what deforms: 3000 numbers are more than a file of this size may hold"
+    );
+}
+
 #[test]
 fn an_animation_that_has_no_effect_is_warned_of() {
     let mut file = everything();

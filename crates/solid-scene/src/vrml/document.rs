@@ -61,6 +61,8 @@ pub(super) struct Route {
 pub(super) struct Document {
     file: PathBuf,
     scene: Scene,
+    /// How many nodes are written in it.
+    pub written: usize,
     /// The line and name of each node; empty when they can't be told.
     marks: Vec<Mark>,
     /// The fields that are connected to a name of a PROTO's interface.
@@ -68,9 +70,14 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// Parses a file's text; also what the parser passed over.
-    pub fn parse(file: &Path, text: &str) -> Result<(Document, Vec<String>), SceneError> {
-        let scanned = scan(file, text)?;
+    /// Parses a file's text, where so many nodes were written in files before; also what the parser passed over.
+    pub fn parse(
+        file: &Path,
+        text: &str,
+        nodes_before: usize,
+    ) -> Result<(Document, Vec<String>), SceneError> {
+        let scanned = scan(file, text, nodes_before)?;
+        let written = scanned.nodes.len();
         let parse = |text: &str| vrml97::Parser::new(text, "").parse();
         let mut scene = parse(&scanned.text).map_err(|error| {
             let stops_at = |text: &str| parse(text).err().map(|error| error.line);
@@ -83,7 +90,7 @@ impl Document {
             warnings.iter().map(|warning| with_words_cut(&warning_in_our_words(warning))).collect();
         let marks = if scanned.nodes.len() == scene.nodes.len() { scanned.nodes } else { Vec::new() };
         let connected = connections(&scene);
-        Ok((Document { file: file.to_owned(), scene, marks, connected }, warnings))
+        Ok((Document { file: file.to_owned(), scene, written, marks, connected }, warnings))
     }
 
     /// The file.
@@ -232,7 +239,7 @@ mod tests {
     use super::*;
 
     fn parse(body: &str) -> Result<Document, SceneError> {
-        let parsed = Document::parse(Path::new("a.wrl"), &format!("#VRML V2.0 utf8\n{body}"));
+        let parsed = Document::parse(Path::new("a.wrl"), &format!("#VRML V2.0 utf8\n{body}"), 0);
         parsed.map(|(document, _)| document)
     }
 

@@ -37,7 +37,8 @@ impl Library {
         if let Some(document) = self.documents.get(&key) {
             return Ok(document.clone());
         }
-        let (document, passed_over) = Document::parse(file, &text::read(file)?)?;
+        let nodes_before = self.documents.values().map(|document| document.written).sum();
+        let (document, passed_over) = Document::parse(file, &text::read(file)?, nodes_before)?;
         for warning in passed_over {
             // Whoever shows a warning shows the scene's file with it, which is the first.
             match self.documents.is_empty() {

@@ -6,8 +6,9 @@ pub(super) const NESTING_MAX: usize = 256;
 /// Bytes in a file.
 pub(super) const FILE_BYTES_MAX: u64 = 1 << 29;
 
-/// Nodes written in one file. The parser spends up to 10 kB on a node of many fields, so that this is up to 2 GB.
-pub(super) const FILE_NODES_MAX: usize = 200_000;
+/// Nodes written in a file and all those that it inlines, each counted once. The parser spends up to 10 kB on a node of many fields,
+/// so that this is up to 2 GB.
+pub(super) const WRITTEN_NODES_MAX: usize = 200_000;
 
 /// ROUTEs written in one file: the parser compares each with all before it.
 pub(super) const FILE_ROUTES_MAX: usize = 20_000;

@@ -46,9 +46,9 @@ pub(super) struct Mark {
     pub name: Option<Box<str>>,
 }
 
-/// Checks a text. Cost: O(n).
-pub(super) fn scan(file: &Path, text: &str) -> Result<Scanned, SceneError> {
-    let mut scanner = Scanner::new(file, text);
+/// Checks a text; so many nodes were written in files before. Cost: O(n).
+pub(super) fn scan(file: &Path, text: &str, nodes_before: usize) -> Result<Scanned, SceneError> {
+    let mut scanner = Scanner { nodes_before, ..Scanner::new(file, text) };
     scanner.run()?;
     Ok(Scanned { text: scanner.out, nodes: scanner.nodes, wide: scanner.wide })
 }
@@ -89,6 +89,8 @@ struct Scanner<'a> {
     line: usize,
     out: String,
     nodes: Vec<Mark>,
+    /// Nodes of files that were read before.
+    nodes_before: usize,
     wide: Vec<usize>,
     /// The last name that was no other's: before a number, that of its field.
     field: &'a str,
@@ -119,6 +121,7 @@ impl<'a> Scanner<'a> {
             line: 1,
             out: String::with_capacity(text.len()),
             nodes: Vec::new(),
+            nodes_before: 0,
             wide: Vec::new(),
             field: "",
             images: HashSet::from(["image"]),
@@ -203,8 +206,9 @@ impl<'a> Scanner<'a> {
             }
             Opened::List | Opened::Interface(_) => {}
         }
-        if self.nodes.len() > FILE_NODES_MAX {
-            return self.fail(format!("the file has more than {FILE_NODES_MAX} nodes"));
+        if self.nodes_before + self.nodes.len() > WRITTEN_NODES_MAX {
+            let which = if self.nodes_before == 0 { "the file has" } else { "with this file there are" };
+            return self.fail(format!("{which} more than {WRITTEN_NODES_MAX} nodes"));
         }
         self.brackets.push((opened, self.line));
         self.expect = Expect::Anything;
@@ -422,7 +426,7 @@ mod tests {
     use super::*;
 
     fn run(text: &str) -> Result<Scanned, SceneError> {
-        scan(Path::new("a.wrl"), text)
+        scan(Path::new("a.wrl"), text, 0)
     }
 
     fn message(text: &str) -> String {

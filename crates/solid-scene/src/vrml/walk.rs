@@ -10,7 +10,7 @@ use super::graph::{Graph, Node};
 use super::limits::{DEPTH_MAX, NODES_MAX};
 use super::transform::Transform;
 use crate::error::SceneError;
-use crate::part::PartObject;
+use crate::part::{NAMES_MAX, PartObject};
 
 /// Where a node is, on one of the ways to it.
 #[derive(Clone)]
@@ -32,6 +32,8 @@ pub(super) struct Walk<'a> {
     path: Vec<u32>,
     on_path: HashSet<Node>,
     visits: usize,
+    /// Bytes in the names of the objects.
+    in_names: usize,
 }
 
 impl<'a> Walk<'a> {
@@ -47,6 +49,7 @@ impl<'a> Walk<'a> {
             path: Vec::new(),
             on_path: HashSet::new(),
             visits: 0,
+            in_names: 0,
         }
     }
 
@@ -211,11 +214,16 @@ impl<'a> Walk<'a> {
             return Err(self.graph.error(node, "the Transforms around put it infinitely far away"));
         }
         let positions = geometry.deformation.as_ref().map_or(0, |deformation| deformation.rest.len());
-        self.builder.count(node, self.path.len() + positions)?;
         let name = match &place.name {
             Some(name) => name.to_string(),
             None => self.graph.type_name(source).to_ascii_lowercase(),
         };
+        self.builder.count(node, self.path.len() + positions)?;
+        self.in_names += name.len();
+        if self.in_names > NAMES_MAX {
+            let message = format!("the names of the objects have more than {NAMES_MAX} bytes in all");
+            return Err(self.graph.error(node, message));
+        }
         let Geometry { shape, degenerate, deformation } = geometry;
         self.objects.push(PartObject { name, shape, path: self.path.clone(), degenerate });
         self.motions.push(ObjectMotion { around: place.around, deformation });

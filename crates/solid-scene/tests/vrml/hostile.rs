@@ -182,6 +182,16 @@ fn faces_that_are_folded_over_are_counted() {
     assert_eq!(warnings(&scene), [warning]);
 }
 
+/// A long name of many objects takes memory for each.
+#[test]
+fn names_by_the_gigabyte_are_an_error() {
+    let (name, shapes) = ("n".repeat(1 << 20), "Shape { geometry Box {} } ".repeat(257));
+    refused(
+        &format!("DEF {name} Group {{ children [ {shapes} ] }}"),
+        "Shape: the names of the objects have more than 268435456 bytes in all",
+    );
+}
+
 #[test]
 fn what_would_be_slow_to_parse_is_an_error() {
     refused(&"ROUTE a.b TO c.d\n".repeat(30_000), "more than 20000 ROUTEs");
@@ -191,6 +201,21 @@ fn what_would_be_slow_to_parse_is_an_error() {
     let lookalikes: String = (0..2_000).map(|i| format!("USEa{i} ")).collect();
     refused(&lookalikes, "names that begin with USE");
     assert!(load(&"#/* \n".repeat(300_000)).is_ok());
+}
+
+/// Law: it makes no difference whether nodes are written in one file or in several.
+#[test]
+fn nodes_of_inlined_files_count_together() {
+    let folder = Folder::new();
+    for name in ["a.wrl", "b.wrl"] {
+        folder.write(name, &"Group{}".repeat(110_000));
+    }
+    let load = |urls: &str| load_file(&folder.write("main.wrl", urls));
+    let (a, b) = ("Inline { url \"a.wrl\" }", "Inline { url \"b.wrl\" }");
+    assert!(load(&format!("{a} {a} {a}")).is_ok());
+    let error = load(&format!("{a} {b}")).expect_err("they are too many");
+    assert!(error.file.ends_with("b.wrl"), "{error}");
+    assert_eq!(error.message, "with this file there are more than 200000 nodes");
 }
 
 /// What the limits let through at most.
