@@ -1,9 +1,12 @@
-//! ASCII STL, line by line, in any case: any number of solids, each of any number of facets.
+//! ASCII STL, in any case and however it is divided into lines: any number of solids, each of any number of facets.
 
 use glam::DVec3;
 
 use crate::fault::{Fault, Result};
 use crate::text;
+
+/// The words that begin something.
+const KEYWORDS: [&str; 7] = ["solid", "facet", "outer", "vertex", "endloop", "endfacet", "endsolid"];
 
 /// The corners of the triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>> {
@@ -49,15 +52,38 @@ impl Place {
 
 impl Reader {
     fn line(&mut self, line: usize, content: &str) -> Result<()> {
-        let mut words = content.split_whitespace();
-        let Some(word) = words.next() else { return Ok(()) };
-        let keyword = word.to_ascii_lowercase();
-        match (self.place, keyword.as_str()) {
+        let mut words = content.split_whitespace().peekable();
+        let (mut is_first, mut is_name) = (true, false);
+        while let Some(word) = words.next() {
+            let keyword = word.to_ascii_lowercase();
+            // The name of a solid may hold any word; where there are more lines it has one of its own.
+            let begins = match is_name {
+                true => {
+                    keyword == "facet" && words.peek().is_some_and(|next| next.eq_ignore_ascii_case("normal"))
+                }
+                false => is_first || KEYWORDS.contains(&keyword.as_str()),
+            };
+            if begins {
+                self.keyword(line, &keyword, &mut words)?;
+                is_name = matches!(keyword.as_str(), "solid" | "endsolid");
+            }
+            is_first = false;
+        }
+        Ok(())
+    }
+
+    fn keyword<'a>(
+        &mut self,
+        line: usize,
+        keyword: &str,
+        words: &mut impl Iterator<Item = &'a str>,
+    ) -> Result<()> {
+        match (self.place, keyword) {
             (Place::Outside | Place::Solid, "solid") => self.place = Place::Solid,
             (Place::Outside | Place::Solid, "endsolid") => self.place = Place::Outside,
             (Place::Outside | Place::Solid, "facet") => self.place = Place::Facet,
             (Place::Facet, "outer" | "endloop") => {}
-            (Place::Facet, "vertex") => self.corners.push(text::vertex(&mut words, line)?),
+            (Place::Facet, "vertex") => self.corners.push(text::vertex(words, line)?),
             (Place::Facet, "endfacet") => self.end_facet(line)?,
             (place, keyword) => return Err(unexpected(place, keyword, line)),
         }

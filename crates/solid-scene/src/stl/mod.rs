@@ -11,7 +11,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::error::SceneError;
-use crate::fault::Result;
+use crate::fault::{Fault, Result};
 use crate::file;
 use crate::part::Part;
 use crate::soup::{Soup, still_part};
@@ -25,7 +25,10 @@ pub(crate) fn load(path: &Path) -> std::result::Result<Part, SceneError> {
 }
 
 fn parse(bytes: &[u8], stem: &str) -> Result<Part> {
-    let triangles = if is_text(bytes) { ascii::read(bytes)? } else { binary::read(bytes)? };
+    let triangles = match is_text(bytes) {
+        true => ascii::read(bytes)?,
+        false => binary::read(bytes).map_err(|fault| zero_in_text(bytes).unwrap_or(fault))?,
+    };
     let soup = welded(&triangles);
     if soup.is_empty() {
         return Err("the file has no geometry: no facet".into());
@@ -33,12 +36,23 @@ fn parse(bytes: &[u8], stem: &str) -> Result<Part> {
     Ok(still_part(vec![soup.into_object(stem, 1)?], Vec::new()))
 }
 
+/// What to say of a file that begins as text, but has a zero byte, where it is no binary file either.
+fn zero_in_text(bytes: &[u8]) -> Option<Fault> {
+    let zero = bytes.iter().position(|&byte| byte == 0).filter(|_| begins_as_text(bytes))?;
+    let line = 1 + bytes[..zero].iter().filter(|&&byte| byte == b'\n').count();
+    let expected = "expected text, or a binary file as long as its header tells";
+    Some(Fault::at(line, format!("there is a zero byte, which no text has; {expected}")))
+}
+
+fn begins_as_text(bytes: &[u8]) -> bool {
+    let first_word = without_mark(bytes).trim_ascii_start().get(..5).unwrap_or_default().to_ascii_lowercase();
+    first_word == b"solid" || first_word == b"facet"
+}
+
 /// Whether the file is text. The first word alone does not tell, since binary headers may begin with "solid" too: a
 /// file that is as long as its binary triangle count says is binary, and so is one with a zero byte.
 fn is_text(bytes: &[u8]) -> bool {
-    let first_word = without_mark(bytes).trim_ascii_start().get(..5).unwrap_or_default().to_ascii_lowercase();
-    let said = first_word == b"solid" || first_word == b"facet";
-    said && !binary::has_exact_length(bytes) && !bytes.contains(&0)
+    begins_as_text(bytes) && !binary::has_exact_length(bytes) && !bytes.contains(&0)
 }
 
 fn welded(corners: &[[DVec3; 3]]) -> Soup {
@@ -82,6 +96,35 @@ mod tests {
         let shape = &part.objects[0].shape;
         assert_eq!(shape.triangles().unwrap(), [[0, 1, 2], [1, 0, 3]]);
         assert_eq!(shape.vertices().unwrap()[3], DVec3::new(2.0, 2.0, 20.0));
+    }
+
+    /// Law: how a text is divided into lines makes no difference, but that a name ends with its line or before `facet normal`.
+    #[test]
+    fn a_line_may_hold_many_facets() {
+        let triangles = |text: &str| {
+            let part = parse(text.as_bytes(), "stem").unwrap();
+            part.objects[0].shape.triangles().unwrap().to_vec()
+        };
+        let facets = TEXT.replace("\nendfacet", " endfacet").replace("\n endfacet", " endfacet");
+        for text in [TEXT.replace('\n', " "), TEXT.replace('\n', "\t\r"), facets] {
+            assert_eq!(triangles(&text), [[0, 1, 2], [1, 0, 3]], "{text}");
+        }
+        let named = TEXT
+            .replace("solid a", "solid vertex of a facet")
+            .replace("endsolid\n", "endsolid outer solid\n");
+        assert_eq!(triangles(&named).len(), 2);
+        assert_eq!(
+            refused(b"solid\nfacet outer loop vertex 0 0 endloop"),
+            (Some(2), "expected a finite number for the vertex's z, but there is `endloop`".to_owned())
+        );
+    }
+
+    #[test]
+    fn a_zero_byte_in_a_text_is_named() {
+        let message = "there is a zero byte, which no text has; expected text, or a binary file as long as its \
+                       header tells";
+        assert_eq!(refused(TEXT.replace("SOLID b", "SOLID \0").as_bytes()), (Some(10), message.to_owned()));
+        assert_eq!(refused(b"solid\0"), (Some(1), message.to_owned()));
     }
 
     #[test]
