@@ -10,7 +10,7 @@ use crate::polygon::{Cut, folded_warning, short_warning, triangulate};
 use crate::soup::Soup;
 use crate::text::{quoted, there_are};
 
-/// The names that the list of a face's corners goes by.
+/// The names that the list of a face's corners goes by; the first that is there is taken.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// Reads the payload; faces of fewer than three corners are passed over with a warning.
@@ -136,10 +136,12 @@ struct Lists {
 
 impl Lists {
     fn read(&mut self, element: &Element, payload: &mut Payload) -> Result<()> {
-        let is_corners = |p: &Property| p.length.is_some() && CORNERS.contains(&p.name.as_str());
+        let is_list =
+            |name: &str| element.properties.iter().position(|p| p.length.is_some() && p.name == name);
+        let corners = CORNERS.into_iter().find_map(is_list);
         for number in 0..element.count {
-            for property in &element.properties {
-                let keep = is_corners(property);
+            for (place, property) in element.properties.iter().enumerate() {
+                let keep = corners == Some(place);
                 let each = |value| {
                     if keep {
                         self.values.push(value)

@@ -78,10 +78,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Header, Payload<'_>)> {
     let mut header = Header::default();
     let mut encoding = None;
     let mut rest = without_mark(bytes);
+    let line_end = line_end(rest);
     let mut line = 0;
     loop {
         line += 1;
-        let Some(content) = next_line(&mut rest) else {
+        let Some(content) = next_line(&mut rest, line_end) else {
             return Err(Fault::at((line - 1).max(1), "the file ends in its header; expected `end_header`"));
         };
         let content = String::from_utf8_lossy(content);
@@ -93,7 +94,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Header, Payload<'_>)> {
             ["end_header"] => {
                 let encoding = encoding.ok_or_else(|| Fault::at(line, "the header has no `format`"))?;
                 header.check_counts(encoding, rest.len())?;
-                return Ok((header, Payload::new(rest, encoding, line + 1)));
+                return Ok((header, Payload::new(rest, encoding, line + 1, line_end)));
             }
             ["format", ..] => encoding = Some(format(&words, line)?),
             _ => header.line(&words, line)?,
@@ -101,9 +102,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Header, Payload<'_>)> {
     }
 }
 
-/// Takes a line, without its LF or CR LF, off the text.
-fn next_line<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
-    let end = rest.iter().position(|&byte| byte == b'\n')?;
+/// With what all lines end, as the first does: CR alone, or LF, before which a CR is white space. What follows the header may begin with
+/// any byte, so that it can't be told line by line.
+fn line_end(bytes: &[u8]) -> u8 {
+    match bytes.iter().position(|byte| matches!(byte, b'\r' | b'\n')) {
+        Some(end) if bytes[end] == b'\r' && bytes.get(end + 1) != Some(&b'\n') => b'\r',
+        _ => b'\n',
+    }
+}
+
+/// Takes a line off the text, without its end.
+fn next_line<'a>(rest: &mut &'a [u8], line_end: u8) -> Option<&'a [u8]> {
+    let end = rest.iter().position(|&byte| byte == line_end)?;
     let line = &rest[..end];
     *rest = &rest[end + 1..];
     Some(line)

@@ -83,6 +83,46 @@ mod tests {
         assert_eq!(shape.vertices().unwrap()[1], DVec3::X);
     }
 
+    /// As old programs write them.
+    #[test]
+    fn lines_may_end_with_cr_alone() {
+        let text = TEXT.replace("\r\n", "\r");
+        let part = parse(text.as_bytes(), "stem").unwrap();
+        assert_eq!(part.objects[0].shape.triangles().unwrap(), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(refused(text.replace("2 0 1", "2 0 9").as_bytes()).0, Some(20));
+        // What follows the header may be either end of a line.
+        for end in ["\r", "\n", "\r\n"] {
+            let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n\
+                          property uchar z\nelement face 1\nproperty list uchar uchar vertex_index\nend_header\n";
+            for first in *b"\r\n" {
+                let bytes =
+                    [header.replace('\n', end).as_bytes(), &[first, 0, 0, 0, 10, 0, 0, 13, 0, 3, 0, 1, 2]]
+                        .concat();
+                let part = parse(&bytes, "stem").unwrap();
+                let vertices = part.objects[0].shape.vertices().unwrap();
+                assert_eq!(vertices[0], DVec3::X * f64::from(first), "{end:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn of_two_lists_of_corners_one_is_taken() {
+        let lists = ["vertex_index", "vertex_indices"];
+        for [first, second] in [[0, 1], [1, 0]] {
+            let corners = |list: usize| ["3 0 1 2", "3 2 1 0"][list];
+            let text = format!(
+                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+                 property list uchar int {}\nproperty list uchar int {}\nend_header\n0 0 0\n1 0 0\n0 1 0\n{} {}\n",
+                lists[first],
+                lists[second],
+                corners(first),
+                corners(second)
+            );
+            let part = parse(text.as_bytes(), "stem").unwrap();
+            assert_eq!(part.objects[0].shape.triangles().unwrap(), [[2, 1, 0]]);
+        }
+    }
+
     #[test]
     fn both_byte_orders_are_read() {
         for order in ["little", "big"] {

@@ -24,12 +24,14 @@ pub(super) struct Payload<'a> {
     rest: &'a [u8],
     encoding: Encoding,
     line: usize,
+    /// With what a line ends.
+    line_end: u8,
 }
 
 impl<'a> Payload<'a> {
     /// The numbers that begin at a line.
-    pub fn new(rest: &'a [u8], encoding: Encoding, line: usize) -> Self {
-        Payload { rest, encoding, line }
+    pub fn new(rest: &'a [u8], encoding: Encoding, line: usize, line_end: u8) -> Self {
+        Payload { rest, encoding, line, line_end }
     }
 
     /// A mistake at the last number that was taken.
@@ -67,7 +69,7 @@ impl<'a> Payload<'a> {
     fn next_in_text(&mut self) -> Result<Option<f64>> {
         let start = self.rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(self.rest.len());
         let (space, rest) = self.rest.split_at(start);
-        self.line += space.iter().filter(|&&byte| byte == b'\n').count();
+        self.line += space.iter().filter(|&&byte| byte == self.line_end).count();
         let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         let (word, rest) = rest.split_at(end);
         self.rest = rest;
