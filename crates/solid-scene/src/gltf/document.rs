@@ -153,14 +153,22 @@ fn chunks(bytes: &[u8]) -> Result<Chunks<'_>> {
     Ok((glb.json, glb.bin.map(Cow::into_owned)))
 }
 
-/// What the crate takes for granted of a `.glb`: that its length is not less than its header's.
+/// What the crate takes for granted of a `.glb`, or has no good words for: that its length is that of its header and more, and that
+/// the file has as much.
 fn check_container(bytes: &[u8]) -> Result<()> {
     let length = bytes.get(8..12).and_then(<[u8]>::first_chunk).map(|length| u32::from_le_bytes(*length));
+    let present = bytes.len();
     match length {
-        Some(length) if bytes.starts_with(b"glTF") && length < 12 => {
+        _ if !bytes.starts_with(b"glTF") => Ok(()),
+        None => Err(format!("the file ends in its header, of 12 bytes; it has {present}").into()),
+        Some(length) if length < 12 => {
             Err(format!("the header tells a length of {length} bytes; it has 12 itself").into())
         }
-        _ => Ok(()),
+        Some(length) if length as usize > present => Err(format!(
+            "the header tells a length of {length} bytes; the file has {present}, so it was cut off"
+        )
+        .into()),
+        Some(_) => Ok(()),
     }
 }
 

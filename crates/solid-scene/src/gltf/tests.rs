@@ -724,6 +724,22 @@ fn a_channel_without_a_node_is_passed_over() {
     assert_eq!(file.parse_animation(Some("1")).unwrap().warnings, [""; 0]);
 }
 
+/// A mistake elsewhere in such a file is told by its line, too.
+#[test]
+fn a_channel_without_a_node_leaves_lines_as_they_are() {
+    let mut file = everything();
+    set(&mut file, "/accessors/0/count", json!("x"));
+    let told = |file: &File| {
+        let text = serde_json::to_string_pretty(&file.0).unwrap();
+        parse(text.as_bytes(), Path::new(""), None).map(|_| ()).unwrap_err().message().to_owned()
+    };
+    assert!(told(&file).starts_with("not glTF 2.0: invalid type: string \"x\""), "{}", told(&file));
+    let expected = told(&file);
+    assert!(expected.contains(" at line "), "{expected}");
+    file.0["animations"][0]["channels"][0]["target"].as_object_mut().unwrap().remove("node");
+    assert_eq!(told(&file), expected);
+}
+
 /// A scene need not have nodes.
 #[test]
 fn an_empty_scene_is_one() {
@@ -811,6 +827,21 @@ fn binary_files_are_read() {
     assert_eq!(part.objects.len(), 2);
     let text = everything().parse().unwrap();
     assert_eq!(pose(&part, 1.5), pose(&text, 1.5));
+}
+
+#[test]
+fn a_binary_file_that_was_cut_off_says_so() {
+    let bytes = binary(&everything());
+    let refused =
+        |end: usize| parse(&bytes[..end], Path::new(""), None).map(|_| ()).unwrap_err().message().to_owned();
+    assert_eq!(refused(11), "the file ends in its header, of 12 bytes; it has 11");
+    let length = bytes.len();
+    for present in [12, 100, length - 1] {
+        assert_eq!(
+            refused(present),
+            format!("the header tells a length of {length} bytes; the file has {present}, so it was cut off")
+        );
+    }
 }
 
 /// All numbers of a value, to be changed.

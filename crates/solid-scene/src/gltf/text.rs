@@ -105,7 +105,15 @@ pub(super) fn parse(text: &[u8]) -> Result<(Root, Rest)> {
             object.insert(name.to_owned(), nothing);
         }
     }
-    Ok((from_value(value)?, rest))
+    Ok((from_value(value).map_err(|error| with_line(text, error))?, rest))
+}
+
+/// An error with its line and column, where the text has the same as it stands: a value that was changed knows no lines.
+fn with_line(text: &[u8], error: serde_json::Error) -> serde_json::Error {
+    match from_slice::<Root>(text) {
+        Err(same) if same.to_string().starts_with(&error.to_string()) => same,
+        _ => error,
+    }
 }
 
 /// What the types would say in words of their own: that the text, where it is JSON, is an object.
