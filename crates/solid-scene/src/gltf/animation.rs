@@ -4,13 +4,14 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::{DQuat, DVec3};
 use gltf::json::animation::Property;
+use gltf::json::mesh::Primitive;
 use gltf::json::validation::Checked;
 
 use super::document::{Document, find};
 use super::local::Local;
 use super::sampler::Sampler;
 use crate::fault::Result;
-use crate::text::quoted;
+use crate::text::{counted, quoted};
 
 /// The animation that is played; without any, nothing changes.
 #[derive(Debug, Default)]
@@ -62,6 +63,9 @@ impl Animation {
             let sampler = find("sampler", &source.samplers, channel.sampler.value())
                 .map_err(|fault| fault.of(&what))?;
             let sampler = Sampler::read(document, sampler, property, &what)?;
+            if property == Property::MorphTargetWeights {
+                check_weights(document, node, &sampler).map_err(|fault| fault.of(&what))?;
+            }
             animation.duration = animation.duration.max(sampler.end());
             match property {
                 Property::MorphTargetWeights => drop(animation.weights.insert(node, sampler)),
@@ -108,6 +112,18 @@ impl Animation {
             sampler.sample(time, weights);
         }
     }
+}
+
+/// That there is a weight for each target of a node's mesh (glTF 2.0, section 3.11); without a mesh they have no effect.
+fn check_weights(document: &Document, node: usize, sampler: &Sampler) -> Result<()> {
+    let Some(mesh) = document.node(node)?.mesh else { return Ok(()) };
+    let of_each = |primitive: &Primitive| primitive.targets.as_ref().map_or(0, Vec::len);
+    let targets = document.mesh(mesh.value())?.primitives.iter().map(of_each).max().unwrap_or(0);
+    if sampler.width() == targets {
+        return Ok(());
+    }
+    let (weights, targets) = (counted(sampler.width(), "weight"), counted(targets, "target"));
+    Err(format!("a key has {weights}, but the mesh of node {node} has {targets}").into())
 }
 
 /// What messages call the animations: by name in quotes, or by number where they have none.

@@ -66,6 +66,11 @@ impl Sampler {
         }
     }
 
+    /// How many numbers a value has.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
     /// The time of the last key.
     pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)

@@ -779,6 +779,11 @@ fn skins_and_animations_are_checked() {
         ),
         ("/animations/0/samplers/0/interpolation", json!("CURVE"), "channel 0 has an unknown interpolation"),
         ("/animations/0/samplers/1/interpolation", json!("LINEAR"), "channel 1 has 2 keys, but 6 values"),
+        (
+            "/meshes/0/primitives/0/targets",
+            json!([{}, {}]),
+            "animation `all`, channel 2: a key has 1 weight, but the mesh of node 3 has 2 targets",
+        ),
     ];
     for (path, value, message) in changes {
         let mut file = everything();
