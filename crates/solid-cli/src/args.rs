@@ -12,8 +12,11 @@ use crate::rays::vector;
 /// Frames per second when nothing else is asked for.
 pub const FPS_DEFAULT: f64 = 30.0;
 
-/// Pairs whose boxes overlap when nothing else is asked for.
-const PAIRS_MAX_DEFAULT: u64 = 2_000_000;
+/// Pairs whose boxes overlap when nothing else is asked for: a pair takes some 0.8 KB.
+pub const PAIRS_MAX_DEFAULT: u64 = 1_000_000;
+
+/// The same where contacts or curves are asked for: of two meshes a pair takes up to 25 KB for the ones, and 8 KB for the others.
+pub const PAIRS_MAX_OF_MANY_POINTS: u64 = 100_000;
 
 const EXIT_STATUS: &str = "\
 Exit status:
@@ -195,9 +198,10 @@ pub struct CheckArgs {
     #[arg(long)]
     pub continuous: bool,
 
-    /// Stop where the boxes of more pairs of objects overlap than this: each pair takes a kilobyte of memory or more
-    #[arg(long, value_name = "N", default_value_t = PAIRS_MAX_DEFAULT, value_parser = pairs, allow_negative_numbers = true)]
-    pub max_pairs: u64,
+    /// Stop where the boxes of more pairs of objects overlap than this: each pair takes a kilobyte of memory, of two meshes up to 25
+    /// for contacts and up to 8 for curves [default: 1000000, or 100000 where --response or a rule asks for contacts or curve]
+    #[arg(long, value_name = "N", value_parser = pairs, allow_negative_numbers = true)]
+    pub max_pairs: Option<u64>,
 
     /// Write every frame and collision as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]

@@ -468,6 +468,30 @@ fn a_reader_that_leaves_is_no_error() {
     }
 }
 
+/// A pair takes the more memory, the more is wanted of it, so that of fewer the boxes may overlap.
+#[test]
+fn how_many_pairs_are_too_many_depends_on_the_response() {
+    let crowd = |objects: u32| {
+        let group = |i| format!("g {i}\nf 1 2 3\n");
+        format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{}", (0..objects).map(group).collect::<String>())
+    };
+    let rule = "[[object]]\nname = \"1\"\nresponse = \"contacts\"\n";
+    let desk = Desk::new()
+        .file("some.obj", crowd(448))
+        .file("many.obj", crowd(1415))
+        .file("r.toml", rule)
+        .file("simple.toml", "default = \"simple\"\n");
+    for options in ["--response contacts", "--response curve", "--rules r.toml"] {
+        let run = desk.run(&format!("check some.obj --split {options}"));
+        run.assert_fails(&["more than 100000 pairs"]);
+    }
+    for options in ["", "--response depth", "--rules simple.toml"] {
+        let run = desk.run(&format!("check many.obj --split {options}"));
+        run.assert_fails(&["more than 1000000 pairs"]);
+    }
+    desk.run("check some.obj --split --rules r.toml --max-pairs 7").assert_fails(&["more than 7 pairs"]);
+}
+
 #[test]
 fn too_many_pairs_are_refused_before_they_take_all_memory() {
     let desk = Desk::with_boxes().file("c.obj", BOX);

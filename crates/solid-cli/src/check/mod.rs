@@ -18,7 +18,7 @@ use anyhow::{Context, Result};
 use solid_scene::{Format, Scene};
 use solid3d::Response;
 
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, PAIRS_MAX_DEFAULT, PAIRS_MAX_OF_MANY_POINTS};
 use crate::output::{self, is_stdout};
 use crate::placements::Placements;
 use crate::rays;
@@ -61,7 +61,7 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let mut stage = Stage::new(&scene, &shapes, motion, tested, timeline.time(0))?;
     let clearance = set_rules(&rules, args, &scene, &mut stage, &mut warnings)?;
     let has_clearance = clearance.is_some();
-    let crowd = Crowd::new(args.max_pairs, clearance.unwrap_or(0.0), tested);
+    let crowd = Crowd::new(pairs_max(args, &rules), clearance.unwrap_or(0.0), tested);
     let tells_distances = has_clearance || rules.tell_depth(args.response.map(Response::from));
     let has_rays = !rays.is_empty();
     let columns =
@@ -87,6 +87,15 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
     let summary = findings.summary();
     let near = summary.near.is_some_and(|near| near.near_pairs > 0);
     Ok(if near || summary.collisions > 0 { Verdict::Collisions } else { Verdict::Clean })
+}
+
+/// Of how many pairs the boxes may overlap.
+fn pairs_max(args: &CheckArgs, rules: &Rules) -> u64 {
+    let default = match rules.tell_many_points(args.response.map(Response::from)) {
+        true => PAIRS_MAX_OF_MANY_POINTS,
+        false => PAIRS_MAX_DEFAULT,
+    };
+    args.max_pairs.unwrap_or(default)
 }
 
 /// That there is one object, in words.

@@ -83,10 +83,19 @@ impl Rules {
 
     /// Whether the response of some pair may tell a depth; `default` overrides that of the rules.
     pub fn tell_depth(&self, default: Option<Response>) -> bool {
+        self.responses(default).any(|response| matches!(response, Response::Depth | Response::Contacts))
+    }
+
+    /// Whether the response of some pair may tell any number of points; `default` overrides that of the rules.
+    pub fn tell_many_points(&self, default: Option<Response>) -> bool {
+        self.responses(default).any(|response| matches!(response, Response::Curve | Response::Contacts))
+    }
+
+    /// The responses that pairs may have; `default` overrides that of the rules.
+    fn responses(&self, default: Option<Response>) -> impl Iterator<Item = Response> {
         let of_objects = self.objects.iter().map(|rule| rule.response);
         let of_pairs = self.pairs.iter().filter_map(|rule| rule.response);
-        let all = default.or(self.default).into_iter().chain(of_objects).chain(of_pairs);
-        all.into_iter().any(|response| matches!(response, Response::Depth | Response::Contacts))
+        default.or(self.default).into_iter().chain(of_objects).chain(of_pairs)
     }
 
     /// The rules of a text; `path` is where it is from, for messages.
