@@ -12,6 +12,10 @@ use crate::rays::vector;
 /// Frames per second when nothing else is asked for.
 pub const FPS_DEFAULT: f64 = 30.0;
 
+/// The least and the most frames per second: beyond them times of frames may be no numbers, or all one.
+const FPS_MIN: f64 = 1e-100;
+const FPS_MAX: f64 = 1e100;
+
 /// Pairs whose boxes overlap when nothing else is asked for: a pair takes some 0.8 KB.
 pub const PAIRS_MAX_DEFAULT: u64 = 1_000_000;
 
@@ -39,6 +43,7 @@ Convex pieces (--decompose PATTERN):
 Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any characters, `?` for one.
     default = \"witness\"             # ignore, simple, witness, smart, curve, depth or contacts
     solid = [\"tank*\"]               # as --solid
+    decompose = [\"crane\"]           # as --decompose
     clearance = 0.05                # as --clearance
 
     [[object]]                      # all pairs with the object
@@ -251,7 +256,7 @@ impl From<ResponseArg> for Response {
 }
 
 fn fps(text: &str) -> Result<f64, String> {
-    number(text, |x| x > 0.0, "a finite number above 0")
+    number(text, |x| (FPS_MIN..=FPS_MAX).contains(&x), "a number from 1e-100 to 1e100")
 }
 
 fn clearance(text: &str) -> Result<f64, String> {
@@ -286,9 +291,10 @@ mod tests {
 
     #[test]
     fn numbers_that_are_no_rate_or_time_are_refused() {
-        for text in ["0", "-1", "nan", "inf", "1e999", "x", ""] {
+        for text in ["0", "-1", "nan", "inf", "1e999", "x", "", "1e-308", "1e-101", "1e101"] {
             assert!(fps(text).is_err(), "{text}");
         }
+        assert_eq!([fps("1e-100"), fps("1e100")], [Ok(FPS_MIN), Ok(FPS_MAX)]);
         assert_eq!(fps("29.97"), Ok(29.97));
         for text in ["-0.1", "nan", "inf", "1s"] {
             assert!(seconds(text).is_err(), "{text}");

@@ -77,7 +77,8 @@ fn usage(error: &clap::Error) -> ExitCode {
     if error.use_stderr() { ExitCode::from(FAILURE) } else { ExitCode::SUCCESS }
 }
 
-/// A line on standard error. One that nobody reads is no failure.
+/// A line on standard error, in which nothing of a file or an argument moves the cursor. One that nobody reads is no failure.
 fn complain(level: &str, message: impl std::fmt::Display) {
+    let message = words::printable(&message.to_string());
     let _ = writeln!(std::io::stderr().lock(), "{level}: {message}");
 }

@@ -58,7 +58,7 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[x, y, z]) if [x, y, z].iter().all(|number| number.is_finite()) => Ok(DVec3::new(x, y, z)),
-        _ => Err("expected three finite numbers X,Y,Z without blanks, as 0,1.5,-2".to_owned()),
+        _ => Err("expected three finite numbers X,Y,Z in one word, as 0,1.5,-2".to_owned()),
     }
 }
 

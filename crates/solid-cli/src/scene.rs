@@ -1,6 +1,6 @@
 //! Loading the scene that the command line names.
 
-use anyhow::{Result, anyhow, ensure};
+use anyhow::{Result, ensure};
 use solid_scene::{Format, LoadOptions, Scene};
 
 use crate::args::SceneArgs;
@@ -21,7 +21,7 @@ pub fn load(args: &SceneArgs) -> Result<Scene> {
     options.split = args.split;
     options.animation.clone_from(&args.animation);
     let loaded = progress::while_waiting("reading the scene", || Scene::load(&args.files, &options));
-    let scene = loaded.map_err(|error| anyhow!(words::printable(&error.to_string())))?;
+    let scene = loaded?;
     if scene.objects().is_empty() {
         // They say why, and nobody else will tell them.
         warnings(&scene).for_each(|warning| complain("warning", warning));

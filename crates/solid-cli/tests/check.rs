@@ -172,7 +172,11 @@ fn from_and_to_choose_the_frames() {
 #[test]
 fn times_of_any_size_are_legible() {
     let desk = Desk::with_boxes();
-    desk.run("check a.obj --to 1e300").assert_fails(&["1e300 seconds at 30.0 frames per second"]);
+    desk.run("check a.obj --to 1e300").assert_fails(&[
+        "1e300 seconds at 30.0 frames per second",
+        "(--to)",
+        "(--fps)",
+    ]);
     desk.run("check a.obj --from 2e300 --to 1e300")
         .assert_fails(&["--from is 2e300, after the end at 1e300"]);
     let run = desk.run("check a.obj b.obj --from 1e300 --to 1e300");
@@ -242,6 +246,9 @@ fn help_and_version_make_status_0() {
     let help = desk.run("check --help").stdout;
     assert!(help.contains("[[pair]]") && help.contains("frame,object,tx,ty,tz,qx,qy,qz,qw"), "{help}");
     assert!(help.contains("[default: 30]"), "{help}");
+    for key in ["default", "solid", "decompose", "clearance"] {
+        assert!(help.contains(&format!("    {key} = ")), "{key}");
+    }
 }
 
 #[test]
@@ -256,6 +263,25 @@ fn bad_scenes_are_named() {
     desk.run("check .").assert_fails(&["."]);
     let run = desk.run("check binary.obj");
     assert!(matches!(run.status, 0 | 2), "{run:?}");
+}
+
+/// Whatever names and files hold, messages leave the terminal as it is.
+#[test]
+fn control_characters_of_names_are_escaped_in_messages() {
+    let desk = Desk::with_boxes()
+        .file("a\u{1b}[2J.ply", "ply\n")
+        .file("r\u{1b}[2J.toml", "[[object]]\nname = \"x\"\nresponse = \"ignore\"\n");
+    let runs = [
+        desk.run("check gone\u{1b}[2J.obj"),
+        desk.run("check a\u{1b}[2J.ply"),
+        desk.run("check a.obj --rules gone\u{1b}[2J.toml"),
+        desk.run("check a.obj --placements gone\u{1b}[2J.csv"),
+        desk.run("check a.obj b.obj --csv no\u{1b}[2J/out.csv"),
+        desk.run("check a.obj b.obj --rules r\u{1b}[2J.toml"),
+    ];
+    for run in runs {
+        assert!(run.stderr.contains("\\u{1b}[2J") && !run.stderr.contains('\u{1b}'), "{run:?}");
+    }
 }
 
 /// As some editors save text.

@@ -38,7 +38,8 @@ impl Timeline {
         if last >= FRAMES_MAX as f64 {
             let seconds = to - from;
             bail!(
-                "{seconds:?} seconds at {fps:?} frames per second make more than {FRAMES_MAX} frames, the limit"
+                "{seconds:?} seconds at {fps:?} frames per second make more than {FRAMES_MAX} frames, the limit; \
+                 an earlier end (--to) or a lower rate (--fps) makes fewer"
             );
         }
         Ok(Timeline { from, to, fps, frames: last as u64 + 1 })

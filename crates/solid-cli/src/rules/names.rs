@@ -4,6 +4,10 @@ use std::collections::HashMap;
 
 use super::file::Names;
 use crate::suggest;
+use crate::words::quoted;
+
+/// For how many names that match nothing one is suggested: each is compared with all names.
+const HINTS_MAX: usize = 20;
 
 /// The names of a scene's objects, to look them up.
 pub struct NameIndex<'a> {
@@ -38,7 +42,7 @@ impl<'a> NameIndex<'a> {
         if !wanted.pattern.is_name() && !found.is_empty() {
             found.retain(|&place| is_mesh(place));
             if found.is_empty() {
-                self.warnings.push(format!("{}: {:?} matches no mesh", wanted.place, wanted.text));
+                self.warnings.push(format!("{}: {} matches no mesh", wanted.place, quoted(&wanted.text)));
             }
         }
         found
@@ -46,8 +50,8 @@ impl<'a> NameIndex<'a> {
 
     /// Notes that both sides of a rule for pairs name one object.
     pub fn note_one_object(&mut self, name: &Names) {
-        self.warnings
-            .push(format!("{}: a and b are both {:?}; a pair needs two objects", name.place, name.text));
+        let (place, text) = (&name.place, quoted(&name.text));
+        self.warnings.push(format!("{place}: a and b are both {text}; a pair needs two objects"));
     }
 
     /// What matched nothing, or no pair, in words, a line each.
@@ -56,8 +60,9 @@ impl<'a> NameIndex<'a> {
     }
 
     fn nothing_matches(&self, wanted: &Names) -> String {
-        let candidates = if wanted.pattern.is_name() { self.names } else { &[] };
+        let hints = wanted.pattern.is_name() && self.warnings.len() < HINTS_MAX;
+        let candidates = if hints { self.names } else { &[] };
         let hint = suggest::hint(&wanted.text, candidates.iter().copied());
-        format!("{}: {:?} matches no object{hint}", wanted.place, wanted.text)
+        format!("{}: {} matches no object{hint}", wanted.place, quoted(&wanted.text))
     }
 }

@@ -285,6 +285,22 @@ mod tests {
         assert_eq!(case.warnings, expected);
     }
 
+    /// Many names beside many objects take no minutes.
+    #[test]
+    fn of_many_names_that_match_nothing_the_first_have_hints() {
+        let rule = |i: usize| format!("[[object]]\nname = \"shpi{i}\"\nresponse = \"ignore\"\n");
+        let warnings = case(&(0..25).map(rule).collect::<String>(), None, &[]).warnings;
+        let have: Vec<bool> = warnings.iter().map(|warning| warning.contains("did you mean")).collect();
+        assert_eq!(have, [[true; 20].as_slice(), &[false; 5]].concat());
+    }
+
+    #[test]
+    fn long_patterns_are_told_by_their_beginning() {
+        let rule = format!("[[object]]\nname = \"{}\"\nresponse = \"ignore\"\n", "x*".repeat(100));
+        let told = format!("r.toml:2: \"{}\"... matches no object", "x*".repeat(40));
+        assert_eq!(case(&rule, None, &[]).warnings, [told]);
+    }
+
     #[test]
     fn a_pair_of_one_object_is_named() {
         let of = |a: &str, b: &str| {
