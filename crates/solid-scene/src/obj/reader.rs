@@ -51,10 +51,10 @@ pub(super) fn read(text: &str, first_group: &str) -> Result<Statements> {
 struct Reader {
     read: Statements,
     group: usize,
-    /// The name of the object that goes on, which may have groups.
-    object: String,
-    /// The groups by their object, and their own name where they have one.
-    group_named: HashMap<(String, Option<String>), usize>,
+    /// The group that is the object which goes on, and may have others; before the first object that of the file.
+    object: usize,
+    /// Objects by their names, and groups by those of their objects and their own.
+    group_named: HashMap<(Option<usize>, String), usize>,
     /// The greatest index so far and its line: vertices may follow the faces that name them.
     greatest: (u32, usize),
 }
@@ -62,7 +62,7 @@ struct Reader {
 impl Reader {
     fn new(first_group: &str) -> Self {
         let read = Statements { groups: vec![first_group.to_owned()], ..Statements::default() };
-        Reader { read, group: 0, object: String::new(), group_named: HashMap::new(), greatest: (0, 0) }
+        Reader { read, group: 0, object: 0, group_named: HashMap::new(), greatest: (0, 0) }
     }
 
     fn statement(&mut self, line: usize, statement: &str) -> Result<()> {
@@ -73,10 +73,10 @@ impl Reader {
             Some("l") => self.element(ElementKind::Line, words, line)?,
             Some("p") => self.element(ElementKind::Points, words, line)?,
             Some("o") => {
-                self.object = words.collect::<Vec<_>>().join(" ");
-                self.enter_group(&self.object.clone(), false);
+                self.enter_group(None, words);
+                self.object = self.group;
             }
-            Some("g") => self.enter_group(&words.collect::<Vec<_>>().join(" "), true),
+            Some("g") => self.enter_group(Some(self.object), words),
             Some("curv" | "curv2" | "surf") => self.read.free_forms += 1,
             _ => {}
         }
@@ -129,12 +129,12 @@ impl Reader {
         }
     }
 
-    /// Goes on with a group of the object, or with the object itself.
-    fn enter_group(&mut self, name: &str, is_of_object: bool) {
+    /// Goes on with a group of an object, or with an object.
+    fn enter_group<'a>(&mut self, of: Option<usize>, words: impl Iterator<Item = &'a str>) {
         let groups = &mut self.read.groups;
-        let key = (self.object.clone(), is_of_object.then(|| name.to_owned()));
-        self.group = *self.group_named.entry(key).or_insert_with(|| {
-            groups.push(name.to_owned());
+        let name = words.collect::<Vec<_>>().join(" ");
+        self.group = *self.group_named.entry((of, name.clone())).or_insert_with(|| {
+            groups.push(name);
             groups.len() - 1
         });
     }
