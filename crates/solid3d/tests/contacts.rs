@@ -350,15 +350,39 @@ fn a_flat_floor_holds_any_body_up() {
     }
 }
 
-/// Law: so is a curved mesh, of a solid or of a surface alone, by the normal of the floor and not by those of its facets.
+/// The surface of a cube, of so many squares along each edge.
+fn squares(half: f64, squares: u32) -> common::Soup {
+    let face = |axis: usize, sign: f64| {
+        sheet(squares + 1, squares + 1, [false, false], |u, v| {
+            let [u, v] = if sign > 0.0 { [u, v] } else { [v, u] }.map(|x| half * (2.0 * x - 1.0));
+            let mut point = DVec3::ZERO;
+            (point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3]) = (half * sign, u, v);
+            point
+        })
+    };
+    common::joined([0, 1, 2].into_iter().flat_map(|axis| [face(axis, 1.0), face(axis, -1.0)]))
+}
+
+/// Law: so is a mesh, curved or with flat parts, of a solid or of a surface alone, by the normal of the floor and not by those of its own triangles.
 #[test]
-fn a_flat_floor_holds_curved_meshes_up() {
+fn a_flat_floor_holds_meshes_up() {
     let mut rng = seeded(SEED);
-    let (floors, surface) = ([1, 2, 9].map(floor), common::torus(12, 8, 0.3).shape());
-    let solid = surface.clone().into_solid().unwrap();
-    for case in 0..600 {
-        let shape = [&surface, &solid][case % 2];
-        let turned = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..TAU));
+    let floors = [1, 2, 9].map(floor);
+    let mut beside = squares(0.3, 2);
+    beside.vertices.iter_mut().for_each(|vertex| vertex.x += 1.2);
+    let surfaces =
+        [common::torus(12, 8, 0.3), common::joined([squares(0.5, 5), beside])].map(|soup| soup.shape());
+    let solids = surfaces.each_ref().map(|surface| surface.clone().into_solid().unwrap());
+    for case in 0..1200 {
+        let shape = [&surfaces[0], &solids[0], &surfaces[1], &solids[1]][case % 4];
+        let turned = match case % 8 {
+            0..4 => DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..TAU)),
+            // Upright, or nearly.
+            _ => {
+                DAffine3::from_rotation_y(rng.random_range(0.0..TAU))
+                    * DAffine3::from_rotation_x([0.0, 0.001, 0.1][case % 3])
+            }
+        };
         let low = -reach(shape, &turned, DVec3::NEG_Y);
         let (beside, depth) = (in_cube(&mut rng) * 2.0, rng.random_range(0.001..0.02));
         let place = at(beside.x, -low - depth, beside.z) * turned;

@@ -16,6 +16,9 @@ use super::other::Other;
 use super::stars::{LEVEL, SAME_NORMAL, Shortest, Stars, is_parallel};
 use super::{Meeting, face, through};
 
+/// A triangle whose normal has a greater cosine than this with that of another tells on which side of that it is.
+const SIDE_COSINE: f64 = 0.2;
+
 /// A primitive of a soup, and what it is in contact with.
 pub(super) struct Side<'a> {
     stars: &'a Stars<'a>,
@@ -91,22 +94,23 @@ impl<'a> Side<'a> {
         Some(self.shorter(is_flat.then_some(self.body.plane)??))
     }
 
-    /// The normal of a triangle beside one of another soup, if all around it is in its plane and that is the normal to leave it along. Out of a solid, and
-    /// against the other where that is of one; of two surfaces the smaller one tells, by the side of the other's triangle that it is on.
+    /// The normal of a triangle beside one of another soup, if all around it is in its plane and that is the normal to leave it along. Out of a solid; of a
+    /// surface to the side on which the other is, if that is smaller, or against the other's triangle.
     pub fn level_beside(&self, beside: &Side, out: impl FnOnce() -> Option<Corrected>) -> Option<DVec3> {
         let normal = self.body.plane?;
         // Where it ends, the surface has others.
         if !self.stars.is_flat(self.body.primitive) && !self.is_own(out()?.normal()) {
             return None;
         }
-        let is_smaller = || self.stars.size() < beside.stars.size();
-        let facing = beside.outward().or_else(|| is_smaller().then(|| beside.toward(self.stars))?);
-        Some(match (self.outward(), facing) {
-            (Some(outward), _) => outward,
-            (None, Some(facing)) if normal.dot(facing) > 0.0 => -normal,
-            (None, Some(_)) => normal,
-            (None, None) => self.toward(beside.stars)?,
-        })
+        if let Some(outward) = self.outward() {
+            return Some(outward);
+        }
+        if self.is_of_larger(beside).unwrap_or(true) {
+            return self.toward(beside.stars);
+        }
+        let facing = beside.outward().or_else(|| beside.toward(self.stars))?;
+        let cosine = normal.dot(facing);
+        Some(if cosine.abs() > SIDE_COSINE { normal * -cosine.signum() } else { self.shorter(normal) })
     }
 
     /// The normal of a triangle, to the side on which more of another soup is.
@@ -114,6 +118,12 @@ impl<'a> Side<'a> {
         let normal = self.body.plane?;
         let [low, high] = other.extremes(normal);
         Some(if low + high < 2.0 * normal.dot(self.corners[0]) { -normal } else { normal })
+    }
+
+    /// Whether its soup is larger than that of another; `None` if they are of one size.
+    pub fn is_of_larger(&self, other: &Side) -> Option<bool> {
+        let [mine, its] = [self.stars.size(), other.stars.size()];
+        ((mine - its).abs() > LEVEL * mine).then_some(mine > its)
     }
 
     /// Whether all around a triangle is in its plane.

@@ -120,7 +120,7 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     found.into_iter().filter_map(patch).collect()
 }
 
-/// The contacts of two triangles of which one has all around it in its plane, and the other has not: along the normal of that.
+/// The contacts of two triangles of which one has all around it in its plane, along the normal of that; of two such along that of the larger soup.
 fn level_touches(
     pair: &Pair,
     sides: [&Side; 2],
@@ -129,9 +129,9 @@ fn level_touches(
 ) -> Option<(DVec3, Vec<Touch>)> {
     let [in_a, in_b] = sides.map(|side| &side.body);
     let of_first = match sides.map(Side::is_level) {
-        [true, false] => true,
-        [false, true] => false,
-        _ => return None,
+        [false, false] => return None,
+        [true, true] => sides[0].is_of_larger(sides[1])?,
+        [is_first, _] => is_first,
     };
     let (level, beside, sign) = if of_first { (sides[0], sides[1], -1.0) } else { (sides[1], sides[0], 1.0) };
     beside.body.plane?;

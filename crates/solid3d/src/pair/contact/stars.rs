@@ -3,7 +3,7 @@
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::{BTreeSet, HashMap};
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use smallvec::SmallVec;
 use solid_convex::{Polytope, Support};
 
@@ -188,10 +188,12 @@ impl<'a> Stars<'a> {
         [middle - reach, middle + reach]
     }
 
-    /// How large the soup is: by the boxes along the axes.
+    /// How large the soup is: the edges of its local box.
     pub fn size(&self) -> f64 {
-        let extent = |[low, high]: [f64; 2]| high - low;
-        DVec3::AXES.iter().map(|axis| extent(self.extremes(*axis))).sum()
+        let bounds = self.complex.bounds();
+        let edges = DMat3::from_diagonal(bounds.max - bounds.min);
+        let DMat3 { x_axis, y_axis, z_axis } = *self.map.linear() * edges;
+        x_axis.length() + y_axis.length() + z_axis.length()
     }
 
     /// Whether the surface around a triangle is in its plane, as far as it goes.
