@@ -367,7 +367,11 @@ fn squares(half: f64, squares: u32) -> common::Soup {
 #[test]
 fn a_flat_floor_holds_meshes_up() {
     let mut rng = seeded(SEED);
-    let floors = [1, 2, 9].map(floor);
+    let table = common::block(DVec3::new(-5.0, -1.0, -5.0), DVec3::new(5.0, 0.0, 5.0));
+    let far = common::block(DVec3::new(20.0, -1.0, 0.0), DVec3::new(21.0, 0.0, 1.0));
+    // Not convex, so that it is no body.
+    let tables = common::joined([table, far]).shape();
+    let floors = [floor(1), floor(2), floor(9), tables.clone(), tables.into_solid().unwrap()];
     let mut beside = squares(0.3, 2);
     beside.vertices.iter_mut().for_each(|vertex| vertex.x += 1.2);
     let surfaces =

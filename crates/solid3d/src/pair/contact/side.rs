@@ -90,34 +90,45 @@ impl<'a> Side<'a> {
 
     /// The normal of a triangle with a flat surface around it, to the side on which the way out is shorter.
     pub fn flat(&self) -> Option<DVec3> {
-        let is_flat = self.stars.is_flat(self.body.primitive);
-        Some(self.shorter(is_flat.then_some(self.body.plane)??))
+        Some(self.shorter(self.is_flat().then_some(self.body.plane)??))
     }
 
-    /// The normal of a triangle beside one of another soup, if all around it is in its plane and that is the normal to leave it along. Out of a solid; of a
-    /// surface to the side on which the other is, if that is smaller, or against the other's triangle.
-    pub fn level_beside(&self, beside: &Side, out: impl FnOnce() -> Option<Corrected>) -> Option<DVec3> {
-        let normal = self.body.plane?;
-        // Where it ends, the surface has others.
-        if !self.stars.is_flat(self.body.primitive) && !self.is_own(out()?.normal()) {
-            return None;
-        }
-        if let Some(outward) = self.outward() {
-            return Some(outward);
-        }
-        if self.is_of_larger(beside).unwrap_or(true) {
-            return self.toward(beside.stars);
-        }
-        let facing = beside.outward().or_else(|| beside.toward(self.stars))?;
-        let cosine = normal.dot(facing);
-        Some(if cosine.abs() > SIDE_COSINE { normal * -cosine.signum() } else { self.shorter(normal) })
+    /// Whether the surface is flat all around a triangle.
+    pub fn is_flat(&self) -> bool {
+        self.stars.is_flat(self.body.primitive)
     }
 
-    /// The normal of a triangle, to the side on which more of another soup is.
-    fn toward(&self, other: &Stars) -> Option<DVec3> {
+    /// The normal of a triangle beside a primitive of another soup. Out of a solid; of a surface to the side on which the other is, if that is smaller, or
+    /// against the other's triangle.
+    pub fn own_beside(&self, beside: &Side) -> Option<DVec3> {
         let normal = self.body.plane?;
+        let of_surface = || {
+            if self.is_of_larger(beside).unwrap_or(true) {
+                return self.toward(beside.stars, normal);
+            }
+            let turned = |facing: DVec3| Some(normal.dot(facing)).filter(|cosine| cosine.abs() > SIDE_COSINE);
+            let facing = beside.outward().or_else(|| Some(beside.toward(self.stars, beside.body.plane?)));
+            match facing.and_then(turned) {
+                Some(cosine) => normal * -cosine.signum(),
+                None => self.shorter(normal),
+            }
+        };
+        Some(self.outward().unwrap_or_else(of_surface))
+    }
+
+    /// The normal of a triangle, or its opposite: to the side on which more of another soup is.
+    fn toward(&self, other: &Stars, normal: DVec3) -> DVec3 {
         let [low, high] = other.extremes(normal);
-        Some(if low + high < 2.0 * normal.dot(self.corners[0]) { -normal } else { normal })
+        if low + high < 2.0 * normal.dot(self.corners[0]) { -normal } else { normal }
+    }
+
+    /// Whether it is a triangle that is larger than another.
+    pub fn is_wider(&self, other: &Side) -> bool {
+        let square = |side: &Side| match *side.corners {
+            [p, q, r] => Some((q - p).cross(r - p).length_squared()),
+            _ => None,
+        };
+        square(self).zip(square(other)).is_some_and(|(mine, its)| mine > (1.0 + LEVEL) * its)
     }
 
     /// Whether its soup is larger than that of another; `None` if they are of one size.

@@ -120,43 +120,68 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     found.into_iter().filter_map(patch).collect()
 }
 
-/// The contacts of two triangles of which one has all around it in its plane, along the normal of that; of two such along that of the larger soup.
+/// The contacts of two triangles of which one has all around it in its plane, along the normal of that, unless the other is larger; of two such along that
+/// of the larger soup.
 fn level_touches(
     pair: &Pair,
     sides: [&Side; 2],
     must: bool,
     meeting: impl FnOnce() -> Option<Meeting>,
 ) -> Option<(DVec3, Vec<Touch>)> {
-    let [in_a, in_b] = sides.map(|side| &side.body);
     let of_first = match sides.map(Side::is_level) {
         [false, false] => return None,
         [true, true] => sides[0].is_of_larger(sides[1])?,
         [is_first, _] => is_first,
     };
-    let (level, beside, sign) = if of_first { (sides[0], sides[1], -1.0) } else { (sides[1], sides[0], 1.0) };
+    let [level, beside] = if of_first { sides } else { [sides[1], sides[0]] };
     beside.body.plane?;
-    let corrected = || meeting().and_then(|meeting| level.corrected(meeting.normal * sign, meeting.tilt));
-    let normal = level.level_beside(beside, corrected)? * sign;
-    let mut touches = pair.over(in_a, in_b, normal, of_first);
+    if !beside.is_level() && beside.is_wider(level) {
+        return None;
+    }
+    if !level.is_flat() {
+        // Where it ends, the surface has other normals.
+        let Meeting { normal, tilt, .. } = meeting()?;
+        let corrected = level.corrected(if of_first { -normal } else { normal }, tilt)?;
+        if !level.is_own(corrected.normal()) {
+            return None;
+        }
+    }
+    let (normal, mut touches) = own_touches(pair, sides, of_first)?;
     // What does not meet is not in each other either, but on the other side.
     touches.retain(|touch| must || touch.depth <= SAME_DEPTH);
     Some((normal, touches))
 }
 
-/// The contacts of two primitives, along a normal that the surfaces have; `None` where there is none.
+/// The contacts of two primitives along the normal of one, which is a triangle; `of_first` says whose.
+fn own_touches(pair: &Pair, [of_a, of_b]: [&Side; 2], of_first: bool) -> Option<(DVec3, Vec<Touch>)> {
+    let normal = if of_first { -of_a.own_beside(of_b)? } else { of_b.own_beside(of_a)? };
+    Some((normal, pair.over(&of_a.body, &of_b.body, normal, of_first)))
+}
+
+/// The contacts of two primitives, along a normal that the surfaces have; `None` where there is none. Where one surface does not have that along which they
+/// are left, it is the normal of a triangle: of the larger one, if that may be.
 fn touches(pair: &Pair, of_a: &Side, of_b: &Side, meeting: &Meeting) -> Option<(DVec3, Vec<Touch>)> {
+    let on_b = of_b.corrected(meeting.normal, meeting.tilt)?;
+    let on_a = of_a.corrected(-meeting.normal, meeting.tilt);
+    let is_replaced = |on: Corrected| matches!(on, Corrected::Replaced(_));
+    let is_own = |side: &Side, on: Corrected| is_replaced(on) || side.is_own(on.normal());
+    if is_replaced(on_b) {
+        let of_first = of_a.is_wider(of_b) && on_a.is_some_and(|on_a| is_own(of_a, on_a));
+        return own_touches(pair, [of_a, of_b], of_first);
+    }
+    let on_a = on_a?;
+    if is_replaced(on_a) {
+        let of_second = of_b.is_wider(of_a) && is_own(of_b, on_b);
+        return own_touches(pair, [of_a, of_b], !of_second);
+    }
     let (in_a, in_b) = (&of_a.body, &of_b.body);
-    Some(match of_b.corrected(meeting.normal, meeting.tilt)? {
-        Corrected::Replaced(normal) => (normal, pair.over(in_a, in_b, normal, false)),
-        on_b => match (of_a.corrected(-meeting.normal, meeting.tilt)?, on_b) {
-            (Corrected::Replaced(normal), _) => (-normal, pair.over(in_a, in_b, -normal, true)),
-            (_, Corrected::Adopted(normal)) => (normal, pair.across(in_a, in_b, normal)),
-            (Corrected::Adopted(normal), _) => (-normal, pair.across(in_a, in_b, -normal)),
-            (_, kept) => {
-                let meeting = Meeting { normal: kept.normal(), ..*meeting };
-                (meeting.normal, pair.touches(in_a, in_b, &meeting))
-            }
-        },
+    Some(match (on_a, on_b) {
+        (_, Corrected::Adopted(normal)) => (normal, pair.across(in_a, in_b, normal)),
+        (Corrected::Adopted(normal), _) => (-normal, pair.across(in_a, in_b, -normal)),
+        (_, kept) => {
+            let meeting = Meeting { normal: kept.normal(), ..*meeting };
+            (meeting.normal, pair.touches(in_a, in_b, &meeting))
+        }
     })
 }
 
