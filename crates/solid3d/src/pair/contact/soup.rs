@@ -162,14 +162,14 @@ fn own_touches(pair: &Pair, [of_a, of_b]: [&Side; 2], of_first: bool) -> Option<
 /// are left, it is the normal of a triangle: of the larger one, if that may be.
 fn touches(pair: &Pair, of_a: &Side, of_b: &Side, meeting: &Meeting) -> Option<(DVec3, Vec<Touch>)> {
     let on_b = of_b.corrected(meeting.normal, meeting.tilt)?;
-    let on_a = of_a.corrected(-meeting.normal, meeting.tilt);
+    let on_a = || of_a.corrected(-meeting.normal, meeting.tilt);
     let is_replaced = |on: Corrected| matches!(on, Corrected::Replaced(_));
     let is_own = |side: &Side, on: Corrected| is_replaced(on) || side.is_own(on.normal());
     if is_replaced(on_b) {
-        let of_first = of_a.is_wider(of_b) && on_a.is_some_and(|on_a| is_own(of_a, on_a));
+        let of_first = of_a.is_wider(of_b) && on_a().is_some_and(|on_a| is_own(of_a, on_a));
         return own_touches(pair, [of_a, of_b], of_first);
     }
-    let on_a = on_a?;
+    let on_a = on_a()?;
     if is_replaced(on_a) {
         let of_second = of_b.is_wider(of_a) && is_own(of_b, on_b);
         return own_touches(pair, [of_a, of_b], !of_second);
