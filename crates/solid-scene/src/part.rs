@@ -7,7 +7,22 @@ use solid3d::Shape;
 use crate::pose::ObjectPose;
 
 /// Bytes in the names of all objects of a file together: each keeps its own, which many may have of one node or mesh.
-pub(crate) const NAMES_MAX: usize = 1 << 28;
+const NAMES_MAX: usize = 1 << 28;
+
+/// How many bytes the names of the objects of a file have so far.
+#[derive(Debug, Default)]
+pub(crate) struct NameBytes(usize);
+
+impl NameBytes {
+    /// Counts another name; what is wrong, where it is one too many.
+    pub fn add(&mut self, name: &str) -> Result<(), String> {
+        self.0 += name.len();
+        match self.0 {
+            0..=NAMES_MAX => Ok(()),
+            _ => Err(format!("the names of the objects have more than {NAMES_MAX} bytes in all")),
+        }
+    }
+}
 
 /// A file's share of a scene.
 #[derive(Debug)]

@@ -16,7 +16,7 @@ use super::mesh::{self, Geometry};
 use super::motion::{Deformation, GltfMotion, Moved};
 use super::skin::Skin;
 use crate::fault::Result;
-use crate::part::{NAMES_MAX, Part, PartObject};
+use crate::part::{NameBytes, Part, PartObject};
 use crate::soup::Soup;
 use crate::text::quoted;
 
@@ -58,8 +58,7 @@ struct Reader<'a> {
     objects: Vec<PartObject>,
     /// Nodes in the paths of these.
     in_paths: usize,
-    /// Bytes in their names.
-    in_names: usize,
+    names: NameBytes,
     motion: GltfMotion,
     warnings: Vec<String>,
 }
@@ -76,7 +75,7 @@ impl<'a> Reader<'a> {
             shapes,
             objects: Vec::new(),
             in_paths: 0,
-            in_names: 0,
+            names: NameBytes::default(),
             motion,
             warnings,
         }
@@ -132,10 +131,7 @@ impl<'a> Reader<'a> {
                 format!("the paths from the roots to the objects have more than {PATHS_MAX} nodes").into()
             );
         }
-        self.in_names += object.name.len();
-        if self.in_names > NAMES_MAX {
-            return Err(format!("the names of the objects have more than {NAMES_MAX} bytes in all").into());
-        }
+        self.names.add(&object.name)?;
         if let Some(deformation) = &moved.deformation {
             self.document.spend(3 * deformation.geometry.soup.vertices.len(), "positions of what deforms")?;
         }

@@ -10,7 +10,7 @@ use super::graph::{Graph, Node};
 use super::limits::{DEPTH_MAX, NODES_MAX};
 use super::transform::Transform;
 use crate::error::SceneError;
-use crate::part::{NAMES_MAX, PartObject};
+use crate::part::{NameBytes, PartObject};
 
 /// Where a node is, on one of the ways to it.
 #[derive(Clone)]
@@ -32,8 +32,7 @@ pub(super) struct Walk<'a> {
     path: Vec<u32>,
     on_path: HashSet<Node>,
     visits: usize,
-    /// Bytes in the names of the objects.
-    in_names: usize,
+    names: NameBytes,
 }
 
 impl<'a> Walk<'a> {
@@ -49,7 +48,7 @@ impl<'a> Walk<'a> {
             path: Vec::new(),
             on_path: HashSet::new(),
             visits: 0,
-            in_names: 0,
+            names: NameBytes::default(),
         }
     }
 
@@ -219,11 +218,7 @@ impl<'a> Walk<'a> {
             None => self.graph.type_name(source).to_ascii_lowercase(),
         };
         self.builder.count(node, self.path.len() + positions)?;
-        self.in_names += name.len();
-        if self.in_names > NAMES_MAX {
-            let message = format!("the names of the objects have more than {NAMES_MAX} bytes in all");
-            return Err(self.graph.error(node, message));
-        }
+        self.names.add(&name).map_err(|message| self.graph.error(node, message))?;
         let Geometry { shape, degenerate, deformation } = geometry;
         self.objects.push(PartObject { name, shape, path: self.path.clone(), degenerate });
         self.motions.push(ObjectMotion { around: place.around, deformation });

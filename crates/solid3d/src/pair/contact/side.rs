@@ -106,11 +106,10 @@ impl<'a> Side<'a> {
             if self.is_of_larger(beside).unwrap_or(true) {
                 return self.toward(beside.stars, normal);
             }
-            let turned = |facing: DVec3| Some(normal.dot(facing)).filter(|cosine| cosine.abs() > SIDE_COSINE);
             let facing = beside.outward().or_else(|| Some(beside.toward(self.stars, beside.body.plane?)));
-            match facing.and_then(turned) {
-                Some(cosine) => normal * -cosine.signum(),
-                None => self.shorter(normal),
+            match facing.map(|facing| normal.dot(facing)) {
+                Some(cosine) if cosine.abs() > SIDE_COSINE => normal * -cosine.signum(),
+                _ => self.shorter(normal),
             }
         };
         Some(self.outward().unwrap_or_else(of_surface))

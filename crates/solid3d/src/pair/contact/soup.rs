@@ -164,14 +164,13 @@ fn touches(pair: &Pair, of_a: &Side, of_b: &Side, meeting: &Meeting) -> Option<(
     let on_b = of_b.corrected(meeting.normal, meeting.tilt)?;
     let on_a = || of_a.corrected(-meeting.normal, meeting.tilt);
     let is_replaced = |on: Corrected| matches!(on, Corrected::Replaced(_));
-    let is_own = |side: &Side, on: Corrected| is_replaced(on) || side.is_own(on.normal());
     if is_replaced(on_b) {
-        let of_first = of_a.is_wider(of_b) && on_a().is_some_and(|on_a| is_own(of_a, on_a));
+        let of_first = of_a.is_wider(of_b) && on_a().is_some_and(|on_a| of_a.is_own(on_a.normal()));
         return own_touches(pair, [of_a, of_b], of_first);
     }
     let on_a = on_a()?;
     if is_replaced(on_a) {
-        let of_second = of_b.is_wider(of_a) && is_own(of_b, on_b);
+        let of_second = of_b.is_wider(of_a) && of_b.is_own(on_b.normal());
         return own_touches(pair, [of_a, of_b], !of_second);
     }
     let (in_a, in_b) = (&of_a.body, &of_b.body);
