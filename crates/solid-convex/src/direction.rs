@@ -4,6 +4,12 @@ use glam::DVec3;
 
 use crate::size::PLAIN;
 
+/// The length of a vector, without overflow or underflow on the way: a `hypot`, which not all machines find to the same digits.
+#[inline(always)]
+pub fn length(v: DVec3) -> f64 {
+    length_and_direction(v).map_or(0.0, |(length, _)| length)
+}
+
 /// The unit vector along a vector of any length; `None` for zero.
 pub fn direction(v: DVec3) -> Option<DVec3> {
     length_and_direction(v).map(|(_, direction)| direction)

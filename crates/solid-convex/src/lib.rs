@@ -20,6 +20,8 @@
 //!
 //! This crate knows no tree and no world; `solid3d` builds on it.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod chord;
 #[doc(hidden)]
 pub mod determinant;

@@ -1,6 +1,8 @@
 //! 3D collision detection: SOLID (Gino van den Bergen, *Collision Detection in Interactive 3D Computer Animation*,
 //! 1999), anew.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod bounds;
 pub mod broad;
 pub mod ccd;

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::image::reach;
+use crate::direction::length;
 use crate::gjk::{Ball, Balls};
 use crate::size::positive;
 use crate::support::rim;
@@ -63,9 +64,10 @@ impl Support for Cone {
         let Cone { radius, half_height, .. } = *self;
         // As far from the apex as from the rim; about the base, if that is wide.
         let around = (-radius * (radius / (4.0 * half_height))).max(-half_height);
-        let outer = (half_height - around).max(radius.hypot(half_height + around));
+        let outer = (half_height - around).max(length(DVec3::new(radius, half_height + around, 0.0)));
         // Of the triangle that is a cut along the axis, the circle that touches all three sides.
-        let inner = 2.0 * half_height * (radius / (radius + radius.hypot(2.0 * half_height)));
+        let inner =
+            2.0 * half_height * (radius / (radius + length(DVec3::new(radius, 2.0 * half_height, 0.0))));
         let on_axis = |y: f64, radius: f64| Ball { center: DVec3::new(0.0, y, 0.0), radius };
         Some(Balls { inner: on_axis(inner - half_height, inner), outer: on_axis(around, outer) })
     }
@@ -76,6 +78,6 @@ impl Support for Cone {
         let off_axis = center.with_y(0.0).length();
         // Times the length of the side.
         let to_side = base * (half_height - center.y) - height * off_axis;
-        center.y - radius >= -half_height && to_side >= radius * base.hypot(height)
+        center.y - radius >= -half_height && to_side >= radius * length(DVec3::new(base, height, 0.0))
     }
 }

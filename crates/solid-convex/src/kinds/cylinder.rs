@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::image::{reach, symmetric};
+use crate::direction::length;
 use crate::gjk::{Ball, Balls};
 use crate::size::positive;
 use crate::support::{rim, with_sign};
@@ -53,7 +54,8 @@ impl Support for Cylinder {
     }
 
     fn balls(&self) -> Option<Balls> {
-        let (inner, outer) = (self.radius.min(self.half_height), self.radius.hypot(self.half_height));
+        let (inner, outer) =
+            (self.radius.min(self.half_height), length(DVec3::new(self.radius, self.half_height, 0.0)));
         Some(Balls::about_origin(inner, outer))
     }
 

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
 use glam::{DAffine3, DVec3};
+use libm::atan2;
 
 use super::{Distance, distance, intersects, placed, unchecked};
 use crate::error::{Error, Result, bounded};
@@ -97,7 +98,7 @@ fn half_solid_angle(corners: [DVec3; 3]) -> f64 {
         .min_by(|[a, b, _], [p, q, _]| a.dot(*b).total_cmp(&p.dot(*q)))
         .expect("there are three edges");
     let left = a + b;
-    left.dot(b.cross(c)).atan2(0.5 * left.length_squared() + c.dot(left))
+    atan2(left.dot(b.cross(c)), 0.5 * left.length_squared() + c.dot(left))
 }
 
 /// The origin as a shape.

@@ -4,6 +4,7 @@ use glam::DVec3;
 use solid_convex::Support;
 
 use super::{Geometry, Shape};
+use crate::placement::length;
 
 impl Shape {
     /// The radius of the smallest ball about the local origin that contains the shape, up to rounding. Cost: linear in the
@@ -25,12 +26,12 @@ impl Shape {
 
 /// The distance of the base's rim; no other point of a cone or a cylinder is further, for the apex is as far along the axis.
 fn rim(radius: f64, height: f64) -> f64 {
-    radius.hypot(0.5 * height)
+    length(DVec3::new(radius, 0.5 * height, 0.0))
 }
 
-/// The distance of the furthest point. `hypot` neither overflows nor underflows.
+/// The distance of the furthest point.
 fn furthest(points: impl IntoIterator<Item = DVec3>) -> f64 {
-    points.into_iter().map(|p| p.x.hypot(p.y).hypot(p.z)).fold(0.0, f64::max)
+    points.into_iter().map(length).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

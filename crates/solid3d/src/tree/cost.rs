@@ -102,9 +102,8 @@ impl Tree {
         self.cost = if self.bounds.min == self.bounds.max {
             0.0 // of a point: any extent that it is given later is worth a build
         } else {
-            let diagonal_squared: f64 =
-                [0, 1, 2].map(|axis| f64::from(self.root.size(axis)).powi(2)).iter().sum();
-            measured.sum / diagonal_squared
+            let size = glam::DVec3::from_array([0, 1, 2].map(|axis| f64::from(self.root.size(axis))));
+            measured.sum / size.length_squared()
         };
     }
 

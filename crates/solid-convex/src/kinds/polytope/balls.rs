@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use super::plane::Plane;
+use crate::direction::length;
 use crate::gjk::Ball;
 
 /// Steps of a search for a centre, and how long each is beside the one before.
@@ -51,13 +52,7 @@ pub(super) fn inside(points: &[DVec3], mean: DVec3, planes: &[Plane]) -> Ball {
 
 /// How far the farthest point is from another.
 pub(super) fn farthest(points: &[DVec3], from: DVec3) -> f64 {
-    points.iter().map(|&p| distance(p, from)).fold(0.0, f64::max)
-}
-
-/// The distance of two points. `hypot` neither overflows nor underflows.
-fn distance(p: DVec3, q: DVec3) -> f64 {
-    let DVec3 { x, y, z } = p - q;
-    x.hypot(y).hypot(z)
+    points.iter().map(|&p| length(p - from)).fold(0.0, f64::max)
 }
 
 /// Where in a ball a convex function is nearly least, beginning at the centre: by steps against the direction in which it grows, which the
@@ -110,7 +105,7 @@ mod tests {
             assert!((1.0 - 1e-12..1.03).contains(&around), "{case}: {around}");
             let inside = inner.radius / (0.5 * size.min_element() * unit);
             assert!((0.95..1.0 + 1e-12).contains(&inside), "{case}: {inside}");
-            assert!(placed.iter().all(|&p| distance(p, outer.center) <= outer.radius));
+            assert!(placed.iter().all(|&p| length(p - outer.center) <= outer.radius));
             let least = inner.center / unit - far - inner.radius / unit;
             let most = inner.center / unit - far + inner.radius / unit;
             assert!(least.min_element() > -1e-10 && (size - most).min_element() > -1e-10, "{case}");

@@ -95,7 +95,8 @@ fn of_hull(hull: &Polytope, stretch: f64, p: DVec3) -> Option<Foot<DVec3>> {
     /// From the origin, beside the reach of the hull: of what is round, a face is nearest to less than half of what is beyond that.
     const NEAR: f64 = 1.5;
     let point = p / stretch;
-    let is_near = point.length_squared() < (NEAR * hull.farthest()).powi(2);
+    let near = NEAR * hull.farthest();
+    let is_near = point.length_squared() < near * near;
     let face = if is_near { hull.face_towards(point) } else { None };
     match face {
         Some(FaceTowards { distance, normal, is_nearest: true }) => {

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 use glam::{DVec2, DVec3};
+use libm::atan2;
 use smallvec::{SmallVec, smallvec};
 use solid_convex::{Capsule, Cone, Cuboid, Cylinder, Line, Sphere, Support, unit_scale};
 
@@ -329,7 +330,7 @@ impl<'a> Placed<'a> {
         let corner = |(x, z): (f64, f64), vertex| self.corner(DVec3::new(radius * x, y, radius * z), vertex);
         let mut corners: Corners = (0..RIM).map(|i| corner(on_circle(i), first + i)).collect();
         let (x, z) = azimuth(local);
-        let turn = z.atan2(x) / TAU;
+        let turn = atan2(z, x) / TAU;
         let before = (turn - turn.floor()) * f64::from(RIM);
         let beside = (before - before.round()) * TAU / f64::from(RIM);
         let beyond = 0.5 * beside * beside * radius;

@@ -12,6 +12,7 @@
 //! what scales does so linearly. Every placement on the way is regular: it is `Q(t) ((1 - t) I + t S) M0`, and `S` is positive.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
+use libm::{atan2, sincos};
 use solid_convex::unit_scale;
 
 use crate::placement::inverse_linear;
@@ -67,13 +68,14 @@ impl Turn {
         let turn = DQuat::from_mat3(&rotation).normalize();
         // Of the two quaternions that is the one of at most half a turn.
         let (sine, cosine) = (turn.xyz() * turn.w.signum(), turn.w.abs());
-        let angle = 2.0 * sine.length().atan2(cosine);
+        let angle = 2.0 * atan2(sine.length(), cosine);
         (angle > ANGLE_MIN).then(|| Turn { axis: sine.normalize(), angle })
     }
 
     /// The rotation up to a time.
     fn rotation(&self, t: f64) -> DMat3 {
-        DMat3::from_axis_angle(self.axis, self.angle * t)
+        let (sine, cosine) = sincos(0.5 * self.angle * t);
+        DMat3::from_quat(DQuat::from_vec4((self.axis * sine).extend(cosine)))
     }
 
     /// What a vector that turns changes by in a unit of time.
