@@ -4,7 +4,7 @@ use glam::DVec3;
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, SizeError};
 
 use crate::polygon::PolygonError;
-use crate::shape::OpenEdge;
+use crate::shape::OpenEdges;
 use crate::world::ObjectId;
 
 /// Bad input. The message names the argument, its value and its limit; nothing was changed.
@@ -95,13 +95,12 @@ pub enum Error {
     },
     /// A mesh that is not closed was to be solid.
     #[error(
-        "mesh is not closed: of its edges, {} must be run through by as many triangles one way as the other: {}",
-        edges.len(),
-        listed(edges)
+        "mesh is not closed: of its edges, {} must be run through by as many triangles one way as the other: {edges}",
+        edges.len()
     )]
     OpenMesh {
-        /// The edges where it is not, all of them, in ascending order.
-        edges: Vec<OpenEdge>,
+        /// The edges where it is not.
+        edges: OpenEdges,
     },
     /// A shape of another kind stands where only a mesh may.
     #[error("shape is a {kind}; it must be a mesh")]
@@ -250,18 +249,6 @@ pub(crate) fn counted_vertices(count: usize) -> String {
 /// `there is 1 vertex`, `there are 2 vertices`.
 pub(crate) fn there_are_vertices(count: usize) -> String {
     format!("there {} {}", if count == 1 { "is" } else { "are" }, counted_vertices(count))
-}
-
-/// As many edges as fit a message.
-fn listed(edges: &[OpenEdge]) -> String {
-    const LISTED_MAX: usize = 8;
-    let first = edges.iter().take(LISTED_MAX).map(|edge| {
-        let OpenEdge { vertices: [i, j], forward, backward } = edge;
-        format!("{i}-{j} ({forward} and {backward})")
-    });
-    let rest = edges.len().saturating_sub(LISTED_MAX);
-    let more = (rest > 0).then(|| format!("and {rest} more"));
-    first.chain(more).collect::<Vec<_>>().join(", ")
 }
 
 /// A result whose error names what was wrong with the input.

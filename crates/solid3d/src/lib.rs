@@ -24,7 +24,7 @@ pub use bounds::Aabb;
 pub use broad::BroadPhaseKind;
 pub use error::{Error, Result};
 pub use glam;
-pub use shape::{ComplexShapeBuilder, OpenEdge, Shape, ShapeKind};
+pub use shape::{ComplexShapeBuilder, OpenEdge, OpenEdges, Shape, ShapeKind};
 pub use solid_convex as convex;
 pub use world::{
     Boxes, Collision, Contact, Event, EventKind, Motion, Near, ObjectCast, ObjectHit, ObjectId, ObjectPoint,

@@ -31,7 +31,7 @@ pub(crate) use facets::Facet;
 pub(crate) use hulled::Hulled;
 pub use kind::ShapeKind;
 pub(crate) use simple::{Round, Simple};
-pub use solid::OpenEdge;
+pub use solid::{OpenEdge, OpenEdges};
 pub(crate) use surface::{Surface, boundary};
 
 use crate::error::{Error, Result};

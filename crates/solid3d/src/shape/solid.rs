@@ -10,6 +10,8 @@
 //! that overlap would be holes in each other.
 
 use std::collections::HashMap;
+use std::fmt::{self, Debug, Display, Formatter};
+use std::ops::Deref;
 
 use glam::DVec3;
 
@@ -25,6 +27,40 @@ pub struct OpenEdge {
     pub forward: usize,
     /// How many run through it from the second to the first end: another number.
     pub backward: usize,
+}
+
+/// All edges that keep a mesh from being closed, in ascending order: a slice, of which a message, be it for users or for programmers, has the first.
+#[derive(Clone, PartialEq, Eq)]
+pub struct OpenEdges(Box<[OpenEdge]>);
+
+impl Deref for OpenEdges {
+    type Target = [OpenEdge];
+
+    fn deref(&self) -> &[OpenEdge] {
+        &self.0
+    }
+}
+
+impl Display for OpenEdges {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        const SHOWN_MAX: usize = 8;
+        for (i, OpenEdge { vertices: [from, to], forward, backward }) in
+            self.iter().take(SHOWN_MAX).enumerate()
+        {
+            let comma = if i > 0 { ", " } else { "" };
+            write!(f, "{comma}{from}-{to} ({forward} and {backward})")?;
+        }
+        match self.len().saturating_sub(SHOWN_MAX) {
+            0 => Ok(()),
+            more => write!(f, ", and {more} more"),
+        }
+    }
+}
+
+impl Debug for OpenEdges {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "[{self}]")
+    }
 }
 
 /// What a closed mesh has to keep to stay closed. Invariant: with twins taken for one vertex, the triangles are a cycle.
@@ -51,7 +87,11 @@ impl Solid {
         }
         let welded = triangles.iter().map(|t| t.map(|index| first[index as usize]));
         let edges = open_edges(welded);
-        if edges.is_empty() { Ok(Solid { twins }) } else { Err(Error::OpenMesh { edges }) }
+        if edges.is_empty() {
+            Ok(Solid { twins })
+        } else {
+            Err(Error::OpenMesh { edges: OpenEdges(edges.into()) })
+        }
     }
 
     /// Vertices at one position, in pairs: what connects parts of the surface beside their indices.
