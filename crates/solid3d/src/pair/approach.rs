@@ -9,8 +9,7 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 use solid_convex::{Closest, Penetration, Support, Witness, gjk, unit_scale};
 
-use super::deepest::Deepest;
-use super::depth::of_common;
+use super::depth::{of_common, of_pairs};
 use super::table::{PlacedConvex, axis, closest, closest_within, penetration};
 use super::{Placed, Scratch, meeting_primitives};
 use crate::shape::Class;
@@ -29,26 +28,45 @@ pub(crate) struct Approach {
 /// How two shapes that meet now, or did on the way, came together since the previous frame.
 pub(crate) fn approach(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch) -> Approach {
     let pairs = pairs_to_look_at(now, before, scratch);
-    let ([a, b], solid) = (before, before.iter().any(is_solid));
-    let nearest = pairs.iter().map(|&pair| (with_primitives(before, pair, closest_points), pair));
-    let nearest = nearest.min_by(|(x, i), (y, j)| x.distance.total_cmp(&y.distance).then(i.cmp(j)));
-    let found = match nearest {
-        // In a solid, what is apart from its surface is deep.
-        Some((nearest, _)) if nearest.distance > 0.0 && (!solid || closest(a, b, scratch).distance > 0.0) => {
-            apart(before, nearest)
-        }
-        Some((nearest, _)) if nearest.distance == 0.0 && !solid => {
-            let mut deepest = Deepest::default();
-            for &pair in &pairs {
-                let found = with_primitives(before, pair, of_common);
-                deepest.take(pair, found.depth, found);
-            }
-            deep(deepest.found().expect("there is a pair"))
-        }
-        _ => as_they_are(before, scratch),
+    // In a solid, what is apart from its surface is deep.
+    let found = match before.iter().any(is_solid) {
+        false => of_surfaces(before, &pairs, scratch),
+        true => nearest(before, &pairs)
+            .filter(|(found, _)| {
+                found.distance > 0.0 && closest(before[0], before[1], scratch).distance > 0.0
+            })
+            .map(|(found, _)| apart(before, found)),
     };
     scratch.meeting = pairs;
-    found
+    found.unwrap_or_else(|| as_they_are(before, scratch))
+}
+
+/// The deepest of some pairs of primitives, or the nearest where none meet; `None` when there are none.
+fn of_surfaces(before: [Placed; 2], pairs: &[[u32; 2]], scratch: &mut Scratch) -> Option<Approach> {
+    if let Some(deepest) = of_pairs(before, pairs, scratch) {
+        return Some(deep(deepest));
+    }
+    let (found, pair) = nearest(before, pairs)?;
+    Some(match found.distance > 0.0 {
+        true => apart(before, found),
+        // Only rounding keeps them apart.
+        false => deep(with_primitives(before, pair, of_common)),
+    })
+}
+
+/// The nearest of some pairs of primitives, or one that meets, which the others are not looked at after.
+fn nearest(before: [Placed; 2], pairs: &[[u32; 2]]) -> Option<(Closest, [u32; 2])> {
+    let mut nearest: Option<(Closest, [u32; 2])> = None;
+    for &pair in pairs {
+        let found = with_primitives(before, pair, closest_points);
+        if nearest.is_none_or(|(least, _)| found.distance < least.distance) {
+            nearest = Some((found, pair));
+        }
+        if found.distance == 0.0 {
+            break;
+        }
+    }
+    nearest
 }
 
 /// How near two shapes are to each other as they are, or how deep they are in each other; `None` when they are further apart than a bound.
@@ -56,7 +74,7 @@ pub(crate) fn proximity(a: Placed, b: Placed, bound: f64, scratch: &mut Scratch)
     closest_within(a, b, bound, scratch).map(|closest| of_closest([a, b], closest, scratch))
 }
 
-/// The pairs of primitives that meet now. None when the whole shapes are to be looked at: they are convex, one is another than in the
+/// The pairs of primitives that meet now, in ascending order. None when the whole shapes are to be looked at: they are convex, one is another than in the
 /// previous frame, one contains the other, or they met on the way.
 fn pairs_to_look_at(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch) -> Vec<[u32; 2]> {
     let mut pairs = std::mem::take(&mut scratch.meeting);
@@ -68,6 +86,7 @@ fn pairs_to_look_at(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch
             pairs.push([i, j]);
             ControlFlow::Continue(())
         });
+        pairs.sort_unstable();
     }
     pairs
 }

@@ -9,7 +9,8 @@ use solid_convex::{Outcome, Penetration, epa, gjk};
 
 use super::deepest::{deepest_pair, deepest_primitive};
 use super::table::{PlacedComplex, PlacedConvex};
-use super::{Mirror, Scratch, complex_complex, complex_convex};
+use super::{Mirror, Placed, Scratch, complex_complex, complex_convex};
+use crate::shape::Class;
 
 pub(super) fn convex_convex(a: PlacedConvex, b: PlacedConvex, scratch: &mut Scratch) -> Option<Penetration> {
     scratch.primitive_tests += 1;
@@ -24,7 +25,7 @@ pub(super) fn complex_convex(
     if a.0.is_solid() {
         return complex_convex::intersects(a, b, scratch).then(|| of_common((&a.0.hull(), a.1), b));
     }
-    deepest_primitive(a, b, scratch)
+    deepest_primitive(a, b, |_| true, scratch)
 }
 
 pub(super) fn complex_complex(
@@ -33,19 +34,44 @@ pub(super) fn complex_complex(
     scratch: &mut Scratch,
 ) -> Option<Penetration> {
     if !a.0.is_solid() && !b.0.is_solid() {
-        return deepest_pair(a, b, scratch)
-            .map(|[i, j]| of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1)));
+        return deepest_pair(a, b, |_| true, scratch).map(|pair| of_primitives(a, b, pair));
     }
     if !complex_complex::intersects(a, b, scratch) {
         return None;
     }
     let deepest = match (a.0.is_solid(), b.0.is_solid()) {
-        (true, false) => deepest_primitive(b, (&a.0.hull(), a.1), scratch).mirrored(),
-        (false, true) => deepest_primitive(a, (&b.0.hull(), b.1), scratch),
+        (true, false) => deepest_primitive(b, (&a.0.hull(), a.1), |_| true, scratch).mirrored(),
+        (false, true) => deepest_primitive(a, (&b.0.hull(), b.1), |_| true, scratch),
         _ => None,
     };
     // Also when rounding keeps the hull of a solid apart from what it meets.
     deepest.or_else(|| Some(of_common((&a.0.hull(), a.1), (&b.0.hull(), b.1))))
+}
+
+/// Of those pairs of primitives, in ascending order, that intersect, the deepest; `None` when none does. Solids are taken for surfaces.
+pub(super) fn of_pairs(
+    [a, b]: [Placed; 2],
+    pairs: &[[u32; 2]],
+    scratch: &mut Scratch,
+) -> Option<Penetration> {
+    let among = |pair| pairs.binary_search(&pair).is_ok();
+    match (a.shape.class(), b.shape.class()) {
+        (Class::Complex(x), Class::Complex(y)) => {
+            let (x, y) = ((x, a.placement), (y, b.placement));
+            deepest_pair(x, y, among, scratch).map(|pair| of_primitives(x, y, pair))
+        }
+        (Class::Complex(x), Class::Convex(y)) => {
+            deepest_primitive((x, a.placement), (y, b.placement), |i| among([i, 0]), scratch)
+        }
+        (Class::Convex(x), Class::Complex(y)) => {
+            deepest_primitive((y, b.placement), (x, a.placement), |j| among([0, j]), scratch).mirrored()
+        }
+        (Class::Convex(_), Class::Convex(_)) => None,
+    }
+}
+
+fn of_primitives(a: PlacedComplex, b: PlacedComplex, [i, j]: [u32; 2]) -> Penetration {
+    of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1))
 }
 
 /// The penetration of two convex objects, placed as these are, that are known to have a point in common. Where exact signs say so and GJK
