@@ -43,6 +43,9 @@ pub(crate) fn approach(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scra
 
 /// The deepest of some pairs of primitives, or the nearest where none meet; `None` when there are none.
 fn of_surfaces(before: [Placed; 2], pairs: &[[u32; 2]], scratch: &mut Scratch) -> Option<Approach> {
+    if pairs.is_empty() {
+        return None;
+    }
     if let Some(deepest) = of_pairs(before, pairs, scratch) {
         return Some(deep(deepest));
     }
