@@ -101,10 +101,7 @@ fn skins_and_animations_are_checked() {
         ),
     ];
     for (path, value, message) in changes {
-        let mut file = everything();
-        set(&mut file, path, value);
-        let refused = file.refused();
-        assert!(refused.contains(message), "{path}: {refused}");
+        everything().is_refused_with(path, value, message);
     }
     let mut file = everything();
     let refused = file.parse_animation(Some("x")).unwrap_err();

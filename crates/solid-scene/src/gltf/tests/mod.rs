@@ -76,6 +76,15 @@ impl File {
     fn refused(&self) -> String {
         self.parse().map(|_| ()).unwrap_err()
     }
+
+    /// With another value at a path it is refused with a message.
+    #[track_caller]
+    fn is_refused_with(&self, path: &str, value: Value, message: &str) {
+        let mut file = File(self.0.clone());
+        set(&mut file, path, value);
+        let refused = file.refused();
+        assert!(refused.contains(message), "{path}: {refused}");
+    }
 }
 
 /// Sets a value at a path, which may be new in an object.

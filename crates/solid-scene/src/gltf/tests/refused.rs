@@ -94,10 +94,7 @@ fn accessors_stay_in_their_buffers() {
         ("/meshes/0/primitives/0/attributes/JOINTS_0", json!(0), "has only one of JOINTS_0 and WEIGHTS_0"),
     ];
     for (path, value, message) in changes {
-        let mut file = File(file.0.clone());
-        set(&mut file, path, value);
-        let refused = file.refused();
-        assert!(refused.contains(message), "{path}: {refused}");
+        file.is_refused_with(path, value, message);
     }
 }
 
