@@ -1,7 +1,7 @@
 //! The one door to wide instructions.
 //!
 //! Kernels, loops over lanes, are written once, over `fearless_simd`'s vectors, and compiled twice: scalar, which is what tests
-//! hold the other against, and for the wide instructions of the architecture (AVX2, NEON, WebAssembly's SIMD). Which one runs
+//! hold the other against, and for the wide instructions of the architecture (AVX2, NEON, WebAssembly's SIMD), if it has any. Which one runs
 //! is chosen here, at run time. It changes no bit of any answer: no kernel contracts a product and a sum, and ties go to the
 //! lowest lane or index.
 //!
@@ -16,23 +16,62 @@ use std::sync::OnceLock;
 
 use fearless_simd::Fallback;
 
-/// The wide instructions of the architecture.
+#[doc(hidden)]
+pub use machine::HAS_WIDE;
+pub use machine::Wide;
+
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub type Wide = fearless_simd::Avx2;
-/// The wide instructions of the architecture.
+mod machine {
+    /// The wide instructions of the architecture.
+    pub type Wide = fearless_simd::Avx2;
+    /// Kernels are compiled for these too.
+    pub const HAS_WIDE: bool = true;
+
+    pub fn wide() -> Option<Wide> {
+        fearless_simd::Level::new().as_avx2()
+    }
+}
+
 #[cfg(target_arch = "aarch64")]
-pub type Wide = fearless_simd::Neon;
-/// The wide instructions of the architecture.
+mod machine {
+    /// The wide instructions of the architecture.
+    pub type Wide = fearless_simd::Neon;
+    /// Kernels are compiled for these too.
+    pub const HAS_WIDE: bool = true;
+
+    pub fn wide() -> Option<Wide> {
+        fearless_simd::Level::new().as_neon()
+    }
+}
+
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-pub type Wide = fearless_simd::WasmSimd128;
-/// The architecture has no wide instructions that are known here: there is only the scalar level.
+mod machine {
+    /// The wide instructions of the architecture.
+    pub type Wide = fearless_simd::WasmSimd128;
+    /// Kernels are compiled for these too.
+    pub const HAS_WIDE: bool = true;
+
+    pub fn wide() -> Option<Wide> {
+        fearless_simd::Level::new().as_wasm_simd128()
+    }
+}
+
 #[cfg(not(any(
     target_arch = "x86",
     target_arch = "x86_64",
     target_arch = "aarch64",
     all(target_arch = "wasm32", target_feature = "simd128")
 )))]
-pub type Wide = Fallback;
+mod machine {
+    /// The architecture has no wide instructions that are known here: there is only the scalar level.
+    pub type Wide = fearless_simd::Fallback;
+    /// Kernels are compiled once.
+    pub const HAS_WIDE: bool = false;
+
+    pub fn wide() -> Option<Wide> {
+        None
+    }
+}
 
 /// What `f` makes of each of an array, as `array.map(f)`, but always in place: that is a call now and then, and then not compiled for the wide
 /// instructions around it, with all that it is given and gives written to memory and read again.
@@ -113,11 +152,24 @@ macro_rules! dispatch {
     (@ $level:expr, $simd:ident, $kernel:expr) => {
         match $level.narrow() {
             $crate::simd::Narrow::Scalar($simd) => $crate::simd::one_by_one($kernel),
-            $crate::simd::Narrow::Wide($simd) => $crate::simd::vectorize($simd, $kernel),
+            // What a constant decides is not compiled: there is one copy where there is nothing wide.
+            $crate::simd::Narrow::Wide($simd) => {
+                if const { $crate::simd::HAS_WIDE } {
+                    $crate::simd::vectorize($simd, $kernel)
+                } else {
+                    $crate::simd::nothing_wide()
+                }
+            }
         }
     };
 }
 pub use dispatch;
+
+#[cold]
+#[doc(hidden)]
+pub fn nothing_wide() -> ! {
+    unreachable!("the scalar level is the only one")
+}
 
 /// Runs what is inlined into `kernel` without vectors: out of the way of its caller, in which every register that it took would be saved first.
 #[inline(never)]
@@ -249,7 +301,7 @@ fn chosen() -> Level {
 /// The levels that all kernels are compiled for, the first again where this machine has no other: for tests that hold them against each other.
 pub fn levels() -> [Level; 2] {
     let scalar = Level::Scalar(Fallback::new());
-    [scalar, wide().map_or(scalar, Level::Wide)]
+    [scalar, machine::wide().map_or(scalar, Level::Wide)]
 }
 
 /// What comes of a kernel on every level that this machine has, the widest too: asserts that it is the same. For tests.
@@ -262,31 +314,6 @@ pub fn alike<R: PartialEq + std::fmt::Debug>(mut run: impl FnMut(Level) -> R) ->
         assert_eq!(run(level), found, "on {level:?}");
     }
     found
-}
-
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-fn wide() -> Option<Wide> {
-    fearless_simd::Level::new().as_avx2()
-}
-
-#[cfg(target_arch = "aarch64")]
-fn wide() -> Option<Wide> {
-    fearless_simd::Level::new().as_neon()
-}
-
-#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-fn wide() -> Option<Wide> {
-    fearless_simd::Level::new().as_wasm_simd128()
-}
-
-#[cfg(not(any(
-    target_arch = "x86",
-    target_arch = "x86_64",
-    target_arch = "aarch64",
-    all(target_arch = "wasm32", target_feature = "simd128")
-)))]
-fn wide() -> Option<Wide> {
-    None
 }
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
