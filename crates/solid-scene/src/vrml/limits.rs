@@ -13,7 +13,7 @@ pub(super) const WRITTEN_NODES_MAX: usize = 200_000;
 /// ROUTEs written in one file: the parser compares each with all before it.
 pub(super) const FILE_ROUTES_MAX: usize = 20_000;
 
-/// Names that DEF gives again in one file: the parser looks through all names for each.
+/// Names that DEF gives again in one file, and those that PROTO and EXTERNPROTO do: the parser looks through all names for each.
 pub(super) const FILE_REPEATS_MAX: usize = 20_000;
 
 /// Fields and events declared in the PROTOs and Scripts of one file: the parser compares each with all before it in the

@@ -71,6 +71,7 @@ enum Expect {
     DefName,
     UseName,
     ProtoName,
+    ExternProtoName,
     /// A name after ROUTE, TO and the like.
     OtherName,
 }
@@ -102,12 +103,15 @@ struct Scanner<'a> {
     /// The names that DEF has given, one set for the file and one for each PROTO body around.
     names: Vec<HashSet<&'a str>>,
     declared: Vec<Declared<'a>>,
+    /// The names that PROTO and EXTERNPROTO have given.
+    protos: HashSet<&'a str>,
     /// Bytes of interface by the name of the PROTO.
     interfaces: HashMap<&'a str, usize>,
     copied: usize,
     routes: usize,
     declarations: usize,
     repeats: usize,
+    proto_repeats: usize,
     lookalikes: usize,
     expect: Expect,
 }
@@ -129,11 +133,13 @@ impl<'a> Scanner<'a> {
             brackets: Vec::new(),
             names: vec![HashSet::new()],
             declared: Vec::new(),
+            protos: HashSet::new(),
             interfaces: HashMap::new(),
             copied: 0,
             routes: 0,
             declarations: 0,
             repeats: 0,
+            proto_repeats: 0,
             lookalikes: 0,
             expect: Expect::Anything,
         }
@@ -324,7 +330,9 @@ impl<'a> Scanner<'a> {
             Expect::ProtoName => {
                 let depth = self.brackets.len();
                 self.declared.push(Declared { name: word, depth, interface: 0 });
+                return self.check_proto(word);
             }
+            Expect::ExternProtoName => return self.check_proto(word),
             Expect::OtherName => {}
             Expect::Anything => return self.keyword_or_name(word),
         }
@@ -339,7 +347,8 @@ impl<'a> Scanner<'a> {
             "DEF" => self.expect = Expect::DefName,
             "USE" => self.expect = Expect::UseName,
             "PROTO" => self.expect = Expect::ProtoName,
-            "EXTERNPROTO" | "TO" => self.expect = Expect::OtherName,
+            "EXTERNPROTO" => self.expect = Expect::ExternProtoName,
+            "TO" => self.expect = Expect::OtherName,
             "ROUTE" => {
                 self.expect = Expect::OtherName;
                 self.routes += 1;
@@ -368,11 +377,18 @@ impl<'a> Scanner<'a> {
         }
     }
 
+    /// Counts a name that PROTO or EXTERNPROTO gives again, if in another PROTO.
+    fn check_proto(&mut self, word: &'a str) -> Result<(), SceneError> {
+        self.proto_repeats += usize::from(!self.protos.insert(word));
+        self.check_counts()
+    }
+
     fn check_counts(&self) -> Result<(), SceneError> {
         let counts = [
             (self.routes, FILE_ROUTES_MAX, "ROUTEs"),
             (self.declarations, FILE_DECLARATIONS_MAX, "declared fields and events"),
             (self.repeats, FILE_REPEATS_MAX, "names given again by DEF"),
+            (self.proto_repeats, FILE_REPEATS_MAX, "names given again by PROTO and EXTERNPROTO"),
             (self.copied, COPIED_BYTES_MAX, "bytes of PROTO interfaces, counted for each instance"),
             (self.lookalikes, USE_LOOKALIKES_MAX, "names that begin with USE"),
         ];

@@ -197,6 +197,9 @@ fn what_would_be_slow_to_parse_is_an_error() {
     refused(&"ROUTE a.b TO c.d\n".repeat(30_000), "more than 20000 ROUTEs");
     refused(&"Group{}".repeat(300_000), "more than 200000 nodes");
     refused(&"DEF A Group{}".repeat(30_000), "more than 20000 names given again by DEF");
+    for proto in ["PROTO P [] {}", "EXTERNPROTO P [] \"\""] {
+        refused(&proto.repeat(30_000), "more than 20000 names given again by PROTO and EXTERNPROTO");
+    }
     refused(&format!("Script {{ {} }}", "field SFBool a TRUE ".repeat(30_000)), "more than 20000 declared");
     let lookalikes: String = (0..2_000).map(|i| format!("USEa{i} ")).collect();
     refused(&lookalikes, "names that begin with USE");
