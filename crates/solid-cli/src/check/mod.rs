@@ -54,7 +54,7 @@ pub fn run(args: &CheckArgs) -> Result<Verdict> {
         None => Motion::animation(&scene),
     };
     let is_mesh = |object: usize| scene.objects()[object].shape().triangles().is_some();
-    let (bodies, unmatched) = rules::bodies(&rules, &names(&scene), is_mesh);
+    let (bodies, unmatched) = rules::bodies(&rules, &names(&scene), is_mesh)?;
     warnings.tell_all(unmatched);
     let shapes = progress::while_waiting("preparing the shapes", || bodies::shapes(&scene, &bodies))?;
     let tested = if args.continuous { solid3d::Motion::Swept } else { solid3d::Motion::Sampled };

@@ -19,7 +19,7 @@ pub struct Objects<'a> {
     pub exempt: &'a [(usize, usize)],
 }
 
-/// The places of the objects whose mesh rules want to be something else.
+/// The places of the objects whose mesh rules want to be something else, each once.
 #[derive(Debug)]
 pub struct Bodies {
     /// The solid that it bounds.
@@ -29,12 +29,22 @@ pub struct Bodies {
 }
 
 /// What rules want the objects to be, and warnings, for patterns that match nothing. What has a name of its own is wanted whatever it is.
-pub fn bodies(rules: &Rules, names: &[&str], is_mesh: impl Fn(usize) -> bool) -> (Bodies, Vec<String>) {
+pub fn bodies(
+    rules: &Rules,
+    names: &[&str],
+    is_mesh: impl Fn(usize) -> bool,
+) -> Result<(Bodies, Vec<String>)> {
     let mut index = NameIndex::new(names);
-    let mut places =
-        |wanted: &[Names]| wanted.iter().flat_map(|wanted| index.meshes_matching(wanted, &is_mesh)).collect();
-    let bodies = Bodies { solid: places(&rules.solid), decomposed: places(&rules.decompose) };
-    (bodies, index.into_warnings())
+    let mut places = |wanted: &[Names]| -> Result<Vec<usize>> {
+        let (mut places, mut is_found) = (Vec::new(), vec![false; names.len()]);
+        for wanted in wanted {
+            let found = index.meshes_matching(wanted, &is_mesh)?.into_iter();
+            places.extend(found.filter(|&place| !std::mem::replace(&mut is_found[place], true)));
+        }
+        Ok(places)
+    };
+    let bodies = Bodies { solid: places(&rules.solid)?, decomposed: places(&rules.decompose)? };
+    Ok((bodies, index.into_warnings()))
 }
 
 /// Sets the responses of a world. Returns warnings, for patterns that match nothing.
@@ -45,23 +55,30 @@ pub fn apply(
     world: &mut World,
 ) -> Result<Vec<String>> {
     let mut index = NameIndex::new(objects.names);
-    let named: Vec<_> =
-        rules.objects.iter().map(|rule| (index.matching(&rule.name), rule.response)).collect();
-    let paired: Vec<_> = rules.pairs.iter().map(|rule| Paired::find(rule, &mut index)).collect();
     // A rule for all pairs overrides all that is before and below it, without an entry for each pair.
     let of_all = rules.pairs.iter().enumerate().rev().filter(|(_, rule)| is_universal(rule));
-    let rest = match of_all.filter_map(|(i, rule)| Some((i, rule.response?))).next() {
-        Some((rule, response)) => {
-            world.set_default_response(response);
-            &paired[rule + 1..]
+    let of_all = of_all.filter_map(|(i, rule)| Some((i, rule.response?))).next();
+    let default = default.or(rules.default).unwrap_or(Response::Witness);
+    world.set_default_response(of_all.map_or(default, |(_, response)| response));
+    // One after the other: what all of them match may be any number of objects for each.
+    for rule in &rules.objects {
+        let found = index.matching(&rule.name)?;
+        for object in found.into_iter().filter(|_| of_all.is_none()) {
+            world.set_object_response(objects.ids[object], rule.response)?;
         }
-        None => {
-            world.set_default_response(default.or(rules.default).unwrap_or(Response::Witness));
-            set_objects(&named, objects, world)?;
-            &paired
+    }
+    for &(a, b) in objects.exempt.iter().filter(|_| of_all.is_none()) {
+        world.clear_pair_response(objects.ids[a], objects.ids[b])?;
+    }
+    let mut count = PairCount::default();
+    for (i, rule) in rules.pairs.iter().enumerate() {
+        let paired = Paired::find(rule, &mut index)?;
+        let is_overridden = of_all.is_some_and(|(of_all, _)| i <= of_all);
+        let Some(response) = rule.response.filter(|_| !is_overridden) else { continue };
+        for (a, b) in paired.pairs(objects.ids, &mut count)? {
+            world.set_pair_response(a, b, response)?;
         }
-    };
-    set_pairs(rest, objects.ids, world)?;
+    }
     Ok(index.into_warnings())
 }
 
@@ -81,7 +98,7 @@ pub fn set_clearances(
     for rule in &rules.pairs {
         let Some(clearance) = rule.clearance else { continue };
         greatest = Some(greatest.map_or(clearance, |greatest| greatest.max(clearance)));
-        for (a, b) in Paired::find(rule, &mut index).pairs(objects.ids, &mut count)? {
+        for (a, b) in Paired::find(rule, &mut index)?.pairs(objects.ids, &mut count)? {
             world.set_pair_clearance(a, b, clearance)?;
         }
     }
@@ -100,12 +117,12 @@ struct Paired<'a> {
 }
 
 impl<'a> Paired<'a> {
-    fn find(rule: &'a PairRule, index: &mut NameIndex) -> Self {
-        let (these, those) = (index.matching(&rule.a), index.matching(&rule.b));
+    fn find(rule: &'a PairRule, index: &mut NameIndex) -> Result<Self> {
+        let (these, those) = (index.matching(&rule.a)?, index.matching(&rule.b)?);
         if rule.a.pattern.is_name() && rule.a.text == rule.b.text && !these.is_empty() {
             index.note_one_object(&rule.a);
         }
-        Paired { rule, these, those }
+        Ok(Paired { rule, these, those })
     }
 
     /// The pairs of objects, unless they make too many.
@@ -135,31 +152,6 @@ impl PairCount {
         }
         Ok(())
     }
-}
-
-/// Sets the responses of objects, and exempts what is exempt.
-fn set_objects(named: &[(Vec<usize>, Response)], objects: &Objects, world: &mut World) -> Result<()> {
-    for (found, response) in named {
-        for &object in found {
-            world.set_object_response(objects.ids[object], *response)?;
-        }
-    }
-    for &(a, b) in objects.exempt {
-        world.clear_pair_response(objects.ids[a], objects.ids[b])?;
-    }
-    Ok(())
-}
-
-/// Sets the responses of pairs, later rules over earlier ones.
-fn set_pairs(paired: &[Paired], ids: &[ObjectId], world: &mut World) -> Result<()> {
-    let mut count = PairCount::default();
-    for paired in paired {
-        let Some(response) = paired.rule.response else { continue };
-        for (a, b) in paired.pairs(ids, &mut count)? {
-            world.set_pair_response(a, b, response)?;
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -283,6 +275,15 @@ mod tests {
             "r.toml:5: \"x*\" matches no object",
         ];
         assert_eq!(case.warnings, expected);
+    }
+
+    /// However often a rule is given again, what it matches is kept once.
+    #[test]
+    fn bodies_are_there_once() {
+        let text = format!("solid = [{}]\ndecompose = [\"*2\", \"mine2\"]", "\"mine*\",".repeat(3));
+        let rules = Rules::parse(Path::new("r.toml"), &text).expect("the rules are well formed");
+        let (Bodies { solid, decomposed }, _) = bodies(&rules, &NAMES, |_| true).expect("the names are few");
+        assert_eq!((solid, decomposed), (vec![1, 2], vec![2]));
     }
 
     /// Many names beside many objects take no minutes.
