@@ -6,15 +6,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
 
-/// The most bytes of a file of rules or placements; of a pipe or device too, which tells no size.
-const BYTES_MAX: u64 = 1 << 30;
-
-/// The text of a file.
-pub fn read(path: &Path) -> Result<String> {
-    read_within(path, BYTES_MAX)
-}
-
-fn read_within(path: &Path, bytes_max: u64) -> Result<String> {
+/// The text of a file, or of a pipe or device, which tells no size, of so many bytes at most.
+pub fn read(path: &Path, bytes_max: u64) -> Result<String> {
     let name = path.display();
     let mut bytes = Vec::new();
     let file = File::open(path).with_context(|| format!("{name}: can't be read"))?;
@@ -41,17 +34,17 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("rules.toml");
         std::fs::write(&path, b"a = 1\nb = \xff\n").expect("a file");
-        let error = read(&path).expect_err("it is no text").to_string();
+        let error = read(&path, 100).expect_err("it is no text").to_string();
         assert!(error.contains("rules.toml:2: "), "{error}");
         for utf16 in [b"\xff\xfea\0", b"\xfe\xff\0a"] {
             std::fs::write(&path, utf16).expect("a file");
-            let error = read(&path).expect_err("it is in UTF-16").to_string();
+            let error = read(&path, 100).expect_err("it is in UTF-16").to_string();
             assert!(
                 error.ends_with("rules.toml: is text in UTF-16; expected UTF-8, so save it as that first"),
                 "{error}"
             );
         }
-        let error = read_within(&path, 3).expect_err("it is too large").to_string();
+        let error = read(&path, 3).expect_err("it is too large").to_string();
         assert!(error.contains("more than 3 bytes"), "{error}");
     }
 }

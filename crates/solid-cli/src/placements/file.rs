@@ -8,8 +8,11 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::fields;
 use super::row::Row;
-use crate::words::quoted;
+use crate::words::{self, quoted};
 use crate::{suggest, text};
+
+/// The most bytes of a file of placements: the rows take some 15 times as many.
+const BYTES_MAX: u64 = 1 << 30;
 
 /// The columns; the last three may be missing.
 const COLUMNS: [&str; 12] = ["frame", "object", "tx", "ty", "tz", "qx", "qy", "qz", "qw", "sx", "sy", "sz"];
@@ -28,7 +31,7 @@ pub struct Placements {
 impl Placements {
     /// Reads a file of placements of objects with these names.
     pub fn read(path: &Path, names: &[&str]) -> Result<Placements> {
-        let text = text::read(path)?;
+        let text = text::read(path, BYTES_MAX)?;
         let rows =
             rows(&text, names).map_err(|(line, message)| anyhow!("{}:{line}: {message}", path.display()))?;
         Ok(Placements { path: path.to_owned(), rows })
@@ -122,7 +125,9 @@ impl<'a> RowReader<'a> {
     fn row(&self, line: u64, record: &StringRecord) -> fields::Result<Row> {
         let (found, expected) = (record.len(), self.columns);
         if found != expected {
-            return Err(format!("there are {found} fields; expected {expected}, as in the header"));
+            let are = if found == 1 { "is" } else { "are" };
+            let fields = words::count(words::size(found), "field");
+            return Err(format!("there {are} {fields}; expected {expected}, as in the header"));
         }
         let texts: Vec<&str> = record.iter().collect();
         let frame = fields::frame(texts[0])?;
@@ -201,6 +206,8 @@ mod tests {
         assert_eq!((line, message.as_str()), (4, "there is no object \"shpi\"; did you mean \"ship\"?"));
         let (line, message) = mistake("0,ship,1,0,0,0,0,0,1\n1,ship,1,0,0,0,0,0\n");
         assert_eq!((line, message.as_str()), (3, "there are 8 fields; expected 9, as in the header"));
+        let (line, message) = mistake("0\n");
+        assert_eq!((line, message.as_str()), (2, "there is 1 field; expected 9, as in the header"));
         let (line, _) = mistake("0,ship,1,0,0,0,0,0,1\r\r\n1,ship,1,0,0,0,0,0,1\r2,ship,1,0\r");
         assert_eq!(line, 5);
         let (line, message) = mistake("0,\"ship\nwreck\",1,0,0,0,0,0,1");
