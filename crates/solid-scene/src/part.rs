@@ -9,17 +9,29 @@ use crate::pose::ObjectPose;
 /// Bytes in the names of all objects of a file together: each keeps its own, which many may have of one node or mesh.
 const NAMES_MAX: usize = 1 << 28;
 
-/// How many bytes the names of the objects of a file have so far.
-#[derive(Debug, Default)]
-pub(crate) struct NameBytes(usize);
+/// Objects of a file: each takes a kilobyte and more, where the text need not have more than ten bytes.
+const OBJECTS_MAX: usize = 1_000_000;
 
-impl NameBytes {
-    /// Counts another name; what is wrong, where it is one too many.
+/// How many objects a file has so far, and how many bytes their names.
+#[derive(Debug, Default)]
+pub(crate) struct ObjectCount {
+    objects: usize,
+    in_names: usize,
+}
+
+impl ObjectCount {
+    /// Counts another object, by its name; what is wrong, where it is one too many.
     pub fn add(&mut self, name: &str) -> Result<(), String> {
-        self.0 += name.len();
-        match self.0 {
-            0..=NAMES_MAX => Ok(()),
-            _ => Err(format!("the names of the objects have more than {NAMES_MAX} bytes in all")),
+        self.objects += 1;
+        self.in_names += name.len();
+        match self {
+            ObjectCount { in_names, .. } if *in_names > NAMES_MAX => {
+                Err(format!("the names of the objects have more than {NAMES_MAX} bytes in all"))
+            }
+            ObjectCount { objects, .. } if *objects > OBJECTS_MAX => {
+                Err(format!("the file makes more than {OBJECTS_MAX} objects"))
+            }
+            _ => Ok(()),
         }
     }
 }

@@ -16,7 +16,7 @@ use super::mesh::{self, Geometry};
 use super::motion::{Deformation, GltfMotion, Moved};
 use super::skin::Skin;
 use crate::fault::Result;
-use crate::part::{NameBytes, Part, PartObject};
+use crate::part::{ObjectCount, Part, PartObject};
 use crate::soup::Soup;
 use crate::text::quoted;
 
@@ -58,7 +58,7 @@ struct Reader<'a> {
     objects: Vec<PartObject>,
     /// Nodes in the paths of these.
     in_paths: usize,
-    names: NameBytes,
+    count: ObjectCount,
     motion: GltfMotion,
     warnings: Vec<String>,
 }
@@ -75,7 +75,7 @@ impl<'a> Reader<'a> {
             shapes,
             objects: Vec::new(),
             in_paths: 0,
-            names: NameBytes::default(),
+            count: ObjectCount::default(),
             motion,
             warnings,
         }
@@ -131,7 +131,7 @@ impl<'a> Reader<'a> {
                 format!("the paths from the roots to the objects have more than {PATHS_MAX} nodes").into()
             );
         }
-        self.names.add(&object.name)?;
+        self.count.add(&object.name)?;
         if let Some(deformation) = &moved.deformation {
             self.document.spend(3 * deformation.geometry.soup.vertices.len(), "positions of what deforms")?;
         }

@@ -14,7 +14,7 @@ use crate::error::SceneError;
 use crate::fault::{Fault, Result};
 use crate::file;
 use crate::load::LoadOptions;
-use crate::part::Part;
+use crate::part::{ObjectCount, Part};
 use crate::polygon::folded_warning;
 use crate::soup::still_part;
 use crate::text::{lines, without_mark};
@@ -47,6 +47,8 @@ fn parse_text(text: &str, stem: &str, split: bool) -> Result<Part> {
     let mut warnings = statements.warnings();
     let soups = if split { statements.split()? } else { statements.whole(stem)? };
     warnings.extend(folded_warning(soups.folded));
+    let mut count = ObjectCount::default();
+    soups.named.iter().try_for_each(|(name, _)| count.add(name))?;
     let named = soups.named.into_iter().zip(1..);
     let objects = named.map(|((name, soup), number)| soup.into_object(&name, number));
     Ok(still_part(objects.collect::<Result<_>>()?, warnings))
@@ -111,6 +113,13 @@ mod tests {
         assert_eq!(seen, expected.map(|(name, count)| (name.to_owned(), count)));
         // A group that is named as its object is another part of it.
         assert_eq!(split("o a\np 1\ng a\np 1\n").len(), 2);
+    }
+
+    #[test]
+    fn objects_have_a_limit() {
+        let groups: String = (0..=1_000_000).map(|i| format!("g {i}\np 1\n")).collect();
+        let fault = parse(format!("v 0 0 0\n{groups}").as_bytes(), "stem", true).unwrap_err();
+        assert_eq!(fault.message(), "the file makes more than 1000000 objects");
     }
 
     #[test]

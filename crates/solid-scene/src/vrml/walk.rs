@@ -10,7 +10,7 @@ use super::graph::{Graph, Node};
 use super::limits::{DEPTH_MAX, NODES_MAX};
 use super::transform::Transform;
 use crate::error::SceneError;
-use crate::part::{NameBytes, PartObject};
+use crate::part::{ObjectCount, PartObject};
 
 /// Where a node is, on one of the ways to it.
 #[derive(Clone)]
@@ -32,7 +32,7 @@ pub(super) struct Walk<'a> {
     path: Vec<u32>,
     on_path: HashSet<Node>,
     visits: usize,
-    names: NameBytes,
+    count: ObjectCount,
 }
 
 impl<'a> Walk<'a> {
@@ -48,7 +48,7 @@ impl<'a> Walk<'a> {
             path: Vec::new(),
             on_path: HashSet::new(),
             visits: 0,
-            names: NameBytes::default(),
+            count: ObjectCount::default(),
         }
     }
 
@@ -218,7 +218,7 @@ impl<'a> Walk<'a> {
             None => self.graph.type_name(source).to_ascii_lowercase(),
         };
         self.builder.count(node, self.path.len() + positions)?;
-        self.names.add(&name).map_err(|message| self.graph.error(node, message))?;
+        self.count.add(&name).map_err(|message| self.graph.error(node, message))?;
         let Geometry { shape, degenerate, deformation } = geometry;
         self.objects.push(PartObject { name, shape, path: self.path.clone(), degenerate });
         self.motions.push(ObjectMotion { around: place.around, deformation });
