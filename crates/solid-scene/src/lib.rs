@@ -45,6 +45,7 @@ mod soup;
 mod stl;
 mod text;
 mod vrml;
+mod warnings;
 mod weld;
 
 pub use error::SceneError;

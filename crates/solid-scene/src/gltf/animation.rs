@@ -13,6 +13,7 @@ use super::sampler::Sampler;
 use crate::fault::Result;
 use crate::text::{counted, quoted};
 
+use crate::warnings::Warnings;
 /// The animation that is played; without any, nothing changes.
 #[derive(Debug, Default)]
 pub(super) struct Animation {
@@ -34,14 +35,14 @@ struct Channel {
 
 impl Animation {
     /// Reads the animation that `choice` names by name or else by number, from 0; without a choice the file's first.
-    pub fn read(document: &Document, choice: Option<&str>, warnings: &mut Vec<String>) -> Result<Animation> {
+    pub fn read(document: &Document, choice: Option<&str>, warnings: &mut Warnings) -> Result<Animation> {
         let names = names(document);
         let index = match choice {
             Some(choice) => chosen(document, &names, choice)?,
             None if names.is_empty() => return Ok(Animation::default()),
             None => {
                 if names.len() > 1 {
-                    warnings.push(format!("plays the animation {}, not {}", names[0], list(&names[1..])));
+                    warnings.add(format!("plays the animation {}, not {}", names[0], list(&names[1..])));
                 }
                 0
             }
@@ -57,7 +58,7 @@ impl Animation {
             let node = channel.target.node.value();
             document.node(node).map_err(|fault| fault.of(&what))?;
             let Checked::Valid(property) = channel.target.path else {
-                warnings.push(format!("{what} is passed over: it changes something unknown"));
+                warnings.add(format!("{what} is passed over: it changes something unknown"));
                 continue;
             };
             let sampler = find("sampler", &source.samplers, channel.sampler.value())
@@ -72,7 +73,7 @@ impl Animation {
                 _ => animation.channels.push(Channel { node, property, sampler }),
             }
         }
-        warnings.extend(untargeted_warning(&names[index], untargeted));
+        untargeted_warning(&names[index], untargeted).into_iter().for_each(|warning| warnings.add(warning));
         Ok(animation)
     }
 

@@ -19,10 +19,11 @@ use crate::fault::Result;
 use crate::part::{ObjectCount, Part, PartObject};
 use crate::soup::Soup;
 use crate::text::quoted;
+use crate::warnings::Warnings;
 
 /// The file's share of a scene.
 pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part> {
-    let mut warnings = Vec::new();
+    let mut warnings = Warnings::default();
     let graph = Graph::new(document)?;
     let nodes = document.root.nodes.iter().enumerate();
     let locals = nodes.map(|(index, node)| Local::of(index, node)).collect::<Result<Vec<_>>>()?;
@@ -34,7 +35,7 @@ pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part>
     }
     let animation = Animation::read(document, animation, &mut warnings)?;
     for node in animation.moved().filter(|&node| locals[node].is_matrix()) {
-        warnings.push(format!("node {node} has a matrix, so that its animation has no effect"));
+        warnings.add(format!("node {node} has a matrix, so that its animation has no effect"));
     }
     let motion = GltfMotion { graph, locals, animation, objects: Vec::new() };
     let mut reader = Reader::new(document, motion, warnings);
@@ -42,6 +43,7 @@ pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part>
         reader.node(node).map_err(|fault| fault.of(&format!("node {node}")))?;
     }
     let Reader { objects, motion, warnings, .. } = reader;
+    let warnings = warnings.into_vec();
     let duration = motion.animation.duration;
     let files = document.files.clone();
     Ok(Part { objects, motion: Box::new(motion), duration, unit: "metre", warnings, files })
@@ -60,11 +62,11 @@ struct Reader<'a> {
     in_paths: usize,
     count: ObjectCount,
     motion: GltfMotion,
-    warnings: Vec<String>,
+    warnings: Warnings,
 }
 
 impl<'a> Reader<'a> {
-    fn new(document: &'a Document, motion: GltfMotion, warnings: Vec<String>) -> Self {
+    fn new(document: &'a Document, motion: GltfMotion, warnings: Warnings) -> Self {
         let worlds = motion.worlds(0.0);
         let (geometries, skins, shapes) = Default::default();
         Reader {
@@ -87,7 +89,7 @@ impl<'a> Reader<'a> {
         let Some(mesh) = node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
         let geometry = self.geometry(mesh)?;
         if geometry.soup.is_empty() {
-            self.warnings.push(format!("{} has no geometry", mesh::name(self.document, mesh)?));
+            self.warnings.add(format!("{} has no geometry", mesh::name(self.document, mesh)?));
             return Ok(());
         }
         let deformation = self.deformation(node, mesh, &geometry)?;
@@ -107,7 +109,7 @@ impl<'a> Reader<'a> {
             None => self.add(object, moved),
             Some(_) if skinned => {
                 let name = quoted(&object.name);
-                self.warnings.push(format!("`{name}` has a skin, so that its instances are passed over"));
+                self.warnings.add(format!("`{name}` has a skin, so that its instances are passed over"));
                 self.add(object, moved)
             }
             Some(instances) => self.add_instances(&object, &moved, &instances),
@@ -165,7 +167,7 @@ impl<'a> Reader<'a> {
                     true => format!("all weights of {name} are 0"),
                     false => format!("{name} has no JOINTS_0"),
                 };
-                self.warnings.push(format!("{reason}, so skin {skin} has no effect on it"));
+                self.warnings.add(format!("{reason}, so skin {skin} has no effect on it"));
                 None
             }
             Some(skin) => Some(self.skin(skin)?),

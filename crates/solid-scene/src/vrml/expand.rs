@@ -8,10 +8,10 @@ use super::document::{Document, FILE, Kind};
 use super::graph::{Call, Graph, Node, Scope};
 use super::library::{self, Library};
 use super::limits::{DEPTH_MAX, INLINE_DEPTH_MAX, NODES_MAX};
-use super::warnings::Warnings;
 use crate::error::SceneError;
 use crate::text::quoted;
 
+use crate::warnings::Warnings;
 /// The fields through which nodes hold others that matter to collisions.
 const CHILD_FIELDS: [&str; 6] = ["children", "choice", "level", "proxy", "geometry", "coord"];
 

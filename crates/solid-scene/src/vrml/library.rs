@@ -6,10 +6,10 @@ use std::rc::Rc;
 
 use super::document::Document;
 use super::text;
-use super::warnings::Warnings;
 use crate::error::SceneError;
 use crate::text::quoted;
 
+use crate::warnings::Warnings;
 /// Parsed files, each once.
 #[derive(Debug, Default)]
 pub(super) struct Library {

@@ -43,8 +43,5 @@ pub(super) const ELEMENTS_MAX: usize = 16_000_000;
 /// How many ROUTEs an event may follow from its sensor.
 pub(super) const CHAIN_MAX: usize = 512;
 
-/// Warnings kept.
-pub(super) const WARNINGS_MAX: usize = 200;
-
 /// The stack on which a file is read: enough for [`NESTING_MAX`] and [`DEPTH_MAX`], whatever the caller's stack is.
 pub(super) const STACK_BYTES: usize = 64 << 20;

@@ -26,7 +26,6 @@ mod signal;
 mod text;
 mod transform;
 mod walk;
-mod warnings;
 mod wide;
 
 use std::collections::BTreeSet;
@@ -38,9 +37,9 @@ use self::route::Routes;
 use self::sensor::Sensor;
 use self::signal::SignalBuilder;
 use self::walk::Walk;
-use self::warnings::Warnings;
 use crate::error::SceneError;
 use crate::part::Part;
+use crate::warnings::Warnings;
 
 /// Loads a file, on a thread with a stack of known size: reading recurses.
 pub(crate) fn load(file: &Path) -> Result<Part, SceneError> {

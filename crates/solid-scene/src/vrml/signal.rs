@@ -7,9 +7,9 @@ use super::interpolator::{Event, Interpolator, is_interpolator};
 use super::limits::{CHAIN_MAX, ELEMENTS_MAX};
 use super::route::Routes;
 use super::sensor::Sensor;
-use super::warnings::Warnings;
 use crate::error::SceneError;
 use crate::text::quoted;
+use crate::warnings::Warnings;
 
 /// A signal, by its place in [`Signals`].
 pub(super) type SignalId = usize;

@@ -148,6 +148,19 @@ fn sharing_is_limited_in_proportion_to_the_file() {
     }
 }
 
+/// A warning is given once, and of many no more than anybody would read.
+#[test]
+fn warnings_have_a_limit() {
+    let mut file = File::new();
+    let empty = file.add("meshes", json!({"primitives": []}));
+    file.0["nodes"] = json!(vec![json!({"mesh": empty}); 1000]);
+    assert_eq!(file.parse().unwrap().warnings, ["mesh 0 has no geometry"]);
+    file.0["meshes"] = json!(vec![json!({"primitives": []}); 1000]);
+    file.0["nodes"] = (0..1000).map(|mesh| json!({"mesh": mesh})).collect();
+    let warnings = file.parse().unwrap().warnings;
+    assert_eq!((warnings.len(), warnings[200].as_str()), (201, "800 more warnings"));
+}
+
 /// Zeros need no bytes in the file, and so are counted.
 #[test]
 fn zeros_without_a_buffer_are_limited() {

@@ -17,11 +17,11 @@ use super::graph::{Graph, Node};
 use super::interpolator::Event;
 use super::limits::ELEMENTS_MAX;
 use super::signal::SignalBuilder;
-use super::warnings::Warnings;
 use crate::error::SceneError;
 use crate::polygon::{Cut, folded_warning, triangulate};
 use crate::soup::Soup;
 use crate::text::counted;
+use crate::warnings::Warnings;
 
 /// The shape of a geometry node.
 #[derive(Clone, Debug)]

@@ -2,12 +2,14 @@
 
 use std::collections::HashSet;
 
-use super::limits::WARNINGS_MAX;
 use crate::text::counted;
+
+/// Warnings of a file that are kept.
+const WARNINGS_MAX: usize = 200;
 
 /// Warnings in the order of their first appearance, each once.
 #[derive(Debug, Default)]
-pub(super) struct Warnings {
+pub(crate) struct Warnings {
     seen: HashSet<String>,
     list: Vec<String>,
     dropped: usize,
