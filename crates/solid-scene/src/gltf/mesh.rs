@@ -61,7 +61,6 @@ impl Geometry {
             geometry.add_primitive(document, primitive, first, count, &what)?;
         }
         let vertices = geometry.soup.vertices.len();
-        geometry.targets.grow(vertices);
         geometry.influences.grow(vertices);
         Ok(geometry)
     }

@@ -2,10 +2,17 @@
 
 use glam::DVec3;
 
-/// The displacements of a mesh's vertices, target by target. After [`grow`](Targets::grow) every target has one for each
-/// vertex.
+/// The displacements of a mesh's vertices, target by target.
 #[derive(Debug, Default)]
-pub(super) struct Targets(Vec<Vec<DVec3>>);
+pub(super) struct Targets(Vec<Vec<Displaced>>);
+
+/// Displacements of vertices that follow each other. Those of a target are of some primitives of the mesh alone, of which the others
+/// may have any number of vertices.
+#[derive(Debug)]
+struct Displaced {
+    first: usize,
+    by: Vec<DVec3>,
+}
 
 impl Targets {
     pub fn is_empty(&self) -> bool {
@@ -16,27 +23,30 @@ impl Targets {
         self.0.len()
     }
 
-    /// Adds displacements of the vertices from `first`, which is beyond those that the target has.
-    pub fn add(&mut self, target: usize, first: usize, displacements: Vec<DVec3>) {
+    /// Adds displacements of the vertices from `first`.
+    pub fn add(&mut self, target: usize, first: usize, by: Vec<DVec3>) {
         if self.0.len() <= target {
             self.0.resize_with(target + 1, Vec::new);
         }
-        self.0[target].resize(first, DVec3::ZERO);
-        self.0[target].extend(displacements);
+        self.0[target].push(Displaced { first, by });
     }
 
-    /// Lets vertices without a displacement stay where they are.
-    pub fn grow(&mut self, vertices: usize) {
-        self.0.iter_mut().for_each(|target| target.resize(vertices, DVec3::ZERO));
+    /// How many displacements the targets have whose weight is not 0.
+    pub fn count(&self, weights: &[f64]) -> usize {
+        self.weighted(weights).map(|(displaced, _)| displaced.by.len()).sum()
     }
 
     /// Displaces vertices, each target as much as its weight says; missing weights are 0.
     pub fn apply(&self, weights: &[f64], positions: &mut [DVec3]) {
-        for (target, &weight) in self.0.iter().zip(weights) {
-            if weight != 0.0 {
-                positions.iter_mut().zip(target).for_each(|(position, &d)| *position += weight * d);
-            }
+        for (Displaced { first, by }, weight) in self.weighted(weights) {
+            positions[*first..].iter_mut().zip(by).for_each(|(position, &by)| *position += weight * by);
         }
+    }
+
+    /// What has a weight that is not 0.
+    fn weighted(&self, weights: &[f64]) -> impl Iterator<Item = (&Displaced, f64)> {
+        let targets = self.0.iter().zip(weights).filter(|&(_, &weight)| weight != 0.0);
+        targets.flat_map(|(target, &weight)| target.iter().map(move |displaced| (displaced, weight)))
     }
 }
 
@@ -48,7 +58,6 @@ mod tests {
     fn weights_scale_displacements() {
         let mut targets = Targets::default();
         targets.add(1, 1, vec![DVec3::X]);
-        targets.grow(3);
         let mut positions = [DVec3::ZERO; 3];
         targets.apply(&[9.0, 0.5], &mut positions);
         assert_eq!(positions, [DVec3::ZERO, DVec3::X * 0.5, DVec3::ZERO]);

@@ -148,6 +148,27 @@ fn sharing_is_limited_in_proportion_to_the_file() {
     }
 }
 
+/// A target of some primitives has nothing to say of the vertices of others, however many.
+#[test]
+fn targets_take_memory_for_their_own_vertices() {
+    let mut file = File::new();
+    let triangle = file.floats("VEC3", 3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    let many = json!({"type": "VEC3", "componentType": FLOAT, "count": 100_000});
+    let many = file.add("accessors", many);
+    let targets = vec![json!({"POSITION": triangle}); 20_000];
+    let mesh = file.add(
+        "meshes",
+        json!({"weights": [1], "primitives": [
+            {"attributes": {"POSITION": many}, "mode": 0},
+            {"attributes": {"POSITION": triangle}, "targets": targets},
+        ]}),
+    );
+    file.add("nodes", json!({"mesh": mesh}));
+    let part = file.parse().unwrap();
+    let vertices = part.objects[0].shape.vertices().unwrap();
+    assert_eq!((vertices.len(), vertices[0], vertices[100_001]), (100_003, DVec3::ZERO, DVec3::X * 2.0));
+}
+
 /// A warning is given once, and of many no more than anybody would read.
 #[test]
 fn warnings_have_a_limit() {
