@@ -57,8 +57,8 @@ impl Document {
     }
 
     fn read(&self, accessor: &Accessor, component: ComponentType, width: usize) -> Result<Numbers> {
+        self.spend(accessor.count.0.saturating_mul(width as u64), "elements")?;
         let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
-        self.spend(count.saturating_mul(width), "elements")?;
         let mut values = match accessor.buffer_view {
             None => vec![0.0; count * width],
             Some(view) => {
@@ -72,8 +72,8 @@ impl Document {
             let Checked::Valid(indices) = sparse.indices.component_type else {
                 return Err("has sparse indices of an unknown type".into());
             };
+            self.spend(sparse.count.0.saturating_mul(width as u64 + 1), "sparse elements")?;
             let sparse_count = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
-            self.spend(sparse_count.saturating_mul(width + 1), "sparse elements")?;
             let view = sparse.indices.buffer_view.value();
             let mut places = Vec::new();
             self.run(view, sparse.indices.byte_offset.0, sparse_count, indices.0, 1)?.read(&mut places);

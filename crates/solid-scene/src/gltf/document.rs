@@ -15,10 +15,10 @@ use crate::text::{quoted, there_are, without_mark};
 /// How many numbers, of eight bytes and more each, may be read out of a file per byte of it and its buffers. A text can name one
 /// buffer any number of times, so that a small one could ask for any amount of memory. Of 37 files the one with most has 0.6; what
 /// is left allows some dozens of meshes or channels to share what most of the file consists of.
-const NUMBERS_PER_BYTE: usize = 16;
+const NUMBERS_PER_BYTE: u64 = 16;
 
 /// How many numbers may be read out of any file.
-const NUMBERS_ALWAYS: usize = 1 << 20;
+const NUMBERS_ALWAYS: u64 = 1 << 20;
 
 /// The beginnings of the names of extensions that a file may require: they have no part in geometry, except for
 /// `KHR_mesh_quantization`, which only widens the types of accessors, and instances, which are read.
@@ -63,7 +63,7 @@ pub(super) struct Document {
     /// The files of buffers.
     pub files: Vec<PathBuf>,
     /// How many more numbers may be read.
-    budget: Cell<usize>,
+    budget: Cell<u64>,
 }
 
 impl Document {
@@ -79,7 +79,7 @@ impl Document {
         for (index, buffer) in root.buffers.iter().enumerate() {
             buffers.push(load(index, buffer, &mut binary, folder, &mut files)?);
         }
-        let size = bytes.len() + buffers.iter().map(Vec::len).sum::<usize>();
+        let size = (bytes.len() + buffers.iter().map(Vec::len).sum::<usize>()) as u64;
         let budget = Cell::new(size.saturating_mul(NUMBERS_PER_BYTE).max(NUMBERS_ALWAYS));
         Ok(Document { root, rest, buffers, files, budget })
     }
@@ -124,7 +124,7 @@ impl Document {
     }
 
     /// Counts numbers that are about to be read; `what` names them.
-    pub fn spend(&self, numbers: usize, what: &str) -> Result<()> {
+    pub fn spend(&self, numbers: u64, what: &str) -> Result<()> {
         match self.budget.get().checked_sub(numbers) {
             Some(left) => {
                 self.budget.set(left);

@@ -8,7 +8,7 @@ use super::local::Local;
 use crate::fault::Result;
 
 /// For how many numbers an object counts, which the file needs no bytes for: a small file shall not make millions.
-const NUMBERS_PER_INSTANCE: usize = 16;
+const NUMBERS_PER_INSTANCE: u64 = 16;
 
 /// The maps from the space of each instance to that of the node; `None` where the node has but its mesh.
 pub(super) fn read(document: &Document, node: usize) -> Result<Option<Vec<DAffine3>>> {
@@ -16,8 +16,8 @@ pub(super) fn read(document: &Document, node: usize) -> Result<Option<Vec<DAffin
     let Some((first, &accessor)) = attributes.first_key_value() else { return Ok(None) };
     let what = |name: &str| format!("instances, {name}");
     let accessor = document.accessor(accessor).map_err(|fault| fault.of(&what(first)))?;
+    document.spend(accessor.count.0.saturating_mul(NUMBERS_PER_INSTANCE), "instances")?;
     let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
-    document.spend(count.saturating_mul(NUMBERS_PER_INSTANCE), "instances")?;
     let values = |name: &str, kind: Type, default: &[f64]| -> Result<Vec<f64>> {
         let Some(&accessor) = attributes.get(name) else { return Ok(default.repeat(count)) };
         let numbers = document.numbers(accessor, kind, &what(name))?;

@@ -115,7 +115,7 @@ impl Geometry {
         let mut indices = match primitive.indices {
             Some(indices) => document.integers(indices.value(), Type::Scalar, &format!("{what}, indices"))?,
             None => {
-                document.spend(count, what)?;
+                document.spend(count as u64, what)?;
                 (0..count as u32).collect()
             }
         };

@@ -12,6 +12,9 @@ use super::skin::Skin;
 use crate::part::Motion;
 use crate::pose::ObjectPose;
 
+/// How many displacements, joints and influences of vertices, of which nothing is kept, count as much as a number that is read.
+const STEPS_PER_NUMBER: usize = 8;
+
 /// The nodes, what changes them and what hangs on them. A sample takes scratch memory in proportion to the nodes.
 #[derive(Debug)]
 pub(super) struct GltfMotion {
@@ -40,6 +43,16 @@ pub(super) struct Deformation {
     pub skin: Option<Arc<Skin>>,
     /// The weights of the morph targets while no animation changes them.
     pub weights: Vec<f64>,
+}
+
+impl Deformation {
+    /// For how many numbers it counts: the positions, and the steps to find them at one time. Many nodes may have one mesh, of many
+    /// targets or joints.
+    pub fn numbers(&self) -> usize {
+        let Deformation { geometry, skin, weights } = self;
+        let skinned = skin.as_ref().map_or(0, |skin| skin.len() + geometry.influences.len());
+        3 * geometry.soup.vertices.len() + (geometry.targets.count(weights) + skinned) / STEPS_PER_NUMBER
+    }
 }
 
 impl GltfMotion {

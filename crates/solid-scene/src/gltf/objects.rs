@@ -135,7 +135,7 @@ impl<'a> Reader<'a> {
         }
         self.count.add(&object.name)?;
         if let Some(deformation) = &moved.deformation {
-            self.document.spend(3 * deformation.geometry.soup.vertices.len(), "positions of what deforms")?;
+            self.document.spend(deformation.numbers() as u64, "positions of what deforms")?;
         }
         self.objects.push(object);
         self.motion.objects.push(moved);
@@ -200,7 +200,7 @@ impl<'a> Reader<'a> {
             return Ok(shape.clone());
         }
         let primitives = 3 * soup.triangles.len() + 2 * soup.segments.len() + soup.points.len();
-        self.document.spend(3 * soup.vertices.len() + primitives, "vertices and primitives")?;
+        self.document.spend((deformation.numbers() + primitives) as u64, "vertices and primitives")?;
         let mut soup: Soup = soup.clone();
         if deformed {
             self.motion.deform(deformation, node, 0.0, &self.worlds, &mut soup.vertices);

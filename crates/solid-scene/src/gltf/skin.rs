@@ -52,6 +52,11 @@ impl Skin {
         Ok(Skin { joints })
     }
 
+    /// How many joints it has.
+    pub fn len(&self) -> usize {
+        self.joints.len()
+    }
+
     /// Takes vertices from the mesh's space to the world: linear blend skinning. A vertex without influences follows the
     /// first joint. `worlds` are the nodes' maps to the world.
     pub fn apply(&self, influences: &Influences, worlds: &[DAffine3], positions: &mut [DVec3]) {
@@ -79,6 +84,10 @@ fn blend(influences: &[(u32, f64)], maps: &[DAffine3]) -> DAffine3 {
 impl Influences {
     pub fn is_empty(&self) -> bool {
         self.influences.is_empty()
+    }
+
+    pub fn len(&self) -> usize {
+        self.influences.len()
     }
 
     pub fn has_joints(&self) -> bool {

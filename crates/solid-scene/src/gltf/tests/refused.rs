@@ -169,6 +169,34 @@ fn targets_take_memory_for_their_own_vertices() {
     assert_eq!((vertices.len(), vertices[0], vertices[100_001]), (100_003, DVec3::ZERO, DVec3::X * 2.0));
 }
 
+/// What nodes share, each goes through on its own.
+#[test]
+fn many_nodes_may_not_share_many_targets_or_joints() {
+    let count = 20_000;
+    let morphed = |nodes: usize| {
+        let mut file = File::new();
+        let triangle = file.floats("VEC3", 3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        let targets = vec![json!({"POSITION": triangle}); count];
+        let primitive = json!({"attributes": {"POSITION": triangle}, "targets": targets});
+        let mesh = file.add("meshes", json!({"weights": vec![1; count], "primitives": [primitive]}));
+        file.0["nodes"] = json!(vec![json!({"mesh": mesh}); nodes]);
+        file
+    };
+    let skinned = |nodes: usize| {
+        let mut file = everything();
+        file.0.as_object_mut().unwrap().retain(|name, _| !name.starts_with("scene"));
+        let skin = file.add("skins", json!({"joints": vec![1; 5 * count]}));
+        file.0["nodes"].as_array_mut().unwrap().extend(vec![json!({"mesh": 0, "skin": skin}); nodes]);
+        file
+    };
+    let files: [&dyn Fn(usize) -> File; 2] = [&morphed, &skinned];
+    for file in files {
+        assert_eq!(file(10).parse().map(|_| ()), Ok(()));
+        let refused = file(count).refused();
+        assert!(refused.ends_with("numbers are more than a file of this size may hold"), "{refused}");
+    }
+}
+
 /// A warning is given once, and of many no more than anybody would read.
 #[test]
 fn warnings_have_a_limit() {
