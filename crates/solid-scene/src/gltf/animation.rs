@@ -10,10 +10,11 @@ use gltf::json::validation::Checked;
 use super::document::{Document, find};
 use super::local::Local;
 use super::sampler::Sampler;
+use super::text;
 use crate::fault::Result;
 use crate::text::{counted, quoted};
-
 use crate::warnings::Warnings;
+
 /// The animation that is played; without any, nothing changes.
 #[derive(Debug, Default)]
 pub(super) struct Animation {
@@ -51,17 +52,16 @@ impl Animation {
         let source = find("animation", &document.root.animations, index)?;
         for (number, channel) in source.channels.iter().enumerate() {
             let what = format!("animation {}, channel {number}", names[index]);
-            if !document.rest.has_target(index, number) {
+            let Some(node) = channel.target.node.map(|node| node as usize) else {
                 untargeted += 1;
                 continue;
-            }
-            let node = channel.target.node.value();
+            };
             document.node(node).map_err(|fault| fault.of(&what))?;
             let Checked::Valid(property) = channel.target.path else {
                 warnings.add(format!("{what} is passed over: it changes something unknown"));
                 continue;
             };
-            let sampler = find("sampler", &source.samplers, channel.sampler.value())
+            let sampler = find("sampler", &source.samplers, channel.sampler as usize)
                 .map_err(|fault| fault.of(&what))?;
             let sampler = Sampler::read(document, sampler, property, &what)?;
             if property == Property::MorphTargetWeights {
@@ -119,7 +119,7 @@ impl Animation {
 fn check_weights(document: &Document, node: usize, sampler: &Sampler) -> Result<()> {
     let Some(mesh) = document.node(node)?.mesh else { return Ok(()) };
     let of_each = |primitive: &Primitive| primitive.targets.as_ref().map_or(0, Vec::len);
-    let targets = document.mesh(mesh.value())?.primitives.iter().map(of_each).max().unwrap_or(0);
+    let targets = document.mesh(mesh as usize)?.primitives.iter().map(of_each).max().unwrap_or(0);
     if sampler.width() == targets {
         return Ok(());
     }
@@ -130,7 +130,7 @@ fn check_weights(document: &Document, node: usize, sampler: &Sampler) -> Result<
 /// What messages call the animations: by name in quotes, or by number where they have none.
 fn names(document: &Document) -> Vec<String> {
     let animations = document.root.animations.iter().enumerate();
-    let name = |(number, animation): (usize, &gltf::json::Animation)| match &animation.name {
+    let name = |(number, animation): (usize, &text::Animation)| match &animation.name {
         Some(name) => format!("`{}`", quoted(name)),
         None => number.to_string(),
     };

@@ -5,10 +5,10 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 use gltf::binary::Glb;
-use gltf::json::{Accessor, Mesh, Node, Root, Skin, buffer};
+use gltf::json::{Accessor, Mesh, Skin, buffer};
 
 use super::buffer::load;
-use super::text::{self, Rest};
+use super::text::{self, NODES_MAX, Node, Root};
 use crate::fault::Result;
 use crate::text::{quoted, there_are, without_mark};
 
@@ -57,8 +57,6 @@ const COMPRESSIONS: [&str; 3] =
 /// A parsed file and the bytes of its buffers. What the text names is looked up here.
 pub(super) struct Document {
     pub root: Root,
-    /// What of the text is not in `root`.
-    pub rest: Rest,
     buffers: Vec<Vec<u8>>,
     /// The files of buffers.
     pub files: Vec<PathBuf>,
@@ -72,16 +70,17 @@ impl Document {
         let bytes = without_mark(bytes);
         check_container(bytes)?;
         let (text, mut binary) = chunks(bytes)?;
-        let (root, rest) = text::parse(&text).map_err(|error| format!("not glTF 2.0: {error}"))?;
+        let root = text::parse(&text).map_err(|error| format!("not glTF 2.0: {error}"))?;
         check_version(&root)?;
         check_extensions(&root)?;
+        check_size(&root)?;
         let (mut buffers, mut files) = (Vec::new(), Vec::new());
         for (index, buffer) in root.buffers.iter().enumerate() {
             buffers.push(load(index, buffer, &mut binary, folder, &mut files)?);
         }
         let size = (bytes.len() + buffers.iter().map(Vec::len).sum::<usize>()) as u64;
         let budget = Cell::new(size.saturating_mul(NUMBERS_PER_BYTE).max(NUMBERS_ALWAYS));
-        Ok(Document { root, rest, buffers, files, budget })
+        Ok(Document { root, buffers, files, budget })
     }
 
     pub fn accessor(&self, index: usize) -> Result<&Accessor> {
@@ -101,7 +100,7 @@ impl Document {
     }
 
     pub fn node(&self, index: usize) -> Result<&Node> {
-        find("node", &self.root.nodes, index)
+        find("node", &self.root.nodes.first, index)
     }
 
     pub fn skin(&self, index: usize) -> Result<&Skin> {
@@ -193,6 +192,13 @@ fn check_extensions(root: &Root) -> Result<()> {
         }
     }
     Ok(())
+}
+
+fn check_size(root: &Root) -> Result<()> {
+    match root.nodes.count {
+        0..=NODES_MAX => Ok(()),
+        count => Err(format!("the file has {count} nodes; the limit is {NODES_MAX}").into()),
+    }
 }
 
 /// Whether an extension's name begins with one of these.

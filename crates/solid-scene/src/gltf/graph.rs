@@ -47,13 +47,13 @@ impl Graph {
 }
 
 fn children(document: &Document, node: usize) -> impl DoubleEndedIterator<Item = usize> {
-    let children = document.root.nodes[node].children.iter().flatten();
-    children.map(|child| child.value())
+    let children = document.root.nodes.first[node].children.iter().flatten();
+    children.map(|&child| child as usize)
 }
 
 /// Each node's parent, of which it has one at most.
 fn parents(document: &Document) -> Result<Vec<Option<usize>>> {
-    let mut parents = vec![None; document.root.nodes.len()];
+    let mut parents = vec![None; document.root.nodes.first.len()];
     for node in 0..parents.len() {
         for child in children(document, node) {
             document.node(child).map_err(|fault| fault.of(&format!("child of node {node}")))?;
@@ -68,7 +68,7 @@ fn parents(document: &Document) -> Result<Vec<Option<usize>>> {
 /// The roots, each followed by what is below it, every node once.
 fn walk(document: &Document, roots: &[usize]) -> Result<Vec<usize>> {
     let mut order = Vec::new();
-    let mut seen = vec![false; document.root.nodes.len()];
+    let mut seen = vec![false; document.root.nodes.first.len()];
     let mut waiting: Vec<(usize, usize)> = roots.iter().rev().map(|&root| (root, 1)).collect();
     while let Some((node, depth)) = waiting.pop() {
         if depth > DEPTH_MAX {
@@ -88,14 +88,14 @@ fn walk(document: &Document, roots: &[usize]) -> Result<Vec<usize>> {
 fn scene_roots(document: &Document) -> Result<Option<Vec<usize>>> {
     let scenes = &document.root.scenes;
     let scene = match document.root.scene {
-        Some(scene) => find("scene", scenes, scene.value())?,
+        Some(scene) => find("scene", scenes, scene as usize)?,
         None => match scenes.first() {
             Some(scene) => scene,
             None => return Ok(None),
         },
     };
     let root = |node: usize| document.node(node).map(|_| node).map_err(|fault| fault.of("the scene"));
-    scene.nodes.iter().map(|node| root(node.value())).collect::<Result<_>>().map(Some)
+    scene.nodes.iter().flatten().map(|&node| root(node as usize)).collect::<Result<_>>().map(Some)
 }
 
 /// A node on a cycle: where many steps up from a node that no root reaches lead.

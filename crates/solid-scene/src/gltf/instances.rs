@@ -12,7 +12,7 @@ const NUMBERS_PER_INSTANCE: u64 = 16;
 
 /// The maps from the space of each instance to that of the node; `None` where the node has but its mesh.
 pub(super) fn read(document: &Document, node: usize) -> Result<Option<Vec<DAffine3>>> {
-    let Some(attributes) = document.rest.instancing(node) else { return Ok(None) };
+    let Some(attributes) = document.node(node)?.instancing() else { return Ok(None) };
     let Some((first, &accessor)) = attributes.first_key_value() else { return Ok(None) };
     let what = |name: &str| format!("instances, {name}");
     let accessor = document.accessor(accessor).map_err(|fault| fault.of(&what(first)))?;

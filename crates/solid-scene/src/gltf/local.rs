@@ -1,8 +1,8 @@
 //! A node's transformation to its parent.
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
-use gltf::json::Node;
 
+use super::text::Node;
 use crate::fault::Result;
 
 /// How far the last row of a node's matrix may be from 0 0 0 1.
@@ -21,9 +21,9 @@ pub(super) struct Local {
 impl Local {
     /// The transformation that a node has when it is not animated.
     pub fn of(index: usize, node: &Node) -> Result<Local> {
-        let matrix = node.matrix.map(|matrix| affine(index, matrix)).transpose()?;
+        let matrix = node.matrix.as_deref().map(|&matrix| affine(index, matrix)).transpose()?;
         let translation = DVec3::from_array(node.translation.unwrap_or([0.0; 3]).map(f64::from));
-        let rotation = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
+        let rotation = DQuat::from_array(node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]).map(f64::from));
         let scale = DVec3::from_array(node.scale.unwrap_or([1.0; 3]).map(f64::from));
         Ok(Local { matrix, ..Local::new(translation, rotation, scale, &format!("node {index}"))? })
     }

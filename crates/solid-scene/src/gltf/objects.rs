@@ -4,7 +4,6 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DAffine3;
-use gltf::json::Node;
 use solid3d::Shape;
 
 use super::animation::{Animation, list};
@@ -15,6 +14,7 @@ use super::local::Local;
 use super::mesh::{self, Geometry};
 use super::motion::{Deformation, GltfMotion, Moved};
 use super::skin::Skin;
+use super::text::Node;
 use crate::fault::Result;
 use crate::part::{ObjectCount, Part, PartObject};
 use crate::soup::Soup;
@@ -25,13 +25,13 @@ use crate::warnings::Warnings;
 pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part> {
     let mut warnings = Warnings::default();
     let graph = Graph::new(document)?;
-    let nodes = document.root.nodes.iter().enumerate();
+    let nodes = document.root.nodes.first.iter().enumerate();
     let locals = nodes.map(|(index, node)| Local::of(index, node)).collect::<Result<Vec<_>>>()?;
     let unknown = document.unknown_extensions();
     if !unknown.is_empty() {
         let names = list(&unknown);
         warnings
-            .push(format!("uses extensions that are not supported ({names}): what they change is not seen"));
+            .add(format!("uses extensions that are not supported ({names}): what they change is not seen"));
     }
     let animation = Animation::read(document, animation, &mut warnings)?;
     for node in animation.moved().filter(|&node| locals[node].is_matrix()) {
@@ -86,7 +86,7 @@ impl<'a> Reader<'a> {
     /// Makes an object of a node that has a mesh.
     fn node(&mut self, index: usize) -> Result<()> {
         let node = self.document.node(index)?;
-        let Some(mesh) = node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
+        let Some(mesh) = node.mesh.map(|mesh| mesh as usize) else { return Ok(()) };
         let geometry = self.geometry(mesh)?;
         if geometry.soup.is_empty() {
             self.warnings.add(format!("{} has no geometry", mesh::name(self.document, mesh)?));
@@ -143,9 +143,9 @@ impl<'a> Reader<'a> {
     }
 
     fn object_name(&self, index: usize, node: &Node, mesh: usize) -> Result<String> {
-        let names = [&node.name, &self.document.mesh(mesh)?.name];
+        let names = [node.name.as_deref(), self.document.mesh(mesh)?.name.as_deref()];
         let name = names.into_iter().flatten().find(|name| !name.is_empty());
-        Ok(name.cloned().unwrap_or_else(|| format!("node{index}")))
+        Ok(name.map(str::to_owned).unwrap_or_else(|| format!("node{index}")))
     }
 
     fn geometry(&mut self, mesh: usize) -> Result<Arc<Geometry>> {
@@ -159,7 +159,7 @@ impl<'a> Reader<'a> {
 
     /// What gives the mesh its form on a node: its skin, and the node's weights or else the mesh's.
     fn deformation(&mut self, node: &Node, mesh: usize, geometry: &Arc<Geometry>) -> Result<Deformation> {
-        let skin = match node.skin.map(|skin| skin.value()) {
+        let skin = match node.skin.map(|skin| skin as usize) {
             None => None,
             Some(skin) if geometry.influences.is_empty() => {
                 let name = mesh::name(self.document, mesh)?;
@@ -176,7 +176,7 @@ impl<'a> Reader<'a> {
             geometry.influences.check(skin)?;
         }
         let mut weights = vec![0.0; geometry.targets.len()];
-        let given = node.weights.as_ref().or(self.document.mesh(mesh)?.weights.as_ref());
+        let given = node.weights.as_deref().or(self.document.mesh(mesh)?.weights.as_deref());
         for (weight, &given) in weights.iter_mut().zip(given.into_iter().flatten()) {
             *weight = f64::from(given);
         }

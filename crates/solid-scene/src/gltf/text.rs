@@ -1,30 +1,66 @@
-//! The text of a file: as the crate's types, and what these leave out.
+//! The text of a file, as types: of all that it may hold what is read, so that materials and the like take no memory.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
-use gltf::json::Root;
+use gltf::json::animation::{Property, Sampler};
+use gltf::json::validation::Checked;
+use gltf::json::{Accessor, Asset, Buffer, Mesh, Skin, buffer};
 use serde::Deserialize;
-use serde::de::{Error, IgnoredAny};
-use serde_json::{Result, Value, from_slice, from_value, json};
+use serde::de::{Deserializer, Error, IgnoredAny, SeqAccess, Visitor};
+use serde_json::{Result, from_slice};
 
-/// What the crate's types leave out.
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Rest {
-    nodes: Vec<Node>,
-    animations: Vec<Animation>,
-    scenes: Vec<Scene>,
+/// Nodes of a file: each takes some 700 bytes in all, where the text need not have more than three.
+pub(super) const NODES_MAX: usize = 500_000;
+
+/// The whole text.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Root {
+    pub asset: Asset,
+    #[serde(default)]
+    pub extensions_used: Vec<String>,
+    #[serde(default)]
+    pub extensions_required: Vec<String>,
+    #[serde(default)]
+    pub accessors: Vec<Accessor>,
+    #[serde(default)]
+    pub animations: Vec<Animation>,
+    #[serde(default)]
+    pub buffers: Vec<Buffer>,
+    #[serde(default)]
+    pub buffer_views: Vec<buffer::View>,
+    #[serde(default)]
+    pub meshes: Vec<Mesh>,
+    #[serde(default)]
+    pub nodes: Nodes,
+    pub scene: Option<u32>,
+    #[serde(default)]
+    pub scenes: Vec<Scene>,
+    #[serde(default)]
+    pub skins: Vec<Skin>,
 }
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct Scene {
-    nodes: Option<IgnoredAny>,
+/// The nodes; of more than [`NODES_MAX`] the first.
+#[derive(Debug, Default)]
+pub(super) struct Nodes {
+    pub first: Vec<Node>,
+    /// How many the text has.
+    pub count: usize,
 }
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct Node {
+#[derive(Debug, Deserialize)]
+pub(super) struct Node {
+    pub children: Option<Box<[u32]>>,
+    pub matrix: Option<Box<[f32; 16]>>,
+    pub mesh: Option<u32>,
+    pub name: Option<Box<str>>,
+    pub rotation: Option<[f32; 4]>,
+    pub scale: Option<[f32; 3]>,
+    pub translation: Option<[f32; 3]>,
+    pub skin: Option<u32>,
+    pub weights: Option<Box<[f32]>>,
+    #[serde(default)]
     extensions: Option<NodeExtensions>,
 }
 
@@ -41,79 +77,73 @@ struct Instancing {
     attributes: BTreeMap<String, usize>,
 }
 
+/// A scene, which may be empty.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
-struct Animation {
-    channels: Vec<Channel>,
+pub(super) struct Scene {
+    pub nodes: Option<Box<[u32]>>,
 }
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct Channel {
-    target: Target,
+#[derive(Debug, Deserialize)]
+pub(super) struct Animation {
+    pub name: Option<String>,
+    pub channels: Vec<Channel>,
+    pub samplers: Vec<Sampler>,
 }
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct Target {
-    node: Option<IgnoredAny>,
+#[derive(Debug, Deserialize)]
+pub(super) struct Channel {
+    pub sampler: u32,
+    pub target: Target,
 }
 
-impl Rest {
-    /// The accessors of the instances of a node's mesh, by what they tell; `None` where there is but the mesh.
-    pub fn instancing(&self, node: usize) -> Option<&BTreeMap<String, usize>> {
-        Some(&self.nodes.get(node)?.extensions.as_ref()?.instancing.as_ref()?.attributes)
-    }
+#[derive(Debug, Deserialize)]
+pub(super) struct Target {
+    /// An extension may say what else is changed.
+    pub node: Option<u32>,
+    pub path: Checked<Property>,
+}
 
-    /// Whether a channel of an animation names a node, which it need not.
-    pub fn has_target(&self, animation: usize, channel: usize) -> bool {
-        let channels = self.animations.get(animation).map(|animation| animation.channels.as_slice());
-        channels
-            .and_then(|channels| channels.get(channel))
-            .is_some_and(|channel| channel.target.node.is_some())
-    }
-
-    /// The channels that name no node: animation and number.
-    fn without_target(&self) -> impl Iterator<Item = (usize, usize)> {
-        let animations = self.animations.iter().enumerate();
-        let channels =
-            animations.flat_map(|(i, animation)| (0..animation.channels.len()).map(move |j| (i, j)));
-        channels.filter(|&(animation, channel)| !self.has_target(animation, channel))
-    }
-
-    /// What a file need not have, and the crate's types want: where, under what name, and what stands for nothing.
-    fn left_out(&self) -> impl Iterator<Item = (String, &str, Value)> {
-        let target = |(animation, channel)| {
-            (format!("/animations/{animation}/channels/{channel}/target"), "node", json!(0))
-        };
-        let empty = self.scenes.iter().enumerate().filter(|(_, scene)| scene.nodes.is_none());
-        let nodes = empty.map(|(i, _)| (format!("/scenes/{i}"), "nodes", json!([])));
-        self.without_target().map(target).chain(nodes)
+impl Node {
+    /// The accessors of the instances of the node's mesh, by what they tell; `None` where there is but the mesh.
+    pub fn instancing(&self) -> Option<&BTreeMap<String, usize>> {
+        Some(&self.extensions.as_ref()?.instancing.as_ref()?.attributes)
     }
 }
 
-/// Parses a text. In the crate's types a channel that names no node names node 0: ask [`Rest::has_target`].
-pub(super) fn parse(text: &[u8]) -> Result<(Root, Rest)> {
-    check_object(text)?;
-    let rest: Rest = from_slice(text)?;
-    if rest.left_out().next().is_none() {
-        return Ok((from_slice(text)?, rest));
+impl<'de> Deserialize<'de> for Nodes {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_seq(NodesVisitor)
     }
-    let mut value: Value = from_slice(text)?;
-    for (place, name, nothing) in rest.left_out() {
-        if let Some(Value::Object(object)) = value.pointer_mut(&place) {
-            object.insert(name.to_owned(), nothing);
+}
+
+struct NodesVisitor;
+
+impl<'de> Visitor<'de> for NodesVisitor {
+    type Value = Nodes;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a sequence")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut all: A) -> std::result::Result<Nodes, A::Error> {
+        let mut nodes = Nodes::default();
+        while nodes.first.len() < NODES_MAX {
+            let Some(node) = all.next_element()? else { break };
+            nodes.first.push(node);
         }
+        nodes.count = nodes.first.len();
+        while all.next_element::<IgnoredAny>()?.is_some() {
+            nodes.count += 1;
+        }
+        Ok(nodes)
     }
-    Ok((from_value(value).map_err(|error| with_line(text, error))?, rest))
 }
 
-/// An error with its line and column, where the text has the same as it stands: a value that was changed knows no lines.
-fn with_line(text: &[u8], error: serde_json::Error) -> serde_json::Error {
-    match from_slice::<Root>(text) {
-        Err(same) if same.to_string().starts_with(&error.to_string()) => same,
-        _ => error,
-    }
+/// Parses a text.
+pub(super) fn parse(text: &[u8]) -> Result<Root> {
+    check_object(text)?;
+    from_slice(text)
 }
 
 /// What the types would say in words of their own: that the text, where it is JSON, is an object.

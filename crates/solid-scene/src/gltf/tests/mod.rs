@@ -17,6 +17,7 @@ use solid3d::ShapeKind;
 
 use super::graph::{DEPTH_MAX, PATHS_MAX};
 use super::parse;
+use super::text::NODES_MAX;
 use crate::part::Part;
 use crate::pose::ObjectPose;
 

@@ -148,6 +148,22 @@ fn sharing_is_limited_in_proportion_to_the_file() {
     }
 }
 
+/// Nodes of a byte or two take a kilobyte each.
+#[test]
+fn nodes_have_a_limit() {
+    let mut file = File::new();
+    let mesh = file.triangle();
+    file.add("nodes", json!({"mesh": mesh}));
+    let text = |others: usize| {
+        let nodes = format!("\"nodes\":[{}", "{},".repeat(others));
+        file.0.to_string().replace("\"nodes\":[", &nodes)
+    };
+    let parse = |others: usize| parse(text(others).as_bytes(), Path::new(""), None);
+    assert_eq!(parse(NODES_MAX - 1).unwrap().objects.len(), 1);
+    let fault = parse(NODES_MAX).unwrap_err();
+    assert_eq!(fault.message(), "the file has 500001 nodes; the limit is 500000");
+}
+
 /// A target of some primitives has nothing to say of the vertices of others, however many.
 #[test]
 fn targets_take_memory_for_their_own_vertices() {
