@@ -1,7 +1,7 @@
 //! Reading a file from disk.
 
 use std::fs::Metadata;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::error::SceneError;
 
@@ -45,6 +45,11 @@ pub(crate) fn metadata(path: &Path) -> Result<Metadata, SceneError> {
         _ if metadata.is_dir() => Err(SceneError::new(path, None, "is a folder; expected a file")),
         _ => Err(SceneError::new(path, None, "is not a regular file")),
     }
+}
+
+/// The same path for the same file.
+pub(crate) fn canonical(file: &Path) -> PathBuf {
+    file.canonicalize().unwrap_or_else(|_| file.to_owned())
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> SceneError {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use gltf::binary::Glb;
 use gltf::json::{Accessor, Mesh, Skin, buffer};
 
-use super::buffer::load;
+use super::buffer::Buffers;
 use super::text::{self, NODES_MAX, Node, Root};
 use crate::fault::Result;
 use crate::text::{quoted, there_are, without_mark};
@@ -57,9 +57,7 @@ const COMPRESSIONS: [&str; 3] =
 /// A parsed file and the bytes of its buffers. What the text names is looked up here.
 pub(super) struct Document {
     pub root: Root,
-    buffers: Vec<Vec<u8>>,
-    /// The files of buffers.
-    pub files: Vec<PathBuf>,
+    buffers: Buffers,
     /// How many more numbers may be read.
     budget: Cell<u64>,
 }
@@ -69,18 +67,15 @@ impl Document {
     pub fn parse(bytes: &[u8], folder: &Path) -> Result<Document> {
         let bytes = without_mark(bytes);
         check_container(bytes)?;
-        let (text, mut binary) = chunks(bytes)?;
+        let (text, binary) = chunks(bytes)?;
         let root = text::parse(&text).map_err(|error| format!("not glTF 2.0: {error}"))?;
         check_version(&root)?;
         check_extensions(&root)?;
         check_size(&root)?;
-        let (mut buffers, mut files) = (Vec::new(), Vec::new());
-        for (index, buffer) in root.buffers.iter().enumerate() {
-            buffers.push(load(index, buffer, &mut binary, folder, &mut files)?);
-        }
-        let size = (bytes.len() + buffers.iter().map(Vec::len).sum::<usize>()) as u64;
+        let buffers = Buffers::load(&root.buffers, binary, folder)?;
+        let size = bytes.len() as u64 + buffers.size;
         let budget = Cell::new(size.saturating_mul(NUMBERS_PER_BYTE).max(NUMBERS_ALWAYS));
-        Ok(Document { root, buffers, files, budget })
+        Ok(Document { root, buffers, budget })
     }
 
     pub fn accessor(&self, index: usize) -> Result<&Accessor> {
@@ -92,7 +87,12 @@ impl Document {
     }
 
     pub fn buffer(&self, index: usize) -> Result<&[u8]> {
-        find("buffer", &self.buffers, index).map(Vec::as_slice)
+        self.buffers.bytes(index)
+    }
+
+    /// The files of buffers.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.buffers.files
     }
 
     pub fn mesh(&self, index: usize) -> Result<&Mesh> {

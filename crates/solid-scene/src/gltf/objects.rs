@@ -45,7 +45,7 @@ pub(super) fn part(document: &Document, animation: Option<&str>) -> Result<Part>
     let Reader { objects, motion, warnings, .. } = reader;
     let warnings = warnings.into_vec();
     let duration = motion.animation.duration;
-    let files = document.files.clone();
+    let files = document.files().to_owned();
     Ok(Part { objects, motion: Box::new(motion), duration, unit: "metre", warnings, files })
 }
 

@@ -9,9 +9,10 @@ use super::graph::{Call, Graph, Node, Scope};
 use super::library::{self, Library};
 use super::limits::{DEPTH_MAX, INLINE_DEPTH_MAX, NODES_MAX};
 use crate::error::SceneError;
+use crate::file::canonical;
 use crate::text::quoted;
-
 use crate::warnings::Warnings;
+
 /// The fields through which nodes hold others that matter to collisions.
 const CHILD_FIELDS: [&str; 6] = ["children", "choice", "level", "proxy", "geometry", "coord"];
 
@@ -162,9 +163,4 @@ impl Expansion<'_> {
     fn warn(&mut self, node: Node, message: String) {
         self.warnings.add(format!("{}: {message}", self.graph.describe(node)));
     }
-}
-
-/// The same path for the same file.
-fn canonical(file: &Path) -> PathBuf {
-    file.canonicalize().unwrap_or_else(|_| file.to_owned())
 }

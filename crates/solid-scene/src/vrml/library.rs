@@ -7,9 +7,10 @@ use std::rc::Rc;
 use super::document::Document;
 use super::text;
 use crate::error::SceneError;
+use crate::file::canonical;
 use crate::text::quoted;
-
 use crate::warnings::Warnings;
+
 /// Parsed files, each once.
 #[derive(Debug, Default)]
 pub(super) struct Library {
@@ -33,7 +34,7 @@ impl Library {
 
     /// A file, parsed.
     pub fn open(&mut self, file: &Path, warnings: &mut Warnings) -> Result<Rc<Document>, SceneError> {
-        let key = file.canonicalize().unwrap_or_else(|_| file.to_owned());
+        let key = canonical(file);
         if let Some(document) = self.documents.get(&key) {
             return Ok(document.clone());
         }

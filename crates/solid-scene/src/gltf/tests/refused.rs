@@ -213,6 +213,29 @@ fn many_nodes_may_not_share_many_targets_or_joints() {
     }
 }
 
+/// What buffers name is read once, and counts once.
+#[test]
+fn a_file_of_many_buffers_is_read_once() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let length = folder.join("lib.rs").metadata().unwrap().len();
+    let mut file = File::new();
+    let mesh = file.triangle();
+    file.add("nodes", json!({"mesh": mesh}));
+    for uri in ["lib.rs", "./lib.rs", "%6cib.rs"].into_iter().cycle().take(3000) {
+        file.add("buffers", json!({"byteLength": length, "uri": uri}));
+    }
+    file.add("buffers", json!({"byteLength": length - 1, "uri": "lib.rs"}));
+    let parse = |file: &File| parse(file.0.to_string().as_bytes(), &folder, None);
+    assert_eq!(parse(&file).unwrap().files, [folder.join("lib.rs")]);
+    let zeros = json!({"type": "VEC3", "componentType": FLOAT, "count": 1000 * length});
+    set(&mut file, "/accessors/0", zeros);
+    let message = parse(&file).unwrap_err().message().to_owned();
+    assert!(message.ends_with("numbers are more than a file of this size may hold"), "{message}");
+    file.add("buffers", json!({"byteLength": length + 1, "uri": "lib.rs"}));
+    let message = format!("buffer 3002: `lib.rs` has {length} bytes; it should have {}", length + 1);
+    assert_eq!(parse(&file).unwrap_err().message(), message);
+}
+
 /// A warning is given once, and of many no more than anybody would read.
 #[test]
 fn warnings_have_a_limit() {
