@@ -216,9 +216,7 @@ fn in_our_words(message: &str) -> String {
     if let Some(field) = message.strip_prefix("Couldn't read value for field ") {
         return format!("expected a value for the field {field}");
     }
-    if let Some((field, class)) =
-        message.strip_prefix("Unknown field ").and_then(|rest| rest.split_once(" in class "))
-    {
+    if let Some((field, class)) = of_class(message, " in class ") {
         return format!("{field} is no field of {class}; expected one of its fields or '}}'");
     }
     match message {
@@ -228,10 +226,29 @@ fn in_our_words(message: &str) -> String {
     }
 }
 
+/// The parser's warnings say what it does not know; this says what becomes of it.
 fn warning_in_our_words(warning: &str) -> String {
     let rest = warning.strip_prefix("Parser error at ").unwrap_or(warning);
     let rest = rest.split(". You probably have insufficient").next().unwrap_or(rest);
-    rest.replacen(". Error: ", ": ", 1).trim_end_matches('.').to_owned()
+    let warning = rest.replacen(". Error: ", ": ", 1).trim_end_matches('.').to_owned();
+    let Some((place, what)) = warning.split_once(": ") else { return warning };
+    let what = if let Some(name) = what.strip_prefix("Unknown node type or proto ") {
+        format!("{name} is no node of VRML97, and no PROTO before; passed over")
+    } else if let Some(name) = what.strip_prefix("Unknown named or imported node ") {
+        format!("no DEF before gives the name {name}; the ROUTE is passed over")
+    } else if let Some((field, class)) = of_class(what, " in node class ") {
+        format!("{class} has no field or event {field}; the ROUTE is passed over")
+    } else if let Some((field, class)) = of_class(what, " in class ") {
+        format!("{class} has no field {field}; passed over")
+    } else {
+        return warning;
+    };
+    format!("{place}: {what}")
+}
+
+/// The field and the node in a message about one that is not known.
+fn of_class<'a>(message: &'a str, between: &str) -> Option<(&'a str, &'a str)> {
+    message.strip_prefix("Unknown field ")?.split_once(between)
 }
 
 #[cfg(test)]

@@ -152,8 +152,8 @@ fn routes_to_unknown_nodes_and_fields_are_warnings() {
     assert_eq!(
         warnings(&scene),
         [
-            "line 3: Unknown named or imported node 'Gone'",
-            "line 4: Unknown field 'nothing' in node class TimeSensor",
+            "line 3: no DEF before gives the name 'Gone'; the ROUTE is passed over",
+            "line 4: TimeSensor has no field or event 'nothing'; the ROUTE is passed over",
         ]
     );
 }

@@ -73,7 +73,7 @@ fn a_proto_can_be_a_geometry_and_a_coordinate() {
 fn a_proto_cannot_hold_itself() {
     let scene = scene("PROTO P [] { Group { children [ Shape { geometry Box {} } P {} ] } } P {}");
     assert_eq!(scene.objects().len(), 1);
-    assert_eq!(warnings(&scene), ["line 2: Unknown node type or proto 'P'"]);
+    assert_eq!(warnings(&scene), ["line 2: 'P' is no node of VRML97, and no PROTO before; passed over"]);
 }
 
 #[test]

@@ -102,7 +102,7 @@ fn what_is_passed_over_is_named_once_for_each_type() {
     assert_eq!(
         warnings(&scene),
         [
-            "line 3: Unknown node type or proto 'Strange'",
+            "line 3: 'Strange' is no node of VRML97, and no PROTO before; passed over",
             "Billboard does not turn to a viewer; taken as a Group",
             "TouchSensor is not run: it sends no events",
             "Script is not run: it sends no events",
