@@ -327,12 +327,14 @@ fn a_shape_set_within_the_frame_comes_along() {
         (&mesh, mesh.clone(), 0.0, at(5.0, 0.3), false),
     ] {
         let mut world = World::new();
-        world.add(&small, obstacle).unwrap();
+        let obstacle = world.add(&small, obstacle).unwrap();
         let id = world.add(before, DAffine3::IDENTITY).unwrap();
         world.set_motion(id, Motion::Swept).unwrap();
         world.set_shape(id, &after).unwrap();
         world.set_placement(id, DAffine3::from_translation(DVec3::X * to)).unwrap();
         assert_eq!(world.test().len(), usize::from(hit), "{} to {}", before.kind(), after.kind());
+        let impact = world.time_of_impact(obstacle, id, &query::ImpactOptions::default()).unwrap();
+        assert_eq!(impact.is_some(), hit, "{} to {}: {impact:?}", before.kind(), after.kind());
     }
 }
 

@@ -68,7 +68,7 @@ impl World {
     /// When two objects first met on their way from the previous frame to where they are: at time 0 in the previous frame, at time 1
     /// now; `None` when they did not. [`query::time_of_impact_deforming`](crate::query::time_of_impact_deforming) says more.
     ///
-    /// An object that is [`Sampled`](Motion::Sampled), or was set to another shape, has been where it is. On a
+    /// An object that is [`Sampled`](Motion::Sampled) has been where it is; one that was set to another shape has come as that shape. On a
     /// [straight](crate::query::Path::Straight) path, only pairs that collide, now or [on the way](When::OnTheWay), can have an answer, and
     /// those that come nearer than the tolerance: so this tells those that met from those of which but what was tested encloses a contact.
     ///
