@@ -89,7 +89,8 @@ impl ComplexShapeBuilder {
 
     /// Adds a polygon that need not be convex, with holes by doubled edges: one closed chain, flat up to
     /// [`FLATNESS_TOLERANCE`](crate::polygon::FLATNESS_TOLERANCE), whose edges may touch but not cross (thesis, section 2.1.1).
-    /// [`join_holes`](crate::polygon::join_holes) makes such a chain. It counts as one primitive.
+    /// [`join_holes`](crate::polygon::join_holes) makes such a chain. It counts as one primitive, but where a depth or
+    /// [smart response](crate::Response::Smart) is said of a pair of primitives, it is said of one of its triangles.
     ///
     /// It is cut into triangles here, once, by the positions that the vertices have now. A deformation moves the triangles with the
     /// vertices. They go on covering the polygon while it stays about flat and simple, and no triangle is turned over: bend and
