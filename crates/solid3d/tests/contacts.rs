@@ -932,6 +932,26 @@ fn at_most_so_many_points() {
     }
 }
 
+/// They are the same ones from frame to frame, where these differ by rounding.
+#[test]
+fn at_most_so_many_points_persist() {
+    let mut rng = seeded(SEED);
+    let (plate, options) =
+        (Shape::cuboid([9.0, 1.0, 9.0]).unwrap(), ContactOptions { max_points: Some(4), ..within(0.01) });
+    for shape in [Shape::cylinder(0.5, 1.0).unwrap(), Shape::cone(0.5, 1.0).unwrap()] {
+        let mut before = None;
+        for frame in 0..100 {
+            let turn = DQuat::from_scaled_axis(in_cube(&mut rng) * 1e-14) * DQuat::from_rotation_y(0.3);
+            let beside = DVec3::new(0.2, 0.999, 0.1) + in_cube(&mut rng) * 1e-14;
+            let place = DAffine3::from_rotation_translation(turn, beside);
+            let found = query::contacts(&shape, &place, &plate, &DAffine3::IDENTITY, &options).unwrap();
+            let now = names(&found[0]);
+            assert!(before.is_none_or(|before| before == now), "frame {frame}: {found:#?}");
+            before = Some(now);
+        }
+    }
+}
+
 /// Meshes and complex shapes, also degenerate ones, in any place: the laws hold, and there are contacts if and only if they intersect.
 #[test]
 fn soups_obey_the_laws() {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3};
 
 use super::joining::Joining;
-use super::{Part, Patch, Touch};
+use super::{Part, Patch, SAME_DEPTH, Touch};
 use crate::hull::outline;
 
 /// Points nearer to each other than this are one, in the unit of the pair.
@@ -13,6 +13,9 @@ const SAME_POINT: f64 = 1e-8;
 
 /// Points that are off a plane by less than this are in it, in the unit of the pair.
 const FLAT: f64 = 1e-8;
+
+/// Distances whose squares differ by no more than this part of the greater are the same.
+const SAME_DISTANCE: f64 = 1e-9;
 
 /// Contacts with one normal, each with its primitives. Space: common.
 pub(super) struct Region {
@@ -120,10 +123,12 @@ pub(super) fn reduce(points: &mut Vec<Touch>, normal: DVec3, most: usize) {
         let v = points[i].on_a - points[j].on_a;
         (v - normal * v.dot(normal)).length_squared()
     };
-    let first_of_most = |value: &dyn Fn(usize) -> f64| {
-        (0..points.len()).max_by(|&i, &j| value(i).total_cmp(&value(j)).then(j.cmp(&i))).unwrap_or(0)
+    // Of those that differ by rounding the first, so that it is the same in the next frame.
+    let first_of_most = |value: &dyn Fn(usize) -> f64, same: &dyn Fn(f64) -> f64| {
+        let most = (0..points.len()).map(value).fold(f64::NEG_INFINITY, f64::max);
+        (0..points.len()).find(|&i| value(i) >= same(most)).unwrap_or(0)
     };
-    let mut next = first_of_most(&|i| points[i].depth);
+    let mut next = first_of_most(&|i| points[i].depth, &|most| most - SAME_DEPTH);
     let (mut kept, mut distance) = (Vec::new(), vec![f64::INFINITY; points.len()]);
     loop {
         kept.push(next);
@@ -135,7 +140,7 @@ pub(super) fn reduce(points: &mut Vec<Touch>, normal: DVec3, most: usize) {
         for (i, nearest) in distance.iter_mut().enumerate() {
             *nearest = nearest.min(across(i, next));
         }
-        next = first_of_most(&|i| distance[i]);
+        next = first_of_most(&|i| distance[i], &|most| most * (1.0 - SAME_DISTANCE));
     }
     kept.sort_unstable();
     *points = kept.into_iter().map(|i| points[i]).collect();
