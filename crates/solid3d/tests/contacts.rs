@@ -371,7 +371,10 @@ fn a_flat_floor_holds_meshes_up() {
     let far = common::block(DVec3::new(20.0, -1.0, 0.0), DVec3::new(21.0, 0.0, 1.0));
     // Not convex, so that it is no body.
     let tables = common::joined([table, far]).shape();
-    let floors = [floor(1), floor(2), floor(9), tables.clone(), tables.into_solid().unwrap()];
+    let slab = |low: f64| common::block(DVec3::new(-5.0, low, -5.0), DVec3::new(5.0, 0.0, 5.0));
+    let bodies = [slab(-1.0).shape(), Shape::convex_hull(&slab(-0.1).vertices).unwrap()];
+    let meshes = [floor(1), floor(2), floor(9), tables.clone(), tables.into_solid().unwrap()];
+    let floors: Vec<Shape> = meshes.into_iter().chain(bodies).collect();
     let mut beside = squares(0.3, 2);
     beside.vertices.iter_mut().for_each(|vertex| vertex.x += 1.2);
     let surfaces =

@@ -28,6 +28,7 @@ mod ring;
 mod side;
 mod soup;
 mod soup_body;
+mod standing;
 mod stars;
 mod through;
 #[cfg(test)]

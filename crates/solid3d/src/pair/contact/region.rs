@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
+use foldhash::fast::RandomState;
 use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
 
 use super::joining::Joining;
 use super::{Part, Patch, SAME_DEPTH, Touch};
@@ -10,6 +12,9 @@ use crate::hull::outline;
 
 /// Points nearer to each other than this are one, in the unit of the pair.
 const SAME_POINT: f64 = 1e-8;
+
+/// The cells of the grid that finds such points.
+const CELL: f64 = 100.0 * SAME_POINT;
 
 /// Points that are off a plane by less than this are in it, in the unit of the pair.
 const FLAT: f64 = 1e-8;
@@ -69,18 +74,21 @@ fn thinned(points: Vec<Touch>, normal: DVec3, several: bool) -> Vec<Touch> {
 fn without_duplicates(points: Vec<Touch>, places: &[DVec2]) -> Vec<Touch> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&i, &j| points[j].depth.total_cmp(&points[i].depth).then(i.cmp(&j)));
-    let mut kept_in: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
+    let mut kept_in: HashMap<[i64; 2], SmallVec<[usize; 2]>, RandomState> = HashMap::default();
     let mut kept = Vec::new();
     for i in order {
-        let cell = (places[i] / SAME_POINT).floor();
-        let cell = [cell.x as i64, cell.y as i64];
-        let near = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [cell[0] + dx, cell[1] + dy]));
+        // Mostly one: a point is seldom next to the end of its cell.
+        let [from, own, to] = [-2.0, 0.0, 2.0].map(|off| {
+            let cell = ((places[i] + off * SAME_POINT) / CELL).floor();
+            [cell.x as i64, cell.y as i64]
+        });
+        let near = (from[0]..=to[0]).flat_map(|x| (from[1]..=to[1]).map(move |y| [x, y]));
         let same = |&j: &usize| {
             let (p, q) = (&points[i], &points[j]);
             p.on_a.distance(q.on_a) <= SAME_POINT && p.on_b.distance(q.on_b) <= SAME_POINT
         };
         if !near.into_iter().any(|cell| kept_in.get(&cell).is_some_and(|others| others.iter().any(same))) {
-            kept_in.entry(cell).or_default().push(i);
+            kept_in.entry(own).or_default().push(i);
             kept.push(i);
         }
     }

@@ -14,8 +14,8 @@ use super::inside::Inside;
 use super::other::Other;
 use super::overhang::Overhang;
 use super::side::{Corrected, Side};
-use super::stars::Stars;
-use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge};
+use super::stars::{LEVEL, Stars};
+use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge, standing};
 use crate::shape::{Body, Complex};
 
 /// A soup and a body, of which primitives that meet it are looked at one after the other.
@@ -36,6 +36,21 @@ struct Encounter<'a> {
     /// Whether some primitive that meets the body had contacts where they are in each other, and whether some had none.
     answered: Cell<bool>,
     unanswered: Cell<bool>,
+}
+
+/// How the body leaves a primitive.
+struct Leaving {
+    primitive: u32,
+    /// The normal out of it.
+    out: DVec3,
+    /// How long that way is, where it is the shortest and the surface has it; negative for a gap.
+    shortest: Option<f64>,
+    /// The contacts along it, if any.
+    touches: Vec<Touch>,
+    /// Whether the two meet.
+    meets: bool,
+    is_own: bool,
+    is_inward: bool,
 }
 
 /// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
@@ -95,9 +110,12 @@ pub(super) fn soup_body(
 impl Encounter<'_> {
     /// The contacts of all that was found, and of what the body leans over.
     fn patches(&self) -> Vec<Patch> {
+        let told = |&primitive: &u32| self.with_side(primitive, |side| self.way_out(side));
+        let mut leaving: Vec<Leaving> = self.found.iter().filter_map(told).collect();
+        self.straighten(&mut leaving);
         let mut overhang = Overhang::new(self.stars, self.other, self.met);
-        let mut patches: Vec<Patch> =
-            self.found.iter().filter_map(|&primitive| self.patch(primitive, &mut overhang)).collect();
+        let patch = |leaving: Leaving| self.patch(leaving, &mut overhang);
+        let mut patches: Vec<Patch> = leaving.into_iter().filter_map(patch).collect();
         let behind = overhang.found.iter().filter_map(|&(triangle, out)| self.patch_behind(triangle, out));
         let behind: Vec<Patch> = behind.collect();
         if !behind.is_empty() {
@@ -109,25 +127,23 @@ impl Encounter<'_> {
     }
 
     /// The contacts of a primitive; `None` where there are none.
-    fn patch(&self, primitive: u32, overhang: &mut Overhang) -> Option<Patch> {
-        self.with_side(primitive, |side| {
-            let (out, touches, meets) = self.way_out(side)?;
-            if meets {
-                let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
-                (if is_told { &self.answered } else { &self.unanswered }).set(true);
-                // A ball that is not stretched meets the triangle in front of its deepest point.
-                let is_round = matches!(self.other.corners, [_]);
-                if !is_round && side.is_own(out) {
-                    overhang.look(primitive, out);
-                }
+    fn patch(&self, leaving: Leaving, overhang: &mut Overhang) -> Option<Patch> {
+        let Leaving { primitive, out, touches, meets, is_own, is_inward, .. } = leaving;
+        if meets {
+            let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
+            (if is_told { &self.answered } else { &self.unanswered }).set(true);
+            // A ball that is not stretched meets the triangle in front of its deepest point.
+            let is_round = matches!(self.other.corners, [_]);
+            if !is_round && is_own {
+                overhang.look(primitive, out);
             }
-            self.patch_of(side, out, touches)
-        })
+        }
+        self.patch_of(out, touches, is_inward)
     }
 
     /// The contacts of a triangle that the body does not meet, but is behind.
     fn patch_behind(&self, triangle: u32, out: DVec3) -> Option<Patch> {
-        self.with_side(triangle, |side| self.patch_of(side, out, self.over(side, out)))
+        self.with_side(triangle, |side| self.patch_of(out, self.over(side, out), side.is_inward(out)))
     }
 
     /// The contacts across an edge of the surface, which is one of some triangles.
@@ -136,7 +152,7 @@ impl Encounter<'_> {
         self.with_side(triangle, |side| {
             let [a, b] = self.in_order(&side.body, &self.body);
             let touches = self.pair.touches(a, b, &way.meeting(self.mirrored));
-            self.patch_of(side, way.out, touches)
+            self.patch_of(way.out, touches, side.is_inward(way.out))
         })
     }
 
@@ -147,37 +163,58 @@ impl Encounter<'_> {
         ask(&Side::new(self.stars, placed, &corners, self.other))
     }
 
-    fn patch_of(&self, side: &Side, out: DVec3, touches: Vec<Touch>) -> Option<Patch> {
-        let (normal, is_inward) = (out * self.sign(), side.is_inward(out));
+    fn patch_of(&self, out: DVec3, touches: Vec<Touch>, is_inward: bool) -> Option<Patch> {
+        let normal = out * self.sign();
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     }
 
-    /// A normal out of a primitive along which the body leaves it, the contacts along that, if any, and whether the two meet.
-    fn way_out(&self, side: &Side) -> Option<(DVec3, Vec<Touch>, bool)> {
-        Some(match side.flat() {
-            Some(normal) => {
-                let meets = self.met.binary_search(&side.body.primitive).is_ok();
-                (normal, self.over(side, normal), meets)
+    /// How the body leaves a primitive; `None` where there is no contact.
+    fn way_out(&self, side: &Side) -> Option<Leaving> {
+        if let Some(out) = side.flat() {
+            let meets = self.met.binary_search(&side.body.primitive).is_ok();
+            return Some(self.leaving(side, out, self.over(side, out), meets));
+        }
+        let meeting = self.meeting(side)?;
+        let corrected = match side.corrected(meeting.normal * self.sign(), meeting.tilt)? {
+            Corrected::Kept(out) | Corrected::Replaced(out) if side.is_cut_short(out, self.found) => {
+                Corrected::Replaced(-out)
             }
-            None => {
-                let meeting = self.meeting(side)?;
-                let corrected = match side.corrected(meeting.normal * self.sign(), meeting.tilt)? {
-                    Corrected::Kept(out) | Corrected::Replaced(out) if side.is_cut_short(out, self.found) => {
-                        Corrected::Replaced(-out)
-                    }
-                    corrected => corrected,
-                };
-                let touches = match corrected {
-                    Corrected::Kept(normal) => {
-                        let [a, b] = self.in_order(&side.body, &self.body);
-                        self.pair.touches(a, b, &Meeting { normal: normal * self.sign(), ..meeting })
-                    }
-                    Corrected::Adopted(normal) if !self.body.is_ball() => self.across(side, normal),
-                    Corrected::Adopted(normal) | Corrected::Replaced(normal) => self.over(side, normal),
-                };
-                (corrected.normal(), touches, meeting.depth >= 0.0)
+            corrected => corrected,
+        };
+        let (touches, shortest) = match corrected {
+            Corrected::Kept(normal) => {
+                let [a, b] = self.in_order(&side.body, &self.body);
+                let meeting = Meeting { normal: normal * self.sign(), ..meeting };
+                (self.pair.touches(a, b, &meeting), Some(meeting.depth))
             }
-        })
+            Corrected::Adopted(normal) if !self.body.is_ball() => (self.across(side, normal), None),
+            Corrected::Adopted(normal) | Corrected::Replaced(normal) => (self.over(side, normal), None),
+        };
+        let leaving = self.leaving(side, corrected.normal(), touches, meeting.depth >= 0.0);
+        Some(Leaving { shortest, ..leaving })
+    }
+
+    fn leaving(&self, side: &Side, out: DVec3, touches: Vec<Touch>, meets: bool) -> Leaving {
+        let (is_own, is_inward) = (side.is_own(out), side.is_inward(out));
+        Leaving { primitive: side.body.primitive, out, shortest: None, touches, meets, is_own, is_inward }
+    }
+
+    /// Where the soup stands on a face of the body, that is left along its normal also by what told a longer way, in place of one that its surface
+    /// does not have.
+    fn straighten(&self, told: &mut [Leaving]) {
+        if told.iter().all(|leaving| leaving.shortest.is_some()) {
+            return;
+        }
+        let ways = told.iter().filter_map(|leaving| Some((leaving.shortest?, leaving.out)));
+        let Some(out) = standing::way(ways, &self.body, &self.other, self.stars, self.found) else { return };
+        for leaving in told.iter_mut().filter(|leaving| leaving.shortest.is_none()) {
+            let corners = self.stars.corners(leaving.primitive);
+            let [depth, own] = [out, leaving.out].map(|way| self.other.depths(&corners, way)[0]);
+            if depth < own - LEVEL {
+                let anew = |side: &Side| self.leaving(side, out, self.across(side, out), leaving.meets);
+                *leaving = self.with_side(leaving.primitive, anew);
+            }
+        }
     }
 
     /// How a primitive and the body lie to each other; `None` when they are further apart than the margin.
