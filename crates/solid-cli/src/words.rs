@@ -14,6 +14,11 @@ pub fn count(n: impl Into<u64>, noun: &str) -> String {
     }
 }
 
+/// What so many things do: `is`, `are`.
+pub fn are(n: impl Into<u64>) -> &'static str {
+    if n.into() == 1 { "is" } else { "are" }
+}
+
 /// A number of things, to count.
 pub fn size(n: usize) -> u64 {
     n as u64

@@ -73,8 +73,7 @@ fn nearness(summary: &NearSummary, frames: &str) -> String {
     let Some(least) = least_distance else {
         return "in no frame is anything nearer than its clearance".to_owned();
     };
-    let are = if *near_pairs == 1 { "is" } else { "are" };
-    let pairs = words::count(*near_pairs, "pair");
+    let (pairs, are) = (words::count(*near_pairs, "pair"), words::are(*near_pairs));
     let least = words::figure(*least);
     format!(
         "{pairs} {are} nearer than the clearance, in {near_frames} of {frames}; the least distance is {least}"

@@ -125,8 +125,8 @@ impl<'a> RowReader<'a> {
     fn row(&self, line: u64, record: &StringRecord) -> fields::Result<Row> {
         let (found, expected) = (record.len(), self.columns);
         if found != expected {
-            let are = if found == 1 { "is" } else { "are" };
-            let fields = words::count(words::size(found), "field");
+            let found = words::size(found);
+            let (fields, are) = (words::count(found, "field"), words::are(found));
             return Err(format!("there {are} {fields}; expected {expected}, as in the header"));
         }
         let texts: Vec<&str> = record.iter().collect();
