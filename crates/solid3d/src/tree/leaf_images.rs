@@ -23,8 +23,8 @@ use solid_convex::simd;
 
 #[cfg(test)]
 use super::near::Boxes;
-use super::node::{Child, Kind, LEAF_SIZE, Node};
-use super::{Normal, Tree};
+use super::node::{Kind, LEAF_SIZE, Node, WIDTH};
+use super::{Normal, Place, Signposts, Tree};
 
 /// The steps of the grid over a leaf's box, along each axis.
 pub(crate) const STEPS: u32 = (1 << AXIS_BITS) - 1;
@@ -47,6 +47,8 @@ pub(crate) struct LeafImages {
     /// Those of a leaf that begins at `start` in the order begin at `WORDS * start`: all first corners, all second ones, all
     /// third ones; then the indices of each triangle. At the end is room for a vector that begins at the last.
     words: Vec<u32>,
+    /// Which of them to look at first.
+    signposts: Option<Signposts>,
 }
 
 /// A leaf to which a walk has come.
@@ -89,7 +91,7 @@ impl LeafImages {
                 indices[CORNERS * lane..][..CORNERS].copy_from_slice(&corners);
             }
         }
-        LeafImages { words }
+        LeafImages { words, signposts: Signposts::new(tree) }
     }
 
     /// The image of a leaf of their tree.
@@ -104,9 +106,15 @@ impl LeafImages {
         simd::prefetch_some::<u32, { WORDS * LEAF_SIZE }>(&self.words, WORDS * start);
     }
 
+    /// Where to look first, in a tree of many leaves.
+    #[inline(always)]
+    pub fn signposts(&self) -> Option<&Signposts> {
+        self.signposts.as_ref()
+    }
+
     /// The memory that they own, in bytes.
     pub fn bytes(&self) -> usize {
-        self.words.capacity() * size_of::<u32>()
+        self.words.capacity() * size_of::<u32>() + self.signposts.as_ref().map_or(0, Signposts::bytes)
     }
 }
 
@@ -136,13 +144,23 @@ impl<'t> Grid<'t> {
 impl Tree {
     /// All leaves.
     pub(crate) fn leaves(&self) -> impl Iterator<Item = Leaf<'_>> {
-        self.nodes.iter().enumerate().flat_map(move |(index, node)| {
-            let leaf = move |(lane, child): (usize, Child)| match child.kind() {
-                Kind::Leaf(range) => Some(Leaf::new(self, range, index, lane)),
-                Kind::Empty | Kind::Inner(_) => None,
-            };
-            node.child.into_iter().enumerate().filter_map(leaf)
-        })
+        self.placed_leaves().map(|(_, leaf)| leaf)
+    }
+
+    /// The same, and where they are.
+    pub(super) fn placed_leaves(&self) -> impl Iterator<Item = (Place, Leaf<'_>)> {
+        let lanes =
+            (0..self.nodes.len()).flat_map(|node| (0..WIDTH).map(move |lane| Place::lane(node, lane)));
+        lanes.filter_map(|place| self.leaf_if_any(place).map(|leaf| (place, leaf)))
+    }
+
+    /// The leaf in a lane, if there is one.
+    #[inline(always)]
+    pub(super) fn leaf_if_any(&self, place: Place) -> Option<Leaf<'_>> {
+        match self.child_at(place).kind() {
+            Kind::Leaf(range) => Some(self.leaf_at(place, range)),
+            Kind::Empty | Kind::Inner(_) => None,
+        }
     }
 }
 

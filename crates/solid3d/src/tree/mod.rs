@@ -19,6 +19,7 @@
 //! | `collapse` | which of its sets become nodes |
 //! | `refit`, `leaf_points`, `cost` | boxes anew in the same topology, what they are around, and when that no longer pays |
 //! | `leaf_images` | the triangles of each leaf, coarsely, side by side: what is looked at before they are |
+//! | `signposts` | a leaf near to each cell of a grid: where to look first, when any that is found will do |
 //! | `validate` | the invariants |
 //! | `traversal` | scratch and counters of every query |
 //! | `relative`, `crossing`, `lanes` | an affine map between two trees; one box against eight across it |
@@ -75,6 +76,7 @@ mod ray_probe;
 mod refit;
 mod relative;
 mod siblings;
+mod signposts;
 mod slabs;
 mod split;
 mod squares;
@@ -105,6 +107,7 @@ pub(crate) use ray::RayLeaves;
 pub use ray::TreeRay;
 pub(crate) use ray_probe::{RayProbe, Space, entry};
 pub use relative::{PlacedBox, Relative};
+pub(crate) use signposts::Signposts;
 pub(crate) use slabs::Slabs;
 pub use traversal::{Counters, Traversal};
 

@@ -13,7 +13,7 @@ use super::node::{Kind, Node};
 use super::normal::round_down;
 use super::packed::PackedBox;
 use super::squares::{below, key_limit, keys, lane, limit, raised};
-use super::{Leaf, Place, Traversal, Tree};
+use super::{Leaf, Place, Signposts, Traversal, Tree};
 use crate::Aabb;
 
 /// Where a query is: within a distance, in the world, of some point of a box of local coordinates; anywhere, if the distance is no number.
@@ -53,6 +53,12 @@ pub(crate) trait NearLeaves {
     /// Lower bounds of the distances to anything in the boxes of a node, where it knows better; of lanes that are not in use they mean nothing.
     #[inline(always)]
     fn bounds<S: Simd>(&mut self, _simd: S, _boxes: &Boxes) -> Option<f32x8<S>> {
+        None
+    }
+
+    /// Tells where to look before the walk, if what is found there may be all that is wanted.
+    #[inline(always)]
+    fn signposts(&self) -> Option<&Signposts> {
         None
     }
 
@@ -112,6 +118,21 @@ impl Tree {
         dispatch!(widest level, simd => self.walk_near(simd, query, best, traversal, visitor));
     }
 
+    /// The leaf that signposts name where the query is, if that is near.
+    #[inline(always)]
+    fn leaf_ahead<S: Simd>(
+        &self,
+        simd: S,
+        query: &NearQuery,
+        signposts: &Signposts,
+        limit: i32,
+    ) -> Option<Leaf<'_>> {
+        let place = signposts.at(&query.around);
+        let (node, lane) = place.split()?;
+        let near = below(simd, keys(simd, query.squares(simd, &self.nodes[node])), limit);
+        if near >> lane & 1 == 1 { self.leaf_if_any(place) } else { None }
+    }
+
     #[inline(always)] // into the function that is compiled for a level of instructions
     fn walk_near<S: Simd, V: NearLeaves>(
         &self,
@@ -124,6 +145,14 @@ impl Tree {
         let Traversal { counters, near: broods, .. } = traversal;
         broods.clear();
         let mut limit = query.limit(*best);
+        if let Some(signposts) = visitor.signposts() {
+            counters.box_tests += 1;
+            if let Some(leaf) = self.leaf_ahead(simd, query, signposts, limit) {
+                counters.leaf_visits += 1;
+                visitor.visit(simd, &leaf, best);
+                limit = query.limit(*best);
+            }
+        }
         // What comes next, where it is known: of a node with near children mostly one of these.
         let mut next = Some((0, Place::ROOT));
         while let Some((key, place)) = next.take().or_else(

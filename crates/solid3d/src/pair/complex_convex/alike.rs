@@ -254,12 +254,14 @@ mod tests {
         let seed = 97;
         println!("seed {seed}");
         let mut rng = seeded(seed);
-        let (mut asked, mut meet, mut glances) = (0, 0, 0);
+        let (mut asked, mut meet, mut glances, mut led) = (0, 0, 0, 0);
         for case in 0..6000 {
             let size = 10f64.powi(rng.random_range(-20..20));
             let scale = 10f64.powi(rng.random_range(-5..5)) * if case % 4 == 0 { -1.0 } else { 1.0 };
             let far = if case % 7 == 0 { 1e4 * size * in_cube(&mut rng) } else { DVec3::ZERO };
-            let complex = triangles(&mut rng, case, 60, size, far);
+            let most = if case % 8 == 0 { 1500 } else { 60 };
+            let complex = triangles(&mut rng, case, most, size, far);
+            led += u32::from(complex.images().is_some_and(|images| images.signposts().is_some()));
             let [turn, turn_body] = [turned(&mut rng, 1), turned(&mut rng, 1)].map(|(_, at)| at.matrix3);
             let at_complex =
                 DAffine3 { matrix3: turn * scale, translation: in_cube(&mut rng) * size * scale };
@@ -304,7 +306,8 @@ mod tests {
             meet += u32::from(is_met);
             glances += u32::from(details.is_none());
         }
-        println!("{meet} of {asked} meet, {glances} at a glance");
+        println!("{meet} of {asked} meet, {glances} at a glance, {led} with signposts");
         assert!(asked > 5500 && (asked * 3 / 10..asked * 7 / 10).contains(&meet) && glances > asked / 2);
+        assert!(led > 200);
     }
 }

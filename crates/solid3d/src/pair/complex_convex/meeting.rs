@@ -16,7 +16,7 @@ use super::details::Details;
 use super::interior::Interior;
 use super::sight::Sight;
 use super::{CLEARLY_APART, alike, frame};
-use crate::tree::{Boxes, Leaf, LeafImages, NearLeaves, bits};
+use crate::tree::{Boxes, Leaf, LeafImages, NearLeaves, Signposts, bits};
 
 /// A walk that opens so many nodes is long: better bounds are then worth preparing.
 const LONG: usize = 8;
@@ -107,6 +107,14 @@ impl NearLeaves for Meeting<'_, '_> {
             }
         }
         Some(self.gaps.as_ref()?.of_boxes(simd, boxes))
+    }
+
+    #[inline(always)]
+    fn signposts(&self) -> Option<&Signposts> {
+        self.glance.and_then(
+            #[inline(always)]
+            |(_, images)| images.signposts(),
+        )
     }
 
     #[inline(always)]
