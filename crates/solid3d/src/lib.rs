@@ -27,8 +27,8 @@ pub use glam;
 pub use shape::{ComplexShapeBuilder, OpenEdge, OpenEdges, Shape, ShapeKind};
 pub use solid_convex as convex;
 pub use world::{
-    Boxes, Collision, Contact, Event, EventKind, Motion, Near, ObjectCast, ObjectHit, ObjectId, ObjectPoint,
-    Response, Statistics, TestProgress, When, World, WorldOptions,
+    Boxes, Collision, Contact, Event, EventKind, Motion, Near, ObjectCast, ObjectDistance, ObjectHit,
+    ObjectId, ObjectPoint, Response, Statistics, TestProgress, When, World, WorldOptions,
 };
 
 /// The code of the guide and of the README, as tests.

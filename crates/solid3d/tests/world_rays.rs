@@ -14,7 +14,7 @@ use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid3d::query::{self, FromInside, Ray, RayHit, RayOptions};
 use solid3d::{
-    BroadPhaseKind, ComplexShapeBuilder, ObjectHit, ObjectId, ObjectPoint, Shape, World, WorldOptions, glam,
+    BroadPhaseKind, ComplexShapeBuilder, ObjectDistance, ObjectHit, ObjectId, ObjectPoint, Shape, World, WorldOptions, glam,
 };
 
 /// Adds a mesh or a convex shape, of one of two ranks.
@@ -114,9 +114,9 @@ fn a_world_sees_what_its_objects_show() {
     }
 }
 
-/// The same of what is nearest to a point, within a distance; of objects that are as near the first in the order of pairs.
+/// The same of what is nearest to a point or a shape, within a distance; of objects that are as near the first in the order of pairs.
 #[test]
-fn nearest_to_a_point_is_what_is_nearest_of_all() {
+fn nearest_is_what_is_nearest_of_all() {
     for broad_phase in [BroadPhaseKind::DynamicTree, BroadPhaseKind::SweepAndPrune] {
         let mut rng = seeded(114);
         let mut world = World::with_options(&WorldOptions { broad_phase, ..WorldOptions::default() });
@@ -155,6 +155,18 @@ fn nearest_to_a_point_is_what_is_nearest_of_all() {
                 cases += 1;
                 found += u32::from(nearest.is_some());
                 inside += u32::from(nearest.is_some_and(|near| near.closest.distance == 0.0));
+
+                let (shape, mut at) = (shape_of(&random_shape(&mut rng, 0.5)), placement(&mut rng, 1.0));
+                at.translation = point;
+                let distances = in_order.iter().filter(|id| counts(**id)).map(|&object| {
+                    let (other, other_at) = (world.shape(object).unwrap(), world.placement(object).unwrap());
+                    let distance = query::distance(&shape, &at, other, &other_at).unwrap();
+                    ObjectDistance { object, distance }
+                });
+                let expected = (distances.filter(|near| near.distance.distance <= within))
+                    .reduce(|x, y| if y.distance.distance < x.distance.distance { y } else { x });
+                let nearest = world.closest_object(&shape, &at, within, counts).unwrap();
+                assert_eq!(nearest, expected, "a shape at {point}, {within}");
             }
         }
         println!("{found} of {cases} points have something near, {inside} are inside");
@@ -175,6 +187,13 @@ fn nearest_to_a_point_is_what_is_nearest_of_all() {
     assert_eq!(error(DVec3::ZERO, -1.0), "within is -1.0; it must be at least 0");
     assert_eq!(error(DVec3::ZERO, f64::NAN), "within is NaN; it must be at least 0");
     assert!(error(DVec3::X * 1e101, 1.0).starts_with("point is "));
+    let nearest = |at: DAffine3, within: f64| world.closest_object(&hull, &at, within, |_| true);
+    assert_eq!(nearest(DAffine3::IDENTITY, 1.0), Ok(None));
+    assert_eq!(
+        nearest(DAffine3::IDENTITY, -1.0).unwrap_err().to_string(),
+        "within is -1.0; it must be at least 0"
+    );
+    assert!(nearest(DAffine3::ZERO, 1.0).unwrap_err().to_string().starts_with("placement is "));
 }
 
 /// The same of a shape that moves: it meets first what the earliest of all its casts meets.

@@ -33,7 +33,7 @@ use std::fmt;
 use glam::{DAffine3, DVec3};
 
 pub use casts::ObjectCast;
-pub use closest::ObjectPoint;
+pub use closest::{ObjectDistance, ObjectPoint};
 pub use collision::{Collision, Contact};
 pub use event::{Event, EventKind};
 pub use motion::{Motion, When};
