@@ -63,11 +63,6 @@ impl Soup {
     }
 
     fn complex(&self, vertices: Vec<DVec3>) -> Result<Shape> {
-        let is_mesh = self.ends.iter().enumerate().all(|(i, &end)| end == 3 * (i + 1));
-        if is_mesh {
-            let triangles: Vec<[u32; 3]> = self.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-            return Ok(Shape::mesh(vertices, triangles)?);
-        }
         let mut builder = ComplexShapeBuilder::new(vertices);
         let mut start = 0;
         for &end in &self.ends {

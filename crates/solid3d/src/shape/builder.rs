@@ -139,7 +139,7 @@ impl ComplexShapeBuilder {
         self.add(vertices, 1)
     }
 
-    /// The shape, or the first mistake made. Cost: O(n log n).
+    /// The shape, or the first mistake made; of nothing but triangles, a [mesh](Shape::mesh). Cost: O(n log n).
     pub fn build(self) -> Result<Shape> {
         if let Some(error) = self.error {
             return Err(error);
@@ -148,8 +148,12 @@ impl ComplexShapeBuilder {
         validate::primitive_count("primitives", self.first.len() - 1)?;
         validate::at_most(validate::NAMEABLE_MAX, "indices", self.indices.len())?;
         let all_whole = self.given == self.first.len() - 1;
-        let owners = if all_whole { Vec::new() } else { self.owners };
-        let primitives = Primitives::Mixed { first: self.first, indices: self.indices, owners };
+        let primitives = if all_whole && self.first.windows(2).all(|ends| ends[1] - ends[0] == 3) {
+            Primitives::Triangles(self.indices.as_chunks().0.to_vec())
+        } else {
+            let owners = if all_whole { Vec::new() } else { self.owners };
+            Primitives::Mixed { first: self.first, indices: self.indices, owners }
+        };
         Ok(Geometry::Complex(Arc::new(Complex::new(self.vertices, primitives)?)).into())
     }
 
