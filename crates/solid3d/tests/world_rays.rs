@@ -14,7 +14,8 @@ use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid3d::query::{self, FromInside, Ray, RayHit, RayOptions};
 use solid3d::{
-    BroadPhaseKind, ComplexShapeBuilder, ObjectDistance, ObjectHit, ObjectId, ObjectPoint, Shape, World, WorldOptions, glam,
+    BroadPhaseKind, ComplexShapeBuilder, ObjectDistance, ObjectHit, ObjectId, ObjectPoint, Shape, World,
+    WorldOptions, glam,
 };
 
 /// Adds a mesh or a convex shape, of one of two ranks.

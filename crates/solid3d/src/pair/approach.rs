@@ -77,8 +77,8 @@ pub(crate) fn proximity(a: Placed, b: Placed, bound: f64, scratch: &mut Scratch)
     closest_within(a, b, bound, scratch).map(|closest| of_closest([a, b], closest, scratch))
 }
 
-/// The pairs of primitives that meet now, in ascending order. None when the whole shapes are to be looked at: they are convex, one is another than in the
-/// previous frame, one contains the other, or they met on the way.
+/// The pairs of primitives that meet now, those of the previous frame, in ascending order. None when the whole shapes are to be looked at: they
+/// are convex, one is another than in the previous frame, one contains the other, or they met on the way.
 fn pairs_to_look_at(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch) -> Vec<[u32; 2]> {
     let mut pairs = std::mem::take(&mut scratch.meeting);
     pairs.clear();
@@ -86,10 +86,11 @@ fn pairs_to_look_at(now: [Placed; 2], before: [Placed; 2], scratch: &mut Scratch
     let same = || now.iter().zip(before).all(|(now, before)| now.shape.has_primitives_of(before.shape));
     if !convex && same() {
         let _ = meeting_primitives(now[0], now[1], scratch, &mut |i, j| {
-            pairs.push([i, j]);
+            pairs.push([before[0].shape.whole(i), before[1].shape.whole(j)]);
             ControlFlow::Continue(())
         });
         pairs.sort_unstable();
+        pairs.dedup();
     }
     pairs
 }
@@ -155,14 +156,14 @@ pub(super) fn with_primitives<T>(
     let on_a: &dyn Support = match a.shape.class() {
         Class::Convex(convex) => convex,
         Class::Complex(complex) => {
-            of_a = complex.primitive_hull(i);
+            of_a = complex.whole_hull(i);
             &of_a
         }
     };
     let on_b: &dyn Support = match b.shape.class() {
         Class::Convex(convex) => convex,
         Class::Complex(complex) => {
-            of_b = complex.primitive_hull(j);
+            of_b = complex.whole_hull(j);
             &of_b
         }
     };

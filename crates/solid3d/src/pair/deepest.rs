@@ -1,5 +1,6 @@
-//! Which of many pairs of primitives is deepest.
+//! Which of many pairs of primitives is deepest. The pieces of a convex polygon are one, which the first of them stands for.
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
@@ -12,10 +13,11 @@ use super::complex_complex::{frame, meeting_leaves};
 use super::depth::of_common;
 use super::frame::Frame;
 use super::leaf_pair::MeetingLeaves;
-use super::row::{CONFIRMED, depths};
+use super::row::{CONFIRMED, Row, depths};
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Scratch, complex_convex};
 use crate::bounds::Aabb;
+use crate::shape::Complex;
 use crate::tree::{LEAF_SIZE, bits};
 
 /// The deepest of several pairs of primitives, with what was found of it.
@@ -65,32 +67,35 @@ pub(super) fn deepest_pair(
 ) -> Option<[u32; 2]> {
     let frame = frame(a, b);
     let scale = frame.scale;
-    let mut deepest = Deepest::default();
+    let (mut deepest, mut looked_at) = (Deepest::default(), BTreeSet::new());
+    let has_polygons = a.0.has_polygons() || b.0.has_polygons();
     let mut look = |leaves: &MeetingLeaves| {
         let ([in_a, in_b], meeting) = leaves.by_first();
-        if overlap(in_a.union(), in_b.union()) < deepest.depth() {
+        // A polygon reaches beyond the leaf that has a piece of it.
+        if !has_polygons && overlap(in_a.union(), in_b.union()) < deepest.depth() {
             return ControlFlow::Continue(());
         }
+        let [of_a, of_b] = [triangles(a.0, in_a), triangles(b.0, in_b)];
         let of_row = |i| (meeting >> (LEAF_SIZE * i)) as u32 & 0xff;
         for (i, lanes) in (0..LEAF_SIZE).map(|i| (i, of_row(i))).filter(|(_, lanes)| *lanes != 0) {
-            let is_triangle = in_a.triangles() >> i & 1 == 1;
-            let triangles = if is_triangle { lanes & in_b.triangles() } else { 0 };
+            let triangles = if of_a >> i & 1 == 1 { lanes & of_b } else { 0 };
             let bound = deepest.depth();
             let x = in_a.triangle(i);
             let known = dispatch!(widest level(), simd => depths(simd, &x, in_b, triangles, bound));
             for j in bits(lanes) {
-                let pair = [in_a.primitive(i), in_b.primitive(j)];
+                let pair = [a.0.whole(in_a.primitive(i)), b.0.whole(in_b.primitive(j))];
                 let [most, least] = match triangles >> j & 1 {
                     0 => [f64::INFINITY, 0.0],
                     _ => [known.most[j].max(0.0), known.least[j]],
                 };
-                if !deepest.is_passed(pair, most) || !among(pair) {
+                if !deepest.is_passed(pair, most) || !among(pair) || (has_polygons && !looked_at.insert(pair))
+                {
                     continue;
                 }
                 let depth = if most - least <= CONFIRMED {
                     most
                 } else {
-                    let [of_a, of_b] = [a.0.primitive_hull(pair[0]), b.0.primitive_hull(pair[1])];
+                    let [of_a, of_b] = [a.0.whole_hull(pair[0]), b.0.whole_hull(pair[1])];
                     most.min(of_common((&of_a, a.1), (&of_b, b.1)).depth * scale)
                 };
                 deepest.take(pair, depth, pair);
@@ -100,6 +105,16 @@ pub(super) fn deepest_pair(
     };
     let _ = meeting_leaves(&frame, a, b, false, scratch, &mut look);
     deepest.found()
+}
+
+/// The lanes of a leaf in which there are triangles that are no pieces of convex polygons.
+fn triangles(complex: &Complex, leaf: &Row) -> u32 {
+    let triangles = leaf.triangles();
+    if !complex.has_polygons() {
+        return triangles;
+    }
+    let pieces = bits(triangles).filter(|&i| complex.is_piece(leaf.primitive(i)));
+    pieces.fold(triangles, |whole, i| whole & !(1 << i))
 }
 
 /// The penetration of a convex shape and that primitive of a surface, of those to be looked at, which is deepest in it. EPA is asked of a primitive unless another is
@@ -112,15 +127,17 @@ pub(super) fn deepest_primitive(
 ) -> Option<Penetration> {
     let Frame { common: [from_complex, from_convex], scale, .. } = complex_convex::frame(complex, convex);
     let (mut axes, mut deepest) = (Axes::default(), Deepest::default());
+    let (has_polygons, mut looked_at) = (complex.0.has_polygons(), BTreeSet::new());
     let mut look = |i: u32, _| {
-        if !among(i) {
+        let i = complex.0.whole(i);
+        if !among(i) || (has_polygons && !looked_at.insert(i)) {
             return ControlFlow::Continue(());
         }
         let points: SmallVec<[DVec3; 4]> =
-            complex.0.points_of(i).map(|point| from_complex.transform_point3(point)).collect();
+            complex.0.points_of_whole(i).map(|point| from_complex.transform_point3(point)).collect();
         // So much may EPA be off, at most: what it says of the others would change nothing.
         if !axes.show_less(&points, deepest.depth() * (1.0 - 4.0 * DEPTH_TOLERANCE) - CONFIRMED) {
-            let found = of_common((&complex.0.primitive_hull(i), complex.1), convex);
+            let found = of_common((&complex.0.whole_hull(i), complex.1), convex);
             let local = from_convex.matrix3.transpose() * found.direction;
             let end = from_convex.transform_point3(convex.0.support(local));
             axes.keep(found.direction, found.direction.dot(end));

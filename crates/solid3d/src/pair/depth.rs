@@ -71,7 +71,7 @@ pub(super) fn of_pairs(
 }
 
 fn of_primitives(a: PlacedComplex, b: PlacedComplex, [i, j]: [u32; 2]) -> Penetration {
-    of_common((&a.0.primitive_hull(i), a.1), (&b.0.primitive_hull(j), b.1))
+    of_common((&a.0.whole_hull(i), a.1), (&b.0.whole_hull(j), b.1))
 }
 
 /// The penetration of two convex objects, placed as these are, that are known to have a point in common. Where exact signs say so and GJK

@@ -100,10 +100,8 @@ impl Polygon {
     /// ```
     pub fn new(vertices: impl Into<Vec<DVec3>>) -> Result<Polygon> {
         let vertices = vertices.into();
-        let bounds = Aabb::of_points(vertices.iter().copied());
-        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
-        let extent = (bounds.max - bounds.min).max_element();
-        Polygon::with_tolerance(vertices, FLATNESS_TOLERANCE * extent + ROUNDING * reach)
+        let tolerance = tolerance(&Aabb::of_points(vertices.iter().copied()));
+        Polygon::with_tolerance(vertices, tolerance)
     }
 
     /// As [`new`](Polygon::new), but vertices may be up to `tolerance`, a length, off [the plane](Polygon::plane).
@@ -253,6 +251,14 @@ impl Polygon {
         planar::is_convex(&self.flattened().0)
     }
 
+    /// Whether the polygon is its convex hull, up to as much as a vertex may be off its plane: edges may be cut in pieces, however that
+    /// was rounded. Cost: O(n log n).
+    pub(crate) fn fills_hull(&self) -> bool {
+        let (flat, _) = self.flattened();
+        let bounds = Aabb::of_points(flat.iter().map(|p| p.extend(0.0)));
+        planar::fills_hull(&flat, tolerance(&bounds))
+    }
+
     /// A triangulation: n - 2 triangles of places in [`vertices`](Polygon::vertices), turned as the polygon is. Every vertex is a
     /// corner, so some triangles may have no area; together they cover the polygon exactly. Cost: O(n^2), at worst O(n^3).
     ///
@@ -385,6 +391,12 @@ pub fn join_holes(vertices: &[DVec3], outer: &[u32], holes: &[Vec<u32>]) -> Resu
     let holes: Vec<_> = holes.iter().map(|hole| places(hole)).collect();
     let chain = holes::join(&flat, &places(outer), &holes)?;
     Ok(chain.into_iter().map(|i| i as u32).collect())
+}
+
+/// How far a vertex may be off the plane of a polygon, or off an edge of its hull, when the polygon has this box.
+fn tolerance(bounds: &Aabb) -> f64 {
+    let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+    FLATNESS_TOLERANCE * (bounds.max - bounds.min).max_element() + ROUNDING * reach
 }
 
 fn check(vertices: &[DVec3]) -> Result<()> {

@@ -1,8 +1,9 @@
 //! In the plane: points in polygons, crossing edges.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::exact::{segment_contains, segments_cross, turn};
+use crate::hull::Hull;
 
 /// The edges of a closed chain.
 pub(super) fn edges(chain: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
@@ -93,12 +94,78 @@ pub(super) fn is_convex(chain: &[DVec2]) -> bool {
     !(left && right) && reversals <= 2
 }
 
+/// Whether what a chain without crossings bounds is its convex hull, but for what is within a tolerance of the edges of that: the chain passes
+/// the corners of the hull in order, and between two of them is as near to the line through both.
+pub(super) fn fills_hull(chain: &[DVec2], tolerance: f64) -> bool {
+    let points: Vec<DVec3> = chain.iter().map(|p| p.extend(0.0)).collect();
+    let hull = Hull::of(&points).expect("a chain has a vertex");
+    let corners: Vec<usize> = hull.vertices().iter().map(|&i| i as usize).collect();
+    let next = corners.iter().skip(1).copied().chain([corners[0] + chain.len()]);
+    let follows = |(from, to): (usize, usize)| {
+        let [p, q] = [from, to].map(|i| chain[i % chain.len()]);
+        let off = |v: DVec2| (q - p).perp_dot(v - p).abs();
+        (from + 1..to).all(|i| off(chain[i % chain.len()]) <= tolerance * p.distance(q))
+    };
+    let in_order: Vec<DVec2> = corners.iter().map(|&i| chain[i]).collect();
+    is_convex(&in_order) && corners.iter().copied().zip(next).all(follows)
+}
+
 #[cfg(test)]
 mod tests {
+    use glam::DMat2;
     use rand::Rng;
     use solid_oracle::generate::seeded;
 
     use super::*;
+
+    fn chain(points: &[(f64, f64)]) -> Vec<DVec2> {
+        points.iter().map(|&point| DVec2::from(point)).collect()
+    }
+
+    /// Law: what fills its hull does so however it is turned and from wherever its chain begins, and so does what does not.
+    #[test]
+    fn a_chain_fills_its_hull_or_does_not() {
+        let square = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)];
+        let with = |points: &[(f64, f64)]| chain(&[&square[..], points].concat());
+        let filled = [
+            chain(&square),
+            chain(&[(1.0, 1.0); 3]),
+            chain(&[(0.0, 0.0), (3.0, 0.0), (1.0, 0.0)]),
+            // An edge in pieces, one that is dented by less than the tolerance, and a corner twice.
+            with(&[(0.0, 1.5), (0.0, 1.0), (0.0, 0.5)]),
+            with(&[(1e-9, 1.5), (1e-9, 0.5)]),
+            with(&[(0.0, 2.0), (0.0, 0.0)]),
+        ];
+        let not = [
+            with(&[(1e-6, 1.0)]),
+            // A notch that is narrow, walls that are thin, an antenna, a hole, and a slit.
+            with(&[(0.0, 1.0 + 1e-12), (1.0, 1.0), (0.0, 1.0)]),
+            with(&[(0.0, 2.0 - 1e-9), (2.0 - 1e-9, 2.0 - 1e-9), (2.0 - 1e-9, 1e-9), (0.0, 1e-9)]),
+            with(&[(-1.0, 2.0), (0.0, 2.0)]),
+            with(&[(0.5, 1.5), (0.5, 0.5), (1.5, 0.5), (1.5, 1.5), (0.5, 1.5), (0.0, 2.0)]),
+            with(&[(1.0, 1.0), (0.0, 2.0)]),
+            // Two triangles that touch in a corner.
+            chain(&[(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (2.0, 0.0), (1.0, 1.0), (0.0, 2.0)]),
+        ];
+        let mut rng = seeded(179);
+        for round in 0..200 {
+            let turn = DMat2::from_angle(rng.random_range(0.0..6.3));
+            for (i, is_filled) in
+                (0..filled.len()).map(|i| (i, true)).chain((0..not.len()).map(|i| (i, false)))
+            {
+                let mut chain = if is_filled { filled[i].clone() } else { not[i].clone() };
+                let first = rng.random_range(0..chain.len());
+                chain.rotate_left(first);
+                if rng.random() {
+                    chain.reverse();
+                }
+                if round > 0 {
+                    chain.iter_mut().for_each(|p| *p = turn * *p);
+                }
+                assert_eq!(fills_hull(&chain, 1e-8), is_filled, "round {round}: {chain:?}");
+            }
+        }
+    }
 
     /// Law: two edges cross when looking at all pairs finds some, and they are the first of those; also where many edges share an x.
     #[test]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::complex::{Complex, Primitives};
+use super::complex::{Complex, CutPolygon, Primitives};
 use super::{Geometry, Shape, validate};
 use crate::error::{Error, Result};
 use crate::polygon::Polygon;
@@ -38,6 +38,8 @@ pub struct ComplexShapeBuilder {
     indices: Vec<u32>,
     /// The number of the user's primitive that each belongs to.
     owners: Vec<u32>,
+    /// Simple polygons of several pieces.
+    polygons: Vec<CutPolygon>,
     /// How many primitives the user gave so far.
     given: usize,
     error: Option<Error>,
@@ -51,6 +53,7 @@ impl ComplexShapeBuilder {
             first: vec![0],
             indices: Vec::new(),
             owners: Vec::new(),
+            polygons: Vec::new(),
             given: 0,
             error: None,
         }
@@ -89,8 +92,9 @@ impl ComplexShapeBuilder {
 
     /// Adds a polygon that need not be convex, with holes by doubled edges: one closed chain, flat up to
     /// [`FLATNESS_TOLERANCE`](crate::polygon::FLATNESS_TOLERANCE), whose edges may touch but not cross (thesis, section 2.1.1).
-    /// [`join_holes`](crate::polygon::join_holes) makes such a chain. It counts as one primitive, but where a depth or
-    /// [smart response](crate::Response::Smart) is said of a pair of primitives, it is said of one of its triangles.
+    /// [`join_holes`](crate::polygon::join_holes) makes such a chain. It counts as one primitive. Where a depth or
+    /// [smart response](crate::Response::Smart) is said of a pair of primitives, it is said of the polygon where that is convex, up to the
+    /// same tolerance; of any other of one of its triangles, as its hull may be met where it has a hole.
     ///
     /// It is cut into triangles here, once, by the positions that the vertices have now. A deformation moves the triangles with the
     /// vertices. They go on covering the polygon while it stays about flat and simple, and no triangle is turned over: bend and
@@ -121,8 +125,13 @@ impl ComplexShapeBuilder {
         });
         match polygon {
             Ok(polygon) => {
+                let first = self.count();
                 for triangle in polygon.triangles() {
                     self.push(&triangle.map(|place| vertices[place as usize]));
+                }
+                let pieces = first..self.count();
+                if pieces.len() > 1 {
+                    self.polygons.push(CutPolygon { pieces, chain: vertices.into() });
                 }
             }
             Err(error) => {
@@ -147,14 +156,17 @@ impl ComplexShapeBuilder {
         validate::vertex_count("vertices", self.vertices.len())?;
         validate::primitive_count("primitives", self.first.len() - 1)?;
         validate::at_most(validate::NAMEABLE_MAX, "indices", self.indices.len())?;
-        let all_whole = self.given == self.first.len() - 1;
-        let primitives = if all_whole && self.first.windows(2).all(|ends| ends[1] - ends[0] == 3) {
-            Primitives::Triangles(self.indices.as_chunks().0.to_vec())
+        let ComplexShapeBuilder { vertices, first, indices, mut owners, polygons, given, .. } = self;
+        let all_whole = given == first.len() - 1;
+        let primitives = if all_whole && first.windows(2).all(|ends| ends[1] - ends[0] == 3) {
+            Primitives::Triangles(indices.as_chunks().0.to_vec())
         } else {
-            let owners = if all_whole { Vec::new() } else { self.owners };
-            Primitives::Mixed { first: self.first, indices: self.indices, owners }
+            if all_whole {
+                owners = Vec::new();
+            }
+            Primitives::Mixed { first, indices, owners, polygons }
         };
-        Ok(Geometry::Complex(Arc::new(Complex::new(self.vertices, primitives)?)).into())
+        Ok(Geometry::Complex(Arc::new(Complex::new(vertices, primitives)?)).into())
     }
 
     fn add(mut self, vertices: &[u32], least: usize) -> Self {
@@ -173,6 +185,11 @@ impl ComplexShapeBuilder {
             return Err(Error::PrimitiveSize { primitive: self.given, count: vertices.len(), least });
         }
         validate::indices(self.given, vertices, self.vertices.len())
+    }
+
+    /// How many primitives, or pieces of them, there are so far.
+    fn count(&self) -> u32 {
+        (self.first.len() - 1).min(u32::MAX as usize) as u32
     }
 
     /// Adds a primitive, or a piece of one.

@@ -1,5 +1,6 @@
 //! The complex shape: a soup of convex primitives over one vertex buffer, under a tree (thesis, section 6.3.1).
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
@@ -13,6 +14,7 @@ use super::topology::{Positioned, Topology};
 use super::validate;
 use crate::bounds::Aabb;
 use crate::error::{Error, Result};
+use crate::polygon::Polygon;
 use crate::threads::{both, for_each_part, in_pool};
 use crate::tree::{LeafImages, LeafPoints, Slabs, Tree};
 
@@ -37,6 +39,8 @@ pub(crate) struct Complex {
     center: OnceLock<DVec3>,
     /// The hulls of primitives of more than three vertices, at these positions, each made when first asked for.
     hulls: OnceLock<Arc<PrimitiveHulls>>,
+    /// Whether each polygon that is in pieces is convex, at these positions, found when first asked for.
+    convex: OnceLock<Arc<Vec<OnceLock<bool>>>>,
     /// How flat it is, at these positions, found when first asked for.
     slabs: OnceLock<Arc<Slabs>>,
     /// Images of the triangles of a mesh, found when first asked for.
@@ -63,7 +67,17 @@ pub(super) enum Primitives {
         indices: Vec<u32>,
         /// Of which of the user's primitives each is a piece, ascending from 0 without gaps; empty when all are whole.
         owners: Vec<u32>,
+        /// Those of the user's that are polygons of several pieces, ascending.
+        polygons: Vec<CutPolygon>,
     },
+}
+
+/// A simple polygon that is in pieces.
+#[derive(Clone, Debug)]
+pub(super) struct CutPolygon {
+    pub pieces: Range<u32>,
+    /// The vertices around it.
+    pub chain: Box<[u32]>,
 }
 
 impl Primitives {
@@ -79,6 +93,14 @@ impl Primitives {
         match self {
             Primitives::Mixed { owners, .. } if !owners.is_empty() => owners[primitive as usize],
             _ => primitive,
+        }
+    }
+
+    /// The simple polygons that are in pieces.
+    fn polygons(&self) -> &[CutPolygon] {
+        match self {
+            Primitives::Triangles(_) => &[],
+            Primitives::Mixed { polygons, .. } => polygons,
         }
     }
 
@@ -113,8 +135,10 @@ impl Primitives {
     fn memory(&self) -> usize {
         match self {
             Primitives::Triangles(triangles) => triangles.capacity() * size_of::<[u32; 3]>(),
-            Primitives::Mixed { first, indices, owners } => {
-                (first.capacity() + indices.capacity() + owners.capacity()) * size_of::<u32>()
+            Primitives::Mixed { first, indices, owners, polygons } => {
+                let chains: usize = polygons.iter().map(|polygon| polygon.chain.len()).sum();
+                (first.capacity() + indices.capacity() + owners.capacity() + chains) * size_of::<u32>()
+                    + polygons.capacity() * size_of::<CutPolygon>()
             }
         }
     }
@@ -144,6 +168,7 @@ impl Complex {
             topology: OnceLock::new(),
             center: OnceLock::new(),
             hulls: OnceLock::new(),
+            convex: OnceLock::new(),
             slabs: OnceLock::new(),
             images: OnceLock::new(),
             is_deformed: false,
@@ -285,6 +310,55 @@ impl Complex {
             .expect("a primitive has a vertex, and its indices were checked")
     }
 
+    /// Whether it has polygons that are in pieces.
+    pub fn has_polygons(&self) -> bool {
+        !self.primitives.polygons().is_empty()
+    }
+
+    /// The convex polygon that a primitive is a piece of. Cost: O(n log n) for a polygon at the first call since the last deformation.
+    fn convex_polygon(&self, piece: u32) -> Option<&CutPolygon> {
+        let polygons = self.primitives.polygons();
+        let last = polygons.partition_point(|polygon| polygon.pieces.start <= piece).checked_sub(1)?;
+        let polygon = &polygons[last];
+        (polygon.pieces.contains(&piece) && self.is_convex(last)).then_some(polygon)
+    }
+
+    fn is_convex(&self, polygon: usize) -> bool {
+        let polygons = self.primitives.polygons();
+        let none = || Arc::new(vec![OnceLock::new(); polygons.len()]);
+        *self.convex.get_or_init(none)[polygon].get_or_init(|| {
+            let corners: Vec<DVec3> =
+                polygons[polygon].chain.iter().map(|&i| self.vertices[i as usize]).collect();
+            Polygon::new(corners).is_ok_and(|polygon| polygon.fills_hull())
+        })
+    }
+
+    /// Whether a primitive is one of the pieces of a convex polygon.
+    pub fn is_piece(&self, primitive: u32) -> bool {
+        self.convex_polygon(primitive).is_some()
+    }
+
+    /// What stands for a primitive where it is asked how deep it is: the first of all pieces of a convex polygon, any other itself.
+    pub fn whole(&self, primitive: u32) -> u32 {
+        self.convex_polygon(primitive).map_or(primitive, |polygon| polygon.pieces.start)
+    }
+
+    /// The indices of the vertices whose hull the whole of a primitive is.
+    fn of_whole(&self, primitive: u32) -> &[u32] {
+        self.convex_polygon(primitive).map_or_else(|| self.primitive(primitive), |polygon| &polygon.chain)
+    }
+
+    /// The points whose hull the whole of a primitive is.
+    pub fn points_of_whole(&self, primitive: u32) -> impl Iterator<Item = DVec3> + '_ {
+        self.of_whole(primitive).iter().map(|&i| self.vertices[i as usize])
+    }
+
+    /// The whole of a primitive as a convex object.
+    pub fn whole_hull(&self, primitive: u32) -> IndexedPoints<'_> {
+        IndexedPoints::new(&self.vertices, self.of_whole(primitive))
+            .expect("a primitive has a vertex, and its indices were checked")
+    }
+
     /// The hull of a primitive, with its faces. Cost: O(n log n) at the first call since the last deformation.
     pub fn hull_of(&self, primitive: u32) -> &Hulled {
         let none = || Arc::new(vec![OnceLock::new(); self.primitives.len()]);
@@ -321,10 +395,12 @@ impl Complex {
         let solid = self.solid.as_ref().map_or(0, |solid| solid.memory());
         let topology = self.topology.get().map_or(0, |it| shared(it, Topology::bytes));
         let hulls = self.hulls.get().map_or(0, |it| shared(it, bytes_of));
+        let convex =
+            self.convex.get().map_or(0, |it| shared(it, |it| it.capacity() * size_of::<OnceLock<bool>>()));
         let slabs = self.slabs.get().map_or(0, |it| shared(it, Slabs::bytes));
         let images = self.images.get().and_then(Option::as_ref).map_or(0, |it| shared(it, LeafImages::bytes));
         let leaf_points = self.leaf_points.get().map_or(0, |it| shared(it, LeafPoints::bytes));
-        let found = shared(&self.parts, parts) + topology + hulls + slabs + images + leaf_points;
+        let found = shared(&self.parts, parts) + topology + hulls + convex + slabs + images + leaf_points;
         let vertices = self.vertices.capacity() * size_of::<DVec3>();
         size_of::<Complex>() + primitives + vertices + self.tree.bytes() + solid + found
     }
@@ -379,6 +455,7 @@ impl Complex {
         self.topology = OnceLock::new();
         self.center = OnceLock::new();
         self.hulls = OnceLock::new();
+        self.convex = OnceLock::new();
         self.slabs = OnceLock::new();
         self.images = OnceLock::new();
         self.is_deformed = !self.tree.degraded();

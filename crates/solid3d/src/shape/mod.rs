@@ -359,6 +359,14 @@ impl Shape {
         }
     }
 
+    /// What stands for a primitive where it is asked how deep it is: for the pieces of a convex polygon the first.
+    pub(crate) fn whole(&self, primitive: u32) -> u32 {
+        match &self.geometry {
+            Geometry::Complex(complex) => complex.whole(primitive),
+            _ => primitive,
+        }
+    }
+
     /// The polytope, of a convex hull.
     pub(crate) fn polytope(&self) -> Option<&Polytope> {
         match &self.geometry {

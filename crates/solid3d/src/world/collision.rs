@@ -58,7 +58,8 @@ pub enum Contact {
     /// Of convex objects it is said of the objects, of meshes and complex shapes of one pair of primitives among all that intersect now:
     /// the pair that was nearest in the previous frame. What was apart there has its closest points; what
     /// intersected there already (because it was not resolved, or nothing was since it was added) has the points of each that were deepest in
-    /// the other, as [`query::penetration`](crate::query::penetration) gives them, of the deepest pair of primitives.
+    /// the other, as [`query::penetration`](crate::query::penetration) gives them, of the deepest pair of primitives. What is a primitive is
+    /// said there, too.
     /// The whole objects are looked at when one got another shape, when a solid contains the other, and [on the way](When::OnTheWay).
     Smart {
         /// The point of `a`. Space: world, where it was in the previous frame.
