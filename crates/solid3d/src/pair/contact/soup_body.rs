@@ -42,15 +42,11 @@ struct Encounter<'a> {
 struct Leaving {
     primitive: u32,
     /// The normal out of it.
-    out: DVec3,
-    /// How long that way is, where it is the shortest and the surface has it; negative for a gap.
-    shortest: Option<f64>,
-    /// The contacts along it, if any.
-    touches: Vec<Touch>,
+    way: Corrected,
+    /// How the two lie to each other along that, where it is the shortest way and the surface has it.
+    shortest: Option<Meeting>,
     /// Whether the two meet.
     meets: bool,
-    is_own: bool,
-    is_inward: bool,
 }
 
 /// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
@@ -114,8 +110,8 @@ impl Encounter<'_> {
         let mut leaving: Vec<Leaving> = self.found.iter().filter_map(told).collect();
         self.straighten(&mut leaving);
         let mut overhang = Overhang::new(self.stars, self.other, self.met);
-        let patch = |leaving: Leaving| self.patch(leaving, &mut overhang);
-        let mut patches: Vec<Patch> = leaving.into_iter().filter_map(patch).collect();
+        let patch = |leaving| self.patch(leaving, &mut overhang);
+        let mut patches: Vec<Patch> = leaving.iter().filter_map(patch).collect();
         let behind = overhang.found.iter().filter_map(|&(triangle, out)| self.patch_behind(triangle, out));
         let behind: Vec<Patch> = behind.collect();
         if !behind.is_empty() {
@@ -127,23 +123,25 @@ impl Encounter<'_> {
     }
 
     /// The contacts of a primitive; `None` where there are none.
-    fn patch(&self, leaving: Leaving, overhang: &mut Overhang) -> Option<Patch> {
-        let Leaving { primitive, out, touches, meets, is_own, is_inward, .. } = leaving;
-        if meets {
-            let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
-            (if is_told { &self.answered } else { &self.unanswered }).set(true);
-            // A ball that is not stretched meets the triangle in front of its deepest point.
-            let is_round = matches!(self.other.corners, [_]);
-            if !is_round && is_own {
-                overhang.look(primitive, out);
+    fn patch(&self, leaving: &Leaving, overhang: &mut Overhang) -> Option<Patch> {
+        self.with_side(leaving.primitive, |side| {
+            let (out, touches) = (leaving.way.normal(), self.touches(side, leaving));
+            if leaving.meets {
+                let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
+                (if is_told { &self.answered } else { &self.unanswered }).set(true);
+                // A ball that is not stretched meets the triangle in front of its deepest point.
+                let is_round = matches!(self.other.corners, [_]);
+                if !is_round && side.is_own(out) {
+                    overhang.look(leaving.primitive, out);
+                }
             }
-        }
-        self.patch_of(out, touches, is_inward)
+            self.patch_of(side, out, touches)
+        })
     }
 
     /// The contacts of a triangle that the body does not meet, but is behind.
     fn patch_behind(&self, triangle: u32, out: DVec3) -> Option<Patch> {
-        self.with_side(triangle, |side| self.patch_of(out, self.over(side, out), side.is_inward(out)))
+        self.with_side(triangle, |side| self.patch_of(side, out, self.over(side, out)))
     }
 
     /// The contacts across an edge of the surface, which is one of some triangles.
@@ -152,7 +150,7 @@ impl Encounter<'_> {
         self.with_side(triangle, |side| {
             let [a, b] = self.in_order(&side.body, &self.body);
             let touches = self.pair.touches(a, b, &way.meeting(self.mirrored));
-            self.patch_of(way.out, touches, side.is_inward(way.out))
+            self.patch_of(side, way.out, touches)
         })
     }
 
@@ -163,40 +161,30 @@ impl Encounter<'_> {
         ask(&Side::new(self.stars, placed, &corners, self.other))
     }
 
-    fn patch_of(&self, out: DVec3, touches: Vec<Touch>, is_inward: bool) -> Option<Patch> {
-        let normal = out * self.sign();
+    fn patch_of(&self, side: &Side, out: DVec3, touches: Vec<Touch>) -> Option<Patch> {
+        let (normal, is_inward) = (out * self.sign(), side.is_inward(out));
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     }
 
     /// How the body leaves a primitive; `None` where there is no contact.
     fn way_out(&self, side: &Side) -> Option<Leaving> {
+        let primitive = side.body.primitive;
         if let Some(out) = side.flat() {
-            let meets = self.met.binary_search(&side.body.primitive).is_ok();
-            return Some(self.leaving(side, out, self.over(side, out), meets));
+            let meets = self.met.binary_search(&primitive).is_ok();
+            return Some(Leaving { primitive, way: Corrected::Replaced(out), shortest: None, meets });
         }
         let meeting = self.meeting(side)?;
-        let corrected = match side.corrected(meeting.normal * self.sign(), meeting.tilt)? {
+        let way = match side.corrected(meeting.normal * self.sign(), meeting.tilt)? {
             Corrected::Kept(out) | Corrected::Replaced(out) if side.is_cut_short(out, self.found) => {
                 Corrected::Replaced(-out)
             }
-            corrected => corrected,
+            way => way,
         };
-        let (touches, shortest) = match corrected {
-            Corrected::Kept(normal) => {
-                let [a, b] = self.in_order(&side.body, &self.body);
-                let meeting = Meeting { normal: normal * self.sign(), ..meeting };
-                (self.pair.touches(a, b, &meeting), Some(meeting.depth))
-            }
-            Corrected::Adopted(normal) if !self.body.is_ball() => (self.across(side, normal), None),
-            Corrected::Adopted(normal) | Corrected::Replaced(normal) => (self.over(side, normal), None),
+        let shortest = match way {
+            Corrected::Kept(out) => Some(Meeting { normal: out * self.sign(), ..meeting }),
+            _ => None,
         };
-        let leaving = self.leaving(side, corrected.normal(), touches, meeting.depth >= 0.0);
-        Some(Leaving { shortest, ..leaving })
-    }
-
-    fn leaving(&self, side: &Side, out: DVec3, touches: Vec<Touch>, meets: bool) -> Leaving {
-        let (is_own, is_inward) = (side.is_own(out), side.is_inward(out));
-        Leaving { primitive: side.body.primitive, out, shortest: None, touches, meets, is_own, is_inward }
+        Some(Leaving { primitive, way, shortest, meets: meeting.depth >= 0.0 })
     }
 
     /// Where the soup stands on a face of the body, that is left along its normal also by what told a longer way, in place of one that its surface
@@ -205,15 +193,28 @@ impl Encounter<'_> {
         if told.iter().all(|leaving| leaving.shortest.is_some()) {
             return;
         }
-        let ways = told.iter().filter_map(|leaving| Some((leaving.shortest?, leaving.out)));
+        let ways = told
+            .iter()
+            .filter_map(|Leaving { way, shortest, .. }| Some((shortest.as_ref()?.depth, way.normal())));
         let Some(out) = standing::way(ways, &self.body, &self.other, self.stars, self.found) else { return };
         for leaving in told.iter_mut().filter(|leaving| leaving.shortest.is_none()) {
             let corners = self.stars.corners(leaving.primitive);
-            let [depth, own] = [out, leaving.out].map(|way| self.other.depths(&corners, way)[0]);
+            let [depth, own] = [out, leaving.way.normal()].map(|way| self.other.depths(&corners, way)[0]);
             if depth < own - LEVEL {
-                let anew = |side: &Side| self.leaving(side, out, self.across(side, out), leaving.meets);
-                *leaving = self.with_side(leaving.primitive, anew);
+                leaving.way = Corrected::Adopted(out);
             }
+        }
+    }
+
+    /// The contacts along the way out of a primitive, if any.
+    fn touches(&self, side: &Side, leaving: &Leaving) -> Vec<Touch> {
+        let [a, b] = self.in_order(&side.body, &self.body);
+        match (&leaving.shortest, leaving.way) {
+            (Some(meeting), _) => self.pair.touches(a, b, meeting),
+            (None, Corrected::Adopted(out)) if !self.body.is_ball() => {
+                self.pair.across(a, b, out * self.sign())
+            }
+            (None, way) => self.over(side, way.normal()),
         }
     }
 
@@ -247,12 +248,6 @@ impl Encounter<'_> {
         let meeting = side.meeting_of_ball(out, mirrored);
         let near = meeting.and_then(|meeting| meeting.within(pair.margin + SAME_DEPTH));
         near.map_or_else(Vec::new, |meeting| pair.touches(a, b, &meeting))
-    }
-
-    /// The contacts along the normal of a face beside a triangle.
-    fn across(&self, side: &Side, out: DVec3) -> Vec<Touch> {
-        let [a, b] = self.in_order(&side.body, &self.body);
-        self.pair.across(a, b, out * self.sign())
     }
 
     /// What is of the first shape, then what is of the second.
