@@ -18,7 +18,7 @@ const FINER: f32 = 0.8;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Signposts {
     grid: Grid,
-    leaves: Vec<Place>,
+    leaves: Box<[Place]>,
 }
 
 /// A box cut into as many cells along each axis as there are, x first.
@@ -65,7 +65,7 @@ impl Signposts {
 
     /// The memory that they own, in bytes.
     pub fn bytes(&self) -> usize {
-        self.leaves.capacity() * size_of::<Place>()
+        size_of_val(&*self.leaves)
     }
 }
 
@@ -126,21 +126,23 @@ impl Grid {
 
     /// Lets each cell tell its neighbours, forward and then backward: what one found, all hear of.
     fn spread(&self, found: &mut [Option<Found>]) {
-        let strides = [1, self.cells[0], self.cells[0] * self.cells[1]];
         for cell in 0..found.len() {
-            for axis in 0..3 {
-                if self.position(cell)[axis] + 1 < self.cells[axis] {
-                    self.tell(found, cell + strides[axis], found[cell]);
-                }
+            for next in self.next(cell) {
+                self.tell(found, next, found[cell]);
             }
         }
         for cell in (0..found.len()).rev() {
-            for axis in 0..3 {
-                if self.position(cell)[axis] > 0 {
-                    self.tell(found, cell - strides[axis], found[cell]);
-                }
+            for next in self.next(cell) {
+                self.tell(found, cell, found[next]);
             }
         }
+    }
+
+    /// The cells that come next along each axis.
+    fn next(&self, cell: usize) -> impl Iterator<Item = usize> {
+        let ([x, y, _], position) = (self.cells, self.position(cell));
+        let next = [cell + 1, cell + x, cell + x * y];
+        (0..3).filter(move |&axis| position[axis] + 1 < self.cells[axis]).map(move |axis| next[axis])
     }
 }
 
