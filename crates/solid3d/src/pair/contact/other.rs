@@ -37,6 +37,19 @@ impl Other<'_> {
         [high - behind, beyond - low]
     }
 
+    /// The former of these.
+    pub fn depth(&self, points: &[DVec3], out: DVec3) -> f64 {
+        highest(points, out) - self.lowest(out)
+    }
+
+    /// The least height along a unit vector.
+    pub fn lowest(&self, direction: DVec3) -> f64 {
+        if !self.corners.is_empty() {
+            return extremes(self.corners, direction)[0] - self.radius;
+        }
+        direction.dot(self.furthest(-direction))
+    }
+
     /// The least and the greatest height along a unit vector.
     #[inline]
     pub fn extremes(&self, direction: DVec3) -> [f64; 2] {
@@ -46,6 +59,11 @@ impl Other<'_> {
         }
         each([-direction, direction], |way| direction.dot(self.furthest(way)))
     }
+}
+
+/// The greatest height of points along a direction.
+pub(super) fn highest(points: &[DVec3], direction: DVec3) -> f64 {
+    extremes(points, direction)[1]
 }
 
 /// The least and the greatest height of points along a direction.

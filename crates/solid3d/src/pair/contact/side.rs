@@ -217,8 +217,7 @@ impl<'a> Side<'a> {
     fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
         let Side { stars, corners, other, .. } = *self;
         let vertices = stars.welded(self.body.primitive);
-        let [depth, _] = other.depths(corners, own);
-        let mut shortest = Shortest { depth: depth - LEVEL, normal: None };
+        let mut shortest = Shortest { depth: other.depth(corners, own) - LEVEL, normal: None };
         let hubs: SmallVec<[u32; 3]> =
             vertices.iter().copied().filter(|&vertex| stars.is_hub(vertex)).collect();
         for &vertex in vertices.iter().filter(|vertex| !hubs.contains(vertex)) {
@@ -300,7 +299,7 @@ mod tests {
                     beside += 1;
                     continue;
                 };
-                let depth = |corrected: Corrected| other.depths(&corners, corrected.normal())[0];
+                let depth = |corrected: Corrected| other.depth(&corners, corrected.normal());
                 assert!(
                     (depth(found) - depth(expected)).abs() < LEVEL
                         && std::mem::discriminant(&found) == std::mem::discriminant(&expected),

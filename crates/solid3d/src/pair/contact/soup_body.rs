@@ -11,7 +11,7 @@ use super::super::table::PlacedConvex;
 use super::super::{Scratch, complex_convex};
 use super::difference::Polytope;
 use super::inside::Inside;
-use super::other::Other;
+use super::other::{Other, highest};
 use super::overhang::Overhang;
 use super::side::{Corrected, Side};
 use super::stars::{LEVEL, Stars};
@@ -197,10 +197,11 @@ impl Encounter<'_> {
             .iter()
             .filter_map(|Leaving { way, shortest, .. }| Some((shortest.as_ref()?.depth, way.normal())));
         let Some(out) = standing::way(ways, &self.body, &self.other, self.stars, self.found) else { return };
+        let lowest = self.other.lowest(out);
         for leaving in told.iter_mut().filter(|leaving| leaving.shortest.is_none()) {
             let corners = self.stars.corners(leaving.primitive);
-            let [depth, own] = [out, leaving.way.normal()].map(|way| self.other.depths(&corners, way)[0]);
-            if depth < own - LEVEL {
+            let own = self.other.depth(&corners, leaving.way.normal());
+            if highest(&corners, out) - lowest < own - LEVEL {
                 leaving.way = Corrected::Adopted(out);
             }
         }

@@ -21,8 +21,7 @@ pub(super) fn way(
     found: &[u32],
 ) -> Option<DVec3> {
     let (depth, out) = ways.max_by(|(x, _), (y, _)| x.total_cmp(y))?;
-    let [behind, _] = other.extremes(out);
-    let height = behind + depth + LEVEL + DEPTH_ERROR * depth.abs();
+    let height = other.lowest(out) + depth + LEVEL + DEPTH_ERROR * depth.abs();
     let is_left = |&primitive: &u32| stars.corners(primitive).iter().all(|corner| out.dot(*corner) <= height);
     (body.face(-out).is_aligned() && found.iter().all(is_left)).then_some(out)
 }
