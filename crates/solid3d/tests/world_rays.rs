@@ -1,4 +1,4 @@
-//! Rays and regions of a world, and what is nearest to a point, against all objects one by one.
+//! Rays and regions of a world, and what is nearest to a point or a shape, against all objects one by one.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,

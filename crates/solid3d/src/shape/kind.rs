@@ -17,9 +17,9 @@ pub enum ShapeKind {
     Capsule,
     /// The convex hull of points.
     ConvexHull,
-    /// A surface of triangles.
+    /// A surface of triangles, and nothing else.
     Mesh,
-    /// A soup of convex primitives.
+    /// A soup of convex primitives of other kinds, too.
     Complex,
 }
 
