@@ -156,14 +156,12 @@ impl ComplexShapeBuilder {
         validate::vertex_count("vertices", self.vertices.len())?;
         validate::primitive_count("primitives", self.first.len() - 1)?;
         validate::at_most(validate::NAMEABLE_MAX, "indices", self.indices.len())?;
-        let ComplexShapeBuilder { vertices, first, indices, mut owners, polygons, given, .. } = self;
+        let ComplexShapeBuilder { vertices, first, indices, owners, polygons, given, .. } = self;
         let all_whole = given == first.len() - 1;
         let primitives = if all_whole && first.windows(2).all(|ends| ends[1] - ends[0] == 3) {
             Primitives::Triangles(indices.as_chunks().0.to_vec())
         } else {
-            if all_whole {
-                owners = Vec::new();
-            }
+            let owners = if all_whole { Vec::new() } else { owners };
             Primitives::Mixed { first, indices, owners, polygons }
         };
         Ok(Geometry::Complex(Arc::new(Complex::new(vertices, primitives)?)).into())

@@ -301,12 +301,21 @@ impl Complex {
     /// The points whose hull the primitive is.
     #[inline(always)]
     pub fn points_of(&self, primitive: u32) -> impl Iterator<Item = DVec3> + Clone + '_ {
-        self.primitive(primitive).iter().map(|&i| self.vertices[i as usize])
+        self.points_at(self.primitive(primitive))
+    }
+
+    #[inline(always)]
+    fn points_at<'s>(&'s self, indices: &'s [u32]) -> impl Iterator<Item = DVec3> + Clone + 's {
+        indices.iter().map(|&i| self.vertices[i as usize])
     }
 
     /// The primitive as a convex object.
     pub fn primitive_hull(&self, primitive: u32) -> IndexedPoints<'_> {
-        IndexedPoints::new(&self.vertices, self.primitive(primitive))
+        self.hull_at(self.primitive(primitive))
+    }
+
+    fn hull_at<'s>(&'s self, indices: &'s [u32]) -> IndexedPoints<'s> {
+        IndexedPoints::new(&self.vertices, indices)
             .expect("a primitive has a vertex, and its indices were checked")
     }
 
@@ -327,8 +336,7 @@ impl Complex {
         let polygons = self.primitives.polygons();
         let none = || Arc::new(vec![OnceLock::new(); polygons.len()]);
         *self.convex.get_or_init(none)[polygon].get_or_init(|| {
-            let corners: Vec<DVec3> =
-                polygons[polygon].chain.iter().map(|&i| self.vertices[i as usize]).collect();
+            let corners: Vec<DVec3> = self.points_at(&polygons[polygon].chain).collect();
             Polygon::new(corners).is_ok_and(|polygon| polygon.fills_hull())
         })
     }
@@ -350,13 +358,12 @@ impl Complex {
 
     /// The points whose hull the whole of a primitive is.
     pub fn points_of_whole(&self, primitive: u32) -> impl Iterator<Item = DVec3> + '_ {
-        self.of_whole(primitive).iter().map(|&i| self.vertices[i as usize])
+        self.points_at(self.of_whole(primitive))
     }
 
     /// The whole of a primitive as a convex object.
     pub fn whole_hull(&self, primitive: u32) -> IndexedPoints<'_> {
-        IndexedPoints::new(&self.vertices, self.of_whole(primitive))
-            .expect("a primitive has a vertex, and its indices were checked")
+        self.hull_at(self.of_whole(primitive))
     }
 
     /// The hull of a primitive, with its faces. Cost: O(n log n) at the first call since the last deformation.
@@ -380,8 +387,7 @@ impl Complex {
 
     /// The corners of all primitives, one after the other.
     pub(super) fn corners(&self) -> IndexedPoints<'_> {
-        IndexedPoints::new(&self.vertices, self.indices())
-            .expect("a primitive has a vertex, and its indices were checked")
+        self.hull_at(self.indices())
     }
 
     /// The memory that it owns, in bytes, with what clones share.

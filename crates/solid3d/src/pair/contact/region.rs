@@ -61,16 +61,14 @@ fn thinned(points: Vec<Touch>, normal: DVec3, several: bool) -> Vec<Touch> {
         return points;
     }
     let places: Vec<DVec2> = points.iter().map(flat).collect();
-    let height = |touch: &Touch| normal.dot(touch.on_a - origin);
+    let height = |i: usize| normal.dot(points[i].on_a - origin);
+    let depth = |i: usize| points[i].depth;
     // Of most that are not flat this tells, in a fraction of the time that the outline takes.
-    let bent = |value: &dyn Fn(&Touch) -> f64| is_bent(&places, |i| value(&points[i]));
-    if bent(&height) || bent(&|touch: &Touch| touch.depth) {
-        return without_duplicates(points, &places);
-    }
-    let around = outline(&places, FLAT);
-    let linear = |value: &dyn Fn(&Touch) -> f64| is_linear(&places, &around, |i| value(&points[i]));
-    if linear(&height) && linear(&|touch: &Touch| touch.depth) {
-        return around.into_iter().map(|i| points[i]).collect();
+    if !is_bent(&places, height) && !is_bent(&places, depth) {
+        let around = outline(&places, FLAT);
+        if is_linear(&places, &around, height) && is_linear(&places, &around, depth) {
+            return around.into_iter().map(|i| points[i]).collect();
+        }
     }
     without_duplicates(points, &places)
 }
