@@ -188,33 +188,41 @@ impl<'a> Side<'a> {
     /// The normal, which may be off by a tilt, if the surface has it where it is touched; else that of the triangle, or of a face next to it.
     /// `None` where there is no contact along any of these: a ball that is not over the triangle, or what is no triangle and left to those around it.
     pub fn corrected(&self, out: DVec3, tilt: f64) -> Option<Corrected> {
-        let Some(normal) = self.body.plane else { return self.without_plane(out, tilt) };
+        if let Some(kept) = self.kept(out, tilt) {
+            return Some(Corrected::Kept(kept));
+        }
+        let own = self.own()?;
+        Some(self.shorter_around(own).map_or(Corrected::Replaced(own), Corrected::Adopted))
+    }
+
+    /// The normal, which may be off by a tilt, if the surface has it where it is touched.
+    pub fn kept(&self, out: DVec3, tilt: f64) -> Option<DVec3> {
+        let Some(normal) = self.body.plane else { return self.kept_without_plane(out, tilt) };
         let cosine = normal.dot(out);
         if is_parallel(normal, out) {
-            return Some(Corrected::Kept(normal * cosine.signum()));
+            return Some(normal * cosine.signum());
         }
-        if self.stars.have(out, tilt, &self.stars.welded(self.body.primitive)) {
-            return Some(Corrected::Kept(out));
-        }
-        if self.has_ball_beside(normal) {
-            return None;
-        }
-        let own = self.outward().unwrap_or_else(|| self.shorter(normal));
-        Some(self.shorter_around(own).map_or(Corrected::Replaced(own), Corrected::Adopted))
+        self.stars.have(out, tilt, &self.stars.welded(self.body.primitive)).then_some(out)
     }
 
     /// The same of what has no plane. A triangle of which two corners are one is but an edge of others: normals that the surface does not have
     /// there are theirs to correct.
     #[cold]
-    fn without_plane(&self, out: DVec3, tilt: f64) -> Option<Corrected> {
+    fn kept_without_plane(&self, out: DVec3, tilt: f64) -> Option<DVec3> {
         let vertices = self.stars.welded(self.body.primitive);
         let is_body = vertices.len() > 3 || !self.stars.have_triangles(&vertices);
-        (is_body || self.stars.have(out, tilt, &vertices)).then_some(Corrected::Kept(out))
+        (is_body || self.stars.have(out, tilt, &vertices)).then_some(out)
+    }
+
+    /// The normal of the triangle, in place of one that the surface does not have. `None` of what is no triangle, and where a ball is not over it.
+    pub fn own(&self) -> Option<DVec3> {
+        let normal = self.body.plane?;
+        (!self.has_ball_beside(normal)).then(|| self.outward().unwrap_or_else(|| self.shorter(normal)))
     }
 
     /// The normal of a face next to the triangle that the surface has where they meet, when the way out along it is shorter
     /// than along the triangle's own: that of the shortest.
-    fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
+    pub fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
         let Side { stars, corners, other, .. } = *self;
         let vertices = stars.welded(self.body.primitive);
         let mut shortest = Shortest { depth: other.depth(corners, own) - LEVEL, normal: None };

@@ -13,7 +13,7 @@ use super::difference::Polytope;
 use super::inside::Inside;
 use super::other::{Other, highest};
 use super::overhang::Overhang;
-use super::side::{Corrected, Side};
+use super::side::Side;
 use super::stars::{LEVEL, Stars};
 use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge, standing};
 use crate::shape::{Body, Complex};
@@ -41,12 +41,30 @@ struct Encounter<'a> {
 /// How the body leaves a primitive.
 struct Leaving {
     primitive: u32,
-    /// The normal out of it.
-    way: Corrected,
-    /// How the two lie to each other along that, where it is the shortest way and the surface has it.
-    shortest: Option<Meeting>,
+    way: Way,
     /// Whether the two meet.
     meets: bool,
+}
+
+/// The way on which it does.
+enum Way {
+    /// The shortest, along a normal that the surface has, and how the two lie to each other along that.
+    Shortest { out: DVec3, meeting: Meeting },
+    /// Along the normal of a triangle, its own.
+    Own(DVec3),
+    /// Along that of a face next to it, or of the face of the body that the soup stands on.
+    Across(DVec3),
+    /// Along its own or another: the surface does not have the shortest, which is so long.
+    Open { own: DVec3, shortest: f64 },
+}
+
+impl Way {
+    /// The normal out of the primitive; of what is open its own.
+    fn out(&self) -> DVec3 {
+        match *self {
+            Way::Shortest { out, .. } | Way::Own(out) | Way::Across(out) | Way::Open { own: out, .. } => out,
+        }
+    }
 }
 
 /// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
@@ -108,7 +126,7 @@ impl Encounter<'_> {
     fn patches(&self) -> Vec<Patch> {
         let told = |&primitive: &u32| self.with_side(primitive, |side| self.way_out(side));
         let mut leaving: Vec<Leaving> = self.found.iter().filter_map(told).collect();
-        self.straighten(&mut leaving);
+        self.settle(&mut leaving);
         let mut overhang = Overhang::new(self.stars, self.other, self.met);
         let patch = |leaving| self.patch(leaving, &mut overhang);
         let mut patches: Vec<Patch> = leaving.iter().filter_map(patch).collect();
@@ -125,7 +143,7 @@ impl Encounter<'_> {
     /// The contacts of a primitive; `None` where there are none.
     fn patch(&self, leaving: &Leaving, overhang: &mut Overhang) -> Option<Patch> {
         self.with_side(leaving.primitive, |side| {
-            let (out, touches) = (leaving.way.normal(), self.touches(side, leaving));
+            let (out, touches) = (leaving.way.out(), self.touches(side, &leaving.way));
             if leaving.meets {
                 let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
                 (if is_told { &self.answered } else { &self.unanswered }).set(true);
@@ -166,56 +184,60 @@ impl Encounter<'_> {
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     }
 
-    /// How the body leaves a primitive; `None` where there is no contact.
+    /// How the body leaves a primitive, as far as that alone tells it; `None` where there is no contact.
     fn way_out(&self, side: &Side) -> Option<Leaving> {
         let primitive = side.body.primitive;
         if let Some(out) = side.flat() {
             let meets = self.met.binary_search(&primitive).is_ok();
-            return Some(Leaving { primitive, way: Corrected::Replaced(out), shortest: None, meets });
+            return Some(Leaving { primitive, way: Way::Own(out), meets });
         }
         let meeting = self.meeting(side)?;
-        let way = match side.corrected(meeting.normal * self.sign(), meeting.tilt)? {
-            Corrected::Kept(out) | Corrected::Replaced(out) if side.is_cut_short(out, self.found) => {
-                Corrected::Replaced(-out)
-            }
-            way => way,
+        let way = match side.kept(meeting.normal * self.sign(), meeting.tilt) {
+            Some(out) if side.is_cut_short(out, self.found) => Way::Own(-out),
+            Some(out) => Way::Shortest { out, meeting: Meeting { normal: out * self.sign(), ..meeting } },
+            None => Way::Open { own: side.own()?, shortest: meeting.depth },
         };
-        let shortest = match way {
-            Corrected::Kept(out) => Some(Meeting { normal: out * self.sign(), ..meeting }),
-            _ => None,
-        };
-        Some(Leaving { primitive, way, shortest, meets: meeting.depth >= 0.0 })
+        Some(Leaving { primitive, way, meets: meeting.depth >= 0.0 })
     }
 
-    /// Where the soup stands on a face of the body, that is left along its normal also by what told a longer way, in place of one that its surface
-    /// does not have.
-    fn straighten(&self, told: &mut [Leaving]) {
-        if told.iter().all(|leaving| leaving.shortest.is_some()) {
+    /// Finds what is open. Where the soup stands on a face of the body, that is left along its normal by all whose way would be longer.
+    fn settle(&self, told: &mut [Leaving]) {
+        if told.iter().all(|leaving| matches!(leaving.way, Way::Shortest { .. })) {
             return;
         }
-        let ways = told
-            .iter()
-            .filter_map(|Leaving { way, shortest, .. }| Some((shortest.as_ref()?.depth, way.normal())));
-        let Some(out) = standing::way(ways, &self.body, &self.other, self.stars, self.found) else { return };
-        let lowest = self.other.lowest(out);
-        for leaving in told.iter_mut().filter(|leaving| leaving.shortest.is_none()) {
-            let corners = self.stars.corners(leaving.primitive);
-            let own = self.other.depth(&corners, leaving.way.normal());
-            if highest(&corners, out) - lowest < own - LEVEL {
-                leaving.way = Corrected::Adopted(out);
+        let ways = told.iter().filter_map(|leaving| match leaving.way {
+            Way::Shortest { out, meeting } => Some((meeting.depth, out)),
+            _ => None,
+        });
+        let standing = standing::way(ways, &self.body, &self.other, self.stars, self.found);
+        let standing = standing.map(|out| (out, self.other.lowest(out)));
+        for Leaving { primitive, way, .. } in told {
+            if matches!(way, Way::Shortest { .. }) {
+                continue;
+            }
+            let corners = self.stars.corners(*primitive);
+            let standing = standing.map(|(out, lowest)| (out, highest(&corners, out) - lowest));
+            if let Way::Open { own, shortest } = *way {
+                // No face next to it is left on a shorter way than the shortest.
+                let is_known = standing.is_some_and(|(_, depth)| depth <= shortest + LEVEL);
+                let around = || self.with_side(*primitive, |side| side.shorter_around(own));
+                *way = if is_known { None } else { around() }.map_or(Way::Own(own), Way::Across);
+            }
+            if let Some((out, depth)) = standing
+                && depth < self.other.depth(&corners, way.out()) - LEVEL
+            {
+                *way = Way::Across(out);
             }
         }
     }
 
     /// The contacts along the way out of a primitive, if any.
-    fn touches(&self, side: &Side, leaving: &Leaving) -> Vec<Touch> {
+    fn touches(&self, side: &Side, way: &Way) -> Vec<Touch> {
         let [a, b] = self.in_order(&side.body, &self.body);
-        match (&leaving.shortest, leaving.way) {
-            (Some(meeting), _) => self.pair.touches(a, b, meeting),
-            (None, Corrected::Adopted(out)) if !self.body.is_ball() => {
-                self.pair.across(a, b, out * self.sign())
-            }
-            (None, way) => self.over(side, way.normal()),
+        match *way {
+            Way::Shortest { meeting, .. } => self.pair.touches(a, b, &meeting),
+            Way::Across(out) if !self.body.is_ball() => self.pair.across(a, b, out * self.sign()),
+            _ => self.over(side, way.out()),
         }
     }
 
