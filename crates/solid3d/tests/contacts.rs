@@ -866,6 +866,33 @@ fn a_step_pushes_nothing_aside_that_stands_on_it() {
     assert_rate("boxes over the edge", over, 400);
 }
 
+/// A box that is let down on hills stands on what of them is under it, also where they are higher beside it: nearly all of its contacts hold it up.
+#[test]
+fn hills_hold_up_what_stands_on_them() {
+    let hills = |u: f64, v: f64| {
+        let (x, z) = (6.0 * u - 3.0, 6.0 * v - 3.0);
+        DVec3::new(x, 0.03 * (9.0 * x).sin() * (7.0 * z).cos(), z)
+    };
+    let ground = sheet(81, 81, [false, false], hills).shape();
+    let (mut rng, mut upward, mut all) = (seeded(SEED), 0, 0);
+    for i in 0..200 {
+        let turn = DAffine3::from_rotation_y(rng.random_range(0.0..TAU));
+        let high = at(rng.random_range(-1.5..1.5), 1.0, rng.random_range(-1.5..1.5)) * turn;
+        let cast = query::cast_shape(&cube(), &high, DVec3::NEG_Y, &ground, &DAffine3::IDENTITY, DVec3::ZERO);
+        let depth = [0.001, 0.005, 0.02][i % 3];
+        let mut place = high;
+        place.translation.y -= cast.unwrap().unwrap().time + depth;
+        let found = contacts(&cube(), &place, &ground, &DAffine3::IDENTITY);
+        // A slope across which it is left is a little deeper.
+        assert!(deepest(&found) <= 1.01 * depth, "box {i}, {depth} deep: {found:#?}");
+        let up = |manifold: &&Manifold| manifold.normal.y > 1.0 - 1e-9;
+        upward += found.iter().filter(up).map(|manifold| manifold.points.len()).sum::<usize>();
+        all += found.iter().map(|manifold| manifold.points.len()).sum::<usize>();
+    }
+    println!("{upward} of {all} points hold the box up");
+    assert!(10 * upward > 9 * all, "{upward} of {all}");
+}
+
 /// Separate regions are reported apart.
 #[test]
 fn a_table_stands_on_its_legs() {

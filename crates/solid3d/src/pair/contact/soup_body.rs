@@ -4,7 +4,7 @@ use std::cell::{Cell, OnceCell};
 use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
-use solid_convex::Support;
+use solid_convex::{Support, gjk};
 
 use super::super::reach::core;
 use super::super::table::PlacedConvex;
@@ -54,15 +54,15 @@ enum Way {
     Own(DVec3),
     /// Along that of a face next to it, or of the face of the body that the soup stands on.
     Across(DVec3),
-    /// Along its own or another: the surface does not have the shortest, which is so long.
-    Open { own: DVec3, shortest: f64 },
+    /// Along its own normal, which this is, or another: the surface does not have that of the shortest.
+    Open(DVec3),
 }
 
 impl Way {
     /// The normal out of the primitive; of what is open its own.
     fn out(&self) -> DVec3 {
         match *self {
-            Way::Shortest { out, .. } | Way::Own(out) | Way::Across(out) | Way::Open { own: out, .. } => out,
+            Way::Shortest { out, .. } | Way::Own(out) | Way::Across(out) | Way::Open(out) => out,
         }
     }
 }
@@ -195,12 +195,12 @@ impl Encounter<'_> {
         let way = match side.kept(meeting.normal * self.sign(), meeting.tilt) {
             Some(out) if side.is_cut_short(out, self.found) => Way::Own(-out),
             Some(out) => Way::Shortest { out, meeting: Meeting { normal: out * self.sign(), ..meeting } },
-            None => Way::Open { own: side.own()?, shortest: meeting.depth },
+            None => Way::Open(side.own()?),
         };
         Some(Leaving { primitive, way, meets: meeting.depth >= 0.0 })
     }
 
-    /// Finds what is open. Where the soup stands on a face of the body, that is left along its normal by all whose way would be longer.
+    /// Finds what is open.
     fn settle(&self, told: &mut [Leaving]) {
         if told.iter().all(|leaving| matches!(leaving.way, Way::Shortest { .. })) {
             return;
@@ -209,26 +209,44 @@ impl Encounter<'_> {
             Way::Shortest { out, meeting } => Some((meeting.depth, out)),
             _ => None,
         });
-        let standing = standing::way(ways, &self.body, &self.other, self.stars, self.found);
-        let standing = standing.map(|out| (out, self.other.lowest(out)));
+        let has_left = |primitive, way| self.has_left(primitive, way);
+        match standing::way(ways, &self.body, &self.other, self.stars, self.found, has_left) {
+            Some((depth, out)) => self.stand(told, depth, out),
+            None => told.iter_mut().for_each(|leaving| self.look_around(leaving)),
+        }
+    }
+
+    /// Where the soup stands on a face of the body, that is left along its normal by all whose way would be longer.
+    fn stand(&self, told: &mut [Leaving], depth: f64, out: DVec3) {
+        let lowest = self.other.lowest(out);
         for Leaving { primitive, way, .. } in told {
-            if matches!(way, Way::Shortest { .. }) {
-                continue;
-            }
-            let corners = self.stars.corners(*primitive);
-            let standing = standing.map(|(out, lowest)| (out, highest(&corners, out) - lowest));
-            if let Way::Open { own, shortest } = *way {
-                // No face next to it is left on a shorter way than the shortest.
-                let is_known = standing.is_some_and(|(_, depth)| depth <= shortest + LEVEL);
-                let around = || self.with_side(*primitive, |side| side.shorter_around(own));
-                *way = if is_known { None } else { around() }.map_or(Way::Own(own), Way::Across);
-            }
-            if let Some((out, depth)) = standing
-                && depth < self.other.depth(&corners, way.out()) - LEVEL
-            {
-                *way = Way::Across(out);
+            let is_longer = |own: DVec3| {
+                let corners = self.stars.corners(*primitive);
+                (highest(&corners, out) - lowest).min(depth) < self.other.depth(&corners, own) - LEVEL
+            };
+            match *way {
+                Way::Open(_) => *way = Way::Across(out),
+                Way::Own(own) if is_longer(own) => *way = Way::Across(out),
+                _ => {}
             }
         }
+    }
+
+    /// Where it does not, the normals of the faces around a primitive come into question.
+    fn look_around(&self, Leaving { primitive, way, .. }: &mut Leaving) {
+        if let Way::Open(own) = *way {
+            let shorter = self.with_side(*primitive, |side| side.shorter_around(own));
+            *way = shorter.map_or(Way::Own(own), Way::Across);
+        }
+    }
+
+    /// Whether the body does not meet a primitive, once it went some way. Space: common.
+    fn has_left(&self, primitive: u32, way: DVec3) -> bool {
+        let mut moved = self.other.map.affine;
+        moved.translation += way;
+        let hull = self.complex.primitive_hull(primitive);
+        let found = gjk::intersection(self.other.support, &moved, &hull, &self.stars.map.affine);
+        matches!(found, gjk::Outcome::Separated { .. })
     }
 
     /// The contacts along the way out of a primitive, if any.
