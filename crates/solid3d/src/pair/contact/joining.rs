@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use foldhash::fast::RandomState;
 use glam::DVec3;
-use smallvec::SmallVec;
+use smallvec::{SmallVec, smallvec};
 
 use super::{Part, Patch};
 
@@ -33,7 +33,7 @@ pub(super) struct Joining<'p> {
 }
 
 /// The vertices by which primitives are connected to others, in ascending order. A body is connected to itself.
-type Corners = HashMap<u32, Vec<u32>, RandomState>;
+type Corners = HashMap<u32, SmallVec<[u32; 4]>, RandomState>;
 
 /// How the patches are found with which one is connected.
 enum Connections {
@@ -67,7 +67,10 @@ impl<'p> Joining<'p> {
 
     /// Of each patch so many pairs of vertices are kept at most, on average.
     fn keeping(a: &Part, b: &Part, patches: &'p [Patch], most: usize) -> Self {
-        let mut corners = [Corners::default(), Corners::default()];
+        let mut corners = [a, b].map(|part| {
+            let count = if matches!(part, Part::Soup(_)) { patches.len() } else { 1 };
+            Corners::with_capacity_and_hasher(count, RandomState::default())
+        });
         let mut count = 0u64;
         for patch in patches {
             let [i, j] = patch.touches[0].primitives;
@@ -117,7 +120,8 @@ impl<'p> Joining<'p> {
 impl Groups {
     fn new([of_a, of_b]: &[Corners; 2], patches: &[Patch]) -> Groups {
         let heights: Vec<f64> = patches.iter().map(|patch| patch.normal.dot(SKEW)).collect();
-        let mut group_of: HashMap<[u32; 2], usize, RandomState> = HashMap::default();
+        let mut group_of: HashMap<[u32; 2], usize, RandomState> =
+            HashMap::with_capacity_and_hasher(patches.len(), RandomState::default());
         let (mut groups, mut groups_of, mut starts) = (Vec::new(), Vec::new(), vec![0]);
         for (patch, Patch { touches, .. }) in patches.iter().enumerate() {
             let [i, j] = touches[0].primitives;
@@ -182,14 +186,14 @@ fn have_common(mut x: &[u32], mut y: &[u32]) -> bool {
 }
 
 /// The vertices by which a primitive is connected to others.
-fn corners_of(part: &Part, primitive: u32) -> Vec<u32> {
-    let Part::Soup(complex) = part else { return vec![0] };
-    let mut corners: Vec<u32> = complex.welded(primitive).collect();
+fn corners_of(part: &Part, primitive: u32) -> SmallVec<[u32; 4]> {
+    let Part::Soup(complex) = part else { return smallvec![0] };
+    let mut corners: SmallVec<[u32; 4]> = complex.welded(primitive).collect();
     corners.sort_unstable();
     corners.dedup();
     // One that no other primitive has connects it with itself alone: of these the first of its corners will do.
     let first = corners[0];
-    corners.retain(|&corner| corner == first || complex.topology().around(corner).len() > 1);
+    corners.retain(|&mut corner| corner == first || complex.topology().around(corner).len() > 1);
     corners
 }
 

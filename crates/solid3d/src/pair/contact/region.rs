@@ -75,28 +75,41 @@ fn thinned(points: Vec<Touch>, normal: DVec3, several: bool) -> Vec<Touch> {
 
 /// Of points at one place, the deepest; by a grid, whose cells hold few.
 fn without_duplicates(points: Vec<Touch>, places: &[DVec2]) -> Vec<Touch> {
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by(|&i, &j| points[j].depth.total_cmp(&points[i].depth).then(i.cmp(&j)));
-    let mut kept_in: HashMap<[i64; 2], SmallVec<[usize; 2]>, RandomState> = HashMap::default();
+    let mut order: Vec<(f64, usize)> = points.iter().map(|touch| touch.depth).zip(0..).collect();
+    order.sort_unstable_by(|(x, i), (y, j)| y.total_cmp(x).then(i.cmp(j)));
+    let mut kept_in: HashMap<[i64; 2], SmallVec<[usize; 2]>, RandomState> =
+        HashMap::with_capacity_and_hasher(points.len(), RandomState::default());
     let mut kept = Vec::new();
-    for i in order {
-        // Mostly one: a point is seldom next to the end of its cell.
-        let [from, own, to] = [-2.0, 0.0, 2.0].map(|off| {
-            let cell = ((places[i] + off * SAME_POINT) / CELL).floor();
-            [cell.x as i64, cell.y as i64]
-        });
-        let near = (from[0]..=to[0]).flat_map(|x| (from[1]..=to[1]).map(move |y| [x, y]));
+    for (_, i) in order {
+        let [x, y] = [places[i].x, places[i].y].map(Cells::of);
+        let near = (x.from..=x.to).flat_map(|x| (y.from..=y.to).map(move |y| [x, y]));
         let same = |&j: &usize| {
             let (p, q) = (&points[i], &points[j]);
             p.on_a.distance(q.on_a) <= SAME_POINT && p.on_b.distance(q.on_b) <= SAME_POINT
         };
         if !near.into_iter().any(|cell| kept_in.get(&cell).is_some_and(|others| others.iter().any(same))) {
-            kept_in.entry(own).or_default().push(i);
+            kept_in.entry([x.own, y.own]).or_default().push(i);
             kept.push(i);
         }
     }
     kept.sort_unstable();
     kept.into_iter().map(|i| points[i]).collect()
+}
+
+/// The cells, along one axis, in which there may be what is at one place with a coordinate: mostly its own alone, as it is seldom next to the end of that.
+struct Cells {
+    from: i64,
+    own: i64,
+    to: i64,
+}
+
+impl Cells {
+    fn of(coordinate: f64) -> Cells {
+        const NEXT: f64 = 2.0 * SAME_POINT / CELL;
+        let place = coordinate / CELL;
+        let (part, own) = (place - place.floor(), place.floor() as i64);
+        Cells { from: own - i64::from(part < NEXT), own, to: own + i64::from(part > 1.0 - NEXT) }
+    }
 }
 
 /// Whether a value at places in a plane plainly is not that of a linear function. With the value for a height, the triple product of the ways from one

@@ -34,15 +34,25 @@ impl On {
 /// The subject cut by each edge of a polygon of area. Cost: linear in the corners of both.
 pub(super) fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
     let area = area(by);
-    let (turn, slack) = (area.signum(), slack(extent_squared(by), area));
+    let turn = area.signum();
     let mut left = Ring::default();
     left.take(subject);
+    if is_within(subject, by, turn) {
+        return left.corners();
+    }
+    let slack = slack(extent_squared(by), area);
     for j in 0..by.len() {
         let (from, to) = (by[j], by[(j + 1) % by.len()]);
         let Some(along) = (to - from).try_normalize() else { continue };
         left.cut(by, j, slack, |p| turn * along.perp_dot(p - from));
     }
     left.corners()
+}
+
+/// Whether no edge of a polygon cuts anything off another, as of a fine mesh under a large face: seen without a root.
+fn is_within(subject: &[DVec2], by: &[DVec2], turn: f64) -> bool {
+    let edges = by.iter().zip(by.iter().cycle().skip(1));
+    edges.into_iter().all(|(from, to)| subject.iter().all(|p| turn * (to - from).perp_dot(p - from) >= 0.0))
 }
 
 /// The square of how far a polygon reaches from its first corner.
