@@ -893,6 +893,39 @@ fn hills_hold_up_what_stands_on_them() {
     assert!(10 * upward > 9 * all, "{upward} of {all}");
 }
 
+/// A body that stands on a pebble in a groove is held by the walls of that, too.
+#[test]
+fn a_groove_holds_from_both_sides_what_stands_in_it() {
+    let mut vertices = vec![DVec3::ZERO];
+    vertices.extend(
+        [(0.03, 0.03), (0.03, -0.03), (-0.03, -0.03), (-0.03, 0.03)].map(|(x, z)| DVec3::new(x, -0.1, z)),
+    );
+    let mut triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+    for (side, first) in [(1.0, 5), (-1.0, 9)] {
+        let corners = [(-0.15, 2.0), (-0.15, -2.0), (1.0, -2.0), (1.0, 2.0)];
+        vertices.extend(corners.map(|(y, z)| DVec3::new(side * (0.205 + y), y, z)));
+        triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    }
+    let groove = Shape::mesh(vertices, triangles).unwrap();
+    let corners = (0..8).map(|i| {
+        let [x, y, z] = [0, 1, 2].map(|k| f64::from(i >> k & 1));
+        DVec3::new((2.0 * x - 1.0) * (0.2 + y), y, 2.0 * z - 1.0)
+    });
+    let keel = Shape::convex_hull(&corners.collect::<Vec<_>>()).unwrap();
+    let found = contacts(&keel, &at(0.0, -0.01, 0.0), &groove, &DAffine3::IDENTITY);
+    for (way, depth) in [
+        (DVec3::Y, 0.01),
+        (DVec3::new(-1.0, 1.0, 0.0), 0.005 / 2f64.sqrt()),
+        (DVec3::new(1.0, 1.0, 0.0), 0.005 / 2f64.sqrt()),
+    ] {
+        let is_there = |manifold: &Manifold| {
+            manifold.normal.distance(way.normalize()) < 1e-9
+                && manifold.points.iter().any(|point| (point.depth - depth).abs() < 1e-9)
+        };
+        assert!(found.iter().any(is_there), "{way}: {found:#?}");
+    }
+}
+
 /// Separate regions are reported apart.
 #[test]
 fn a_table_stands_on_its_legs() {

@@ -19,6 +19,9 @@ use super::{Meeting, face, through};
 /// A triangle whose normal has a greater cosine than this with that of another tells on which side of that it is.
 const SIDE_COSINE: f64 = 0.2;
 
+/// What is less steep than this stands under a face, some 25 degrees: what is steeper holds a body from the side, too.
+const GENTLE_COSINE: f64 = 0.9;
+
 /// A primitive of a soup, and what it is in contact with.
 pub(super) struct Side<'a> {
     stars: &'a Stars<'a>,
@@ -50,6 +53,12 @@ impl Corrected {
 impl<'a> Side<'a> {
     pub fn new(stars: &'a Stars<'a>, body: face::Placed<'a>, corners: &'a [DVec3], other: Other<'a>) -> Self {
         Side { stars, body, corners, other }
+    }
+
+    /// The same as [`meeting_of_body`](Side::meeting_of_body), as far as corners in the body tell it; not of a ball.
+    pub fn meeting_of_corners(&self, inside: &Inside, mirrored: bool) -> Option<Meeting> {
+        let &[p, q, r] = self.corners else { return None };
+        if self.other.corners.len() == 1 { None } else { Some(inside.way(&[p, q, r])?.meeting(mirrored)) }
     }
 
     /// How a triangle and a body lie to each other, where that is known in closed form.
@@ -178,6 +187,11 @@ impl<'a> Side<'a> {
             let edge = [vertices[i], vertices[(i + 1) % vertices.len()]];
             self.stars.across(&edge, self.body.primitive).any(goes_on)
         })
+    }
+
+    /// Whether it is a triangle that rises little along a face with a normal.
+    pub fn is_gentle(&self, out: DVec3) -> bool {
+        self.body.plane.is_some_and(|normal| normal.dot(out).abs() >= GENTLE_COSINE)
     }
 
     /// Whether a normal points into a solid.

@@ -56,13 +56,16 @@ enum Way {
     Across(DVec3),
     /// Along its own normal, which this is, or another: the surface does not have that of the shortest.
     Open(DVec3),
+    /// Across that face, of what lies along it; where it is not under the face, the shortest is still to be found.
+    Under(DVec3),
 }
 
 impl Way {
     /// The normal out of the primitive; of what is open its own.
     fn out(&self) -> DVec3 {
         match *self {
-            Way::Shortest { out, .. } | Way::Own(out) | Way::Across(out) | Way::Open(out) => out,
+            Way::Shortest { out, .. } => out,
+            Way::Own(out) | Way::Across(out) | Way::Open(out) | Way::Under(out) => out,
         }
     }
 }
@@ -124,9 +127,7 @@ pub(super) fn soup_body(
 impl Encounter<'_> {
     /// The contacts of all that was found, and of what the body leans over.
     fn patches(&self) -> Vec<Patch> {
-        let told = |&primitive: &u32| self.with_side(primitive, |side| self.way_out(side));
-        let mut leaving: Vec<Leaving> = self.found.iter().filter_map(told).collect();
-        self.settle(&mut leaving);
+        let leaving = self.leaving();
         let mut overhang = Overhang::new(self.stars, self.other, self.met);
         let patch = |leaving| self.patch(leaving, &mut overhang);
         let mut patches: Vec<Patch> = leaving.iter().filter_map(patch).collect();
@@ -143,7 +144,13 @@ impl Encounter<'_> {
     /// The contacts of a primitive; `None` where there are none.
     fn patch(&self, leaving: &Leaving, overhang: &mut Overhang) -> Option<Patch> {
         self.with_side(leaving.primitive, |side| {
-            let (out, touches) = (leaving.way.out(), self.touches(side, &leaving.way));
+            let (mut out, mut touches) = (leaving.way.out(), self.touches(side, &leaving.way));
+            if touches.is_empty()
+                && matches!(leaving.way, Way::Under(_))
+                && let Some(Leaving { way: way @ Way::Shortest { .. }, .. }) = self.way_out(side)
+            {
+                (out, touches) = (way.out(), self.touches(side, &way));
+            }
             if leaving.meets {
                 let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
                 (if is_told { &self.answered } else { &self.unanswered }).set(true);
@@ -184,36 +191,79 @@ impl Encounter<'_> {
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     }
 
+    /// How the body leaves all that was found; ascending. Of what stands on a face of the body, its corners in that mostly tell.
+    fn leaving(&self) -> Vec<Leaving> {
+        let (mut told, mut waiting) = (Vec::with_capacity(self.found.len()), Vec::new());
+        // Nothing stands on what is round.
+        let is_round = !self.other.corners.is_empty();
+        let first = |side: &Side| match self.way_at_once(side) {
+            Some(way) => Some(self.known(side.body.primitive, way)),
+            None if is_round => self.way_out(side),
+            None => None,
+        };
+        for &primitive in self.found {
+            match self.with_side(primitive, first) {
+                Some(leaving) => told.push(leaving),
+                None if is_round => {}
+                None => waiting.push(primitive),
+            }
+        }
+        if waiting.is_empty() && told.iter().all(|leaving| matches!(leaving.way, Way::Shortest { .. })) {
+            return told;
+        }
+        let mut standing = self.standing(&told);
+        let late = |&primitive: &u32| {
+            self.with_side(primitive, |side| match standing {
+                Some((_, out)) if side.is_gentle(out) => Some(self.known(primitive, Way::Under(out))),
+                _ => self.way_out(side),
+            })
+        };
+        told.extend(waiting.iter().filter_map(late));
+        told.sort_by_key(|leaving| leaving.primitive);
+        standing = standing.or_else(|| self.standing(&told).filter(|_| !waiting.is_empty()));
+        match standing {
+            Some((depth, out)) => self.stand(&mut told, depth, out),
+            None => told.iter_mut().for_each(|leaving| self.look_around(leaving)),
+        }
+        told
+    }
+
+    fn known(&self, primitive: u32, way: Way) -> Leaving {
+        Leaving { primitive, way, meets: self.met.binary_search(&primitive).is_ok() }
+    }
+
+    /// The way out of a primitive, where the surface is flat around it, or its corners in the body tell.
+    fn way_at_once(&self, side: &Side) -> Option<Way> {
+        if let Some(out) = side.flat() {
+            return Some(Way::Own(out));
+        }
+        let (inside, _) = self.told();
+        self.way_by(side, side.meeting_of_corners(inside.as_ref()?, self.mirrored)?)
+    }
+
     /// How the body leaves a primitive, as far as that alone tells it; `None` where there is no contact.
     fn way_out(&self, side: &Side) -> Option<Leaving> {
-        let primitive = side.body.primitive;
-        if let Some(out) = side.flat() {
-            let meets = self.met.binary_search(&primitive).is_ok();
-            return Some(Leaving { primitive, way: Way::Own(out), meets });
-        }
         let meeting = self.meeting(side)?;
-        let way = match side.kept(meeting.normal * self.sign(), meeting.tilt) {
+        let way = self.way_by(side, meeting)?;
+        Some(Leaving { primitive: side.body.primitive, way, meets: meeting.depth >= 0.0 })
+    }
+
+    fn way_by(&self, side: &Side, meeting: Meeting) -> Option<Way> {
+        Some(match side.kept(meeting.normal * self.sign(), meeting.tilt) {
             Some(out) if side.is_cut_short(out, self.found) => Way::Own(-out),
             Some(out) => Way::Shortest { out, meeting: Meeting { normal: out * self.sign(), ..meeting } },
             None => Way::Open(side.own()?),
-        };
-        Some(Leaving { primitive, way, meets: meeting.depth >= 0.0 })
+        })
     }
 
-    /// Finds what is open.
-    fn settle(&self, told: &mut [Leaving]) {
-        if told.iter().all(|leaving| matches!(leaving.way, Way::Shortest { .. })) {
-            return;
-        }
+    /// The way across a face of the body, and how long it is, if the soup is known to stand on one.
+    fn standing(&self, told: &[Leaving]) -> Option<(f64, DVec3)> {
         let ways = told.iter().filter_map(|leaving| match leaving.way {
             Way::Shortest { out, meeting } => Some((meeting.depth, out)),
             _ => None,
         });
         let has_left = |primitive, way| self.has_left(primitive, way);
-        match standing::way(ways, &self.body, &self.other, self.stars, self.found, has_left) {
-            Some((depth, out)) => self.stand(told, depth, out),
-            None => told.iter_mut().for_each(|leaving| self.look_around(leaving)),
-        }
+        standing::way(ways, &self.body, &self.other, self.stars, self.found, has_left)
     }
 
     /// Where the soup stands on a face of the body, that is left along its normal by all whose way would be longer.
@@ -254,7 +304,9 @@ impl Encounter<'_> {
         let [a, b] = self.in_order(&side.body, &self.body);
         match *way {
             Way::Shortest { meeting, .. } => self.pair.touches(a, b, &meeting),
-            Way::Across(out) if !self.body.is_ball() => self.pair.across(a, b, out * self.sign()),
+            Way::Across(out) | Way::Under(out) if !self.body.is_ball() => {
+                self.pair.across(a, b, out * self.sign())
+            }
             _ => self.over(side, way.out()),
         }
     }
@@ -264,10 +316,7 @@ impl Encounter<'_> {
         let Encounter { pair, mirrored, .. } = *self;
         // Without a margin all of them are known to meet the body.
         let must = pair.margin == 0.0;
-        let (inside, cuboid) = self.told.get_or_init(|| {
-            let cuboid = must.then(|| Polytope::of(&self.body)).flatten();
-            (Inside::new(&self.body, self.found.len()), cuboid)
-        });
+        let (inside, cuboid) = self.told();
         match side.meeting_of_body(inside.as_ref(), cuboid.as_ref(), mirrored) {
             Some(meeting) if must => Some(meeting.touching()),
             Some(meeting) => meeting.within(pair.margin),
@@ -277,6 +326,14 @@ impl Encounter<'_> {
                 pair.meeting(a, b, must)
             }
         }
+    }
+
+    /// What tells in closed form how a triangle lies to the body.
+    fn told(&self) -> &(Option<Inside<'_>>, Option<Polytope>) {
+        self.told.get_or_init(|| {
+            let cuboid = (self.pair.margin == 0.0).then(|| Polytope::of(&self.body)).flatten();
+            (Inside::new(&self.body, self.found.len()), cuboid)
+        })
     }
 
     /// The contacts over a triangle along its own normal, or one that it has taken over.
