@@ -201,6 +201,23 @@ fn normals_are_unit_vectors_beside_what_is_next_to_nothing() {
     }
 }
 
+/// Law: so is the normal of a solid mesh at triangles that are so thin that the square of twice their area vanishes.
+#[test]
+fn normals_of_slivers_are_unit_vectors() {
+    let corners = [DVec3::X * 1e100, DVec3::ZERO, DVec3::Z, DVec3::NEG_Y];
+    let sliver =
+        Shape::mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap().into_solid().unwrap();
+    for exponent in 40..80 {
+        for digit in [1.0, 1.5, 3.0, 7.0] {
+            let at = DAffine3::from_scale(DVec3::new(digit * 10f64.powi(exponent), 1.0, 1.0));
+            for p in [DVec3::ZERO, DVec3::Z * 0.25, DVec3::new(-1.0, 1e-8, -2.0), DVec3::NEG_Y] {
+                let found = query::signed_distance(&sliver, &at, p).unwrap();
+                assert!(is_unit(found.normal), "{digit}e{exponent} wide, at {p}: {found:?}");
+            }
+        }
+    }
+}
+
 /// Law: a mesh that is one point, or was deformed to one, has the distances that a point has, whatever it is beside: the space of its tree may be far larger
 /// than all else.
 #[test]

@@ -12,6 +12,7 @@ use crate::pair::containment::PlacedSolid;
 use crate::pair::frame::{Frame, Stretch};
 use crate::pair::table::{PlacedComplex, PlacedConvex};
 use crate::pair::{Scratch, complex_convex};
+use crate::placement::direction;
 use crate::shape::Complex;
 use crate::tree::{Around, Leaf, NearLeaves};
 use crate::triangle_triangle::Triangle;
@@ -127,7 +128,8 @@ fn across([a, b, c]: &Triangle) -> Option<DVec3> {
     if largest == 0.0 {
         return None;
     }
-    (u / largest).cross(v / largest).try_normalize()
+    // Of any length: that of a sliver has a square below the least number.
+    direction((u / largest).cross(v / largest))
 }
 
 /// Looks for the triangle nearest to a point.
