@@ -520,6 +520,32 @@ fn what_is_nearer_than_the_margin_has_a_contact() {
     assert!(apart * 10 > cases * 9, "{apart} of {cases}");
 }
 
+/// So has what reaches around the end of a plate, and is for the most part on its other side.
+#[test]
+fn a_hook_over_the_end_of_a_plate_is_within_the_margin() {
+    let here = DAffine3::IDENTITY;
+    for width in [1.0, 4.0, 30.0] {
+        let ends = [DVec3::new(-width, 0.0, -width), DVec3::new(-width, 0.0, width), DVec3::X];
+        let plate = Shape::mesh(ends, [[0, 1, 2]]).unwrap();
+        for bend in [3.0, -3.0, -9.0] {
+            let corners = [
+                DVec3::new(0.0, 0.125, 0.0),
+                DVec3::new(3.0, 0.5, -0.5),
+                DVec3::new(3.0, 0.5, 0.5),
+                DVec3::new(3.0, bend, 0.0),
+            ];
+            let hook = Shape::mesh(corners, [[0, 1, 2], [1, 2, 3]]).unwrap();
+            for (a, b, normal) in [(&hook, &plate, DVec3::Y), (&plate, &hook, DVec3::NEG_Y)] {
+                let found = query::contacts(a, &here, b, &here, &within(0.5)).unwrap();
+                let context = format!("{width} wide, bent to {bend}: {found:?}");
+                assert_laws(&found, 0.5, width, &context);
+                assert!(found.len() == 1 && (deepest(&found) + 0.125).abs() < 1e-12, "{context}");
+                assert!((found[0].normal - normal).length() < 1e-12, "{context}");
+            }
+        }
+    }
+}
+
 /// A needle stands on its end, also over a floor that it does not meet yet.
 #[test]
 fn a_needle_over_a_floor_is_within_the_margin() {

@@ -149,7 +149,8 @@ fn level_touches(
     let (normal, mut touches) = own_touches(pair, sides, of_first)?;
     // What does not meet is not in each other either, but on the other side.
     touches.retain(|touch| must || touch.depth <= SAME_DEPTH);
-    Some((normal, touches))
+    // Nothing is left where the soup is beyond the plane as a whole, but not here, as what reaches around an end of the triangle.
+    (!touches.is_empty()).then_some((normal, touches))
 }
 
 /// The contacts of two primitives along the normal of one, which is a triangle; `of_first` says whose.
