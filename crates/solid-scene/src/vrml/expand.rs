@@ -6,8 +6,8 @@ use std::rc::Rc;
 
 use super::document::{Document, FILE, Kind};
 use super::graph::{Call, Graph, Node, Scope};
-use super::library::{self, Library};
-use super::limits::{DEPTH_MAX, INLINE_DEPTH_MAX, NODES_MAX};
+use super::library::{Library, Located};
+use super::limits::{DEPTH_MAX, INLINE_DEPTH_MAX, NODES_MAX, URL_BYTES, URLS_MAX};
 use crate::error::SceneError;
 use crate::file::canonical;
 use crate::text::quoted;
@@ -19,14 +19,16 @@ const CHILD_FIELDS: [&str; 6] = ["children", "choice", "level", "proxy", "geomet
 /// All nodes of a file and of what it inlines, and the files that these are in. The first scope is the file.
 pub(super) fn expand(file: &Path, warnings: &mut Warnings) -> Result<(Graph, Vec<PathBuf>), SceneError> {
     let mut library = Library::default();
-    let document = library.open(file, warnings)?;
+    let key: Rc<Path> = canonical(file).into();
+    let document = library.open(file, &key, warnings)?;
     let mut expansion = Expansion {
         graph: Graph::default(),
         library,
         warnings,
         seen: HashSet::new(),
-        open: vec![canonical(file)],
+        open: vec![key],
         nodes: 0,
+        urls: 0,
         depth: 0,
     };
     let scope = expansion.graph.add(Scope { document, context: FILE, call: None });
@@ -46,8 +48,9 @@ struct Expansion<'a> {
     warnings: &'a mut Warnings,
     seen: HashSet<Node>,
     /// The files around, from the outermost.
-    open: Vec<PathBuf>,
+    open: Vec<Rc<Path>>,
     nodes: usize,
+    urls: usize,
     depth: usize,
 }
 
@@ -140,24 +143,30 @@ impl Expansion<'_> {
 
     /// Opens the file that a node names, if it can be found, until it is popped from `open`.
     fn open(&mut self, node: Node, urls: &[String]) -> Result<Option<Opened>, SceneError> {
-        let target = match library::locate(self.graph.document(node).file(), urls) {
-            Ok(target) => target,
-            Err(reason) => {
-                self.warn(node, format!("{reason}; passed over"));
-                return Ok(None);
-            }
-        };
-        let key = canonical(&target.file);
+        self.urls += urls.iter().map(|url| 1 + url.len() / URL_BYTES).sum::<usize>();
+        if self.urls > URLS_MAX {
+            let message =
+                format!("PROTOs and Inlines make more than {URLS_MAX} URLs; a long one counts several times");
+            return Err(self.graph.error(node, message));
+        }
+        let Located { file, key, fragment } =
+            match self.library.locate(self.graph.document(node).file(), urls) {
+                Ok(located) => located,
+                Err(reason) => {
+                    self.warn(node, format!("{reason}; passed over"));
+                    return Ok(None);
+                }
+            };
         if self.open.contains(&key) {
-            let message = format!("{} holds itself by way of this", target.file.display());
+            let message = format!("{} holds itself by way of this", file.display());
             return Err(self.graph.error(node, message));
         }
         if self.open.len() > INLINE_DEPTH_MAX {
             return Err(self.graph.error(node, format!("files inline files deeper than {INLINE_DEPTH_MAX}")));
         }
-        let document = self.library.open(&target.file, self.warnings)?;
+        let document = self.library.open(&file, &key, self.warnings)?;
         self.open.push(key);
-        Ok(Some(Opened { document, fragment: target.fragment }))
+        Ok(Some(Opened { document, fragment }))
     }
 
     fn warn(&mut self, node: Node, message: String) {

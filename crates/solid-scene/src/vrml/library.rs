@@ -15,12 +15,25 @@ use crate::warnings::Warnings;
 #[derive(Debug, Default)]
 pub(super) struct Library {
     documents: HashMap<PathBuf, Rc<Document>>,
+    /// What the URLs that were looked at lead to, by the folder that they are relative to; `None` for nothing. The disk is asked once for each, as
+    /// one may be inlined a million times.
+    located: HashMap<PathBuf, HashMap<String, Option<Located>>>,
 }
 
-/// A local file that a URL names, and what follows the `#`.
+/// The path that a URL names, and what follows the `#`.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Target {
-    pub file: PathBuf,
+struct Target {
+    file: PathBuf,
+    fragment: Option<String>,
+}
+
+/// A [`Target`] that is there.
+#[derive(Clone, Debug)]
+pub(super) struct Located {
+    /// The path, by way of the file that names it.
+    pub file: Rc<Path>,
+    /// The same path for the same file.
+    pub key: Rc<Path>,
     pub fragment: Option<String>,
 }
 
@@ -32,10 +45,14 @@ impl Library {
         files
     }
 
-    /// A file, parsed.
-    pub fn open(&mut self, file: &Path, warnings: &mut Warnings) -> Result<Rc<Document>, SceneError> {
-        let key = canonical(file);
-        if let Some(document) = self.documents.get(&key) {
+    /// A file, parsed; `key` is its canonical path.
+    pub fn open(
+        &mut self,
+        file: &Path,
+        key: &Path,
+        warnings: &mut Warnings,
+    ) -> Result<Rc<Document>, SceneError> {
+        if let Some(document) = self.documents.get(key) {
             return Ok(document.clone());
         }
         let nodes_before = self.documents.values().map(|document| document.written).sum();
@@ -48,29 +65,35 @@ impl Library {
             }
         }
         let document = Rc::new(document);
-        self.documents.insert(key, document.clone());
+        self.documents.insert(key.to_owned(), document.clone());
         Ok(document)
     }
-}
 
-/// The first of some URLs that names a local file that is there; relative to the file that names it. Otherwise why not.
-pub(super) fn locate(from: &Path, urls: &[String]) -> Result<Target, String> {
-    let folder = from.parent().unwrap_or(Path::new(""));
-    let mut reason = "it has no url".to_owned();
-    for url in urls {
-        let called = quoted(url);
-        match relative(url) {
-            Some(target) => {
-                let file = folder.join(&target.file);
-                if file.is_file() {
-                    return Ok(Target { file, ..target });
-                }
-                reason = format!("there is no file \"{called}\"");
-            }
-            None => reason = format!("\"{called}\" is not a relative path; only local files are read"),
+    /// The first of some URLs that names a local file that is there; relative to the file that names it. Otherwise why not.
+    pub fn locate(&mut self, from: &Path, urls: &[String]) -> Result<Located, String> {
+        let folder = from.parent().unwrap_or(Path::new(""));
+        if let Some(located) = urls.iter().find_map(|url| self.find(folder, url)) {
+            return Ok(located);
         }
+        Err(match urls.last().map(|url| (relative(url), quoted(url))) {
+            None => "it has no url".to_owned(),
+            Some((Some(_), url)) => format!("there is no file \"{url}\""),
+            Some((None, url)) => format!("\"{url}\" is not a relative path; only local files are read"),
+        })
     }
-    Err(reason)
+
+    /// The local file that a URL names, if it is there; relative to a folder.
+    fn find(&mut self, folder: &Path, url: &str) -> Option<Located> {
+        if let Some(known) = self.located.get(folder).and_then(|urls| urls.get(url)) {
+            return known.clone();
+        }
+        let located = relative(url).and_then(|Target { file, fragment }| {
+            let file = folder.join(file);
+            file.is_file().then(|| Located { key: canonical(&file).into(), file: file.into(), fragment })
+        });
+        self.located.entry(folder.to_owned()).or_default().insert(url.to_owned(), located.clone());
+        located
+    }
 }
 
 /// The relative path that a URL is, with its percent escapes decoded; `None` for other URLs and absolute paths.

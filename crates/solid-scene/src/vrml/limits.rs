@@ -31,6 +31,13 @@ pub(super) const USE_LOOKALIKES_MAX: usize = 1_000;
 /// Nodes after the instances of PROTO, Inline and USE are written out.
 pub(super) const NODES_MAX: usize = 1_000_000;
 
+/// URLs after the instances of PROTO and Inline are written out: each is copied and looked up, and an instance may have many. A long one counts
+/// once for every [`URL_BYTES`] that it begins.
+pub(super) const URLS_MAX: usize = 4_000_000;
+
+/// Bytes that a URL may have and still count once.
+pub(super) const URL_BYTES: usize = 64;
+
 /// How deep nodes may nest when the instances are written out.
 pub(super) const DEPTH_MAX: usize = 512;
 

@@ -206,6 +206,34 @@ fn what_would_be_slow_to_parse_is_an_error() {
     assert!(load(&"#/* \n".repeat(300_000)).is_ok());
 }
 
+/// The disk is asked once for each URL, and there are not too many of them, however many instances have them.
+#[test]
+fn urls_of_many_instances_take_no_time() {
+    let folder = Folder::new();
+    folder.write("0.wrl", "Shape { geometry Box {} }");
+    for i in 1..20 {
+        folder.write(&format!("{i}.wrl"), &format!("Inline {{ url \"{}.wrl\" }} ", i - 1).repeat(2));
+    }
+    let protos: String = (1..18)
+        .map(|i| {
+            format!("PROTO P{i} [] {{ Group {{ children [ {} ] }} }} ", format!("P{} {{}} ", i - 1).repeat(2))
+        })
+        .collect();
+    let missing: String = (0..500).map(|i| format!("\"{i}.gone\" ")).collect();
+    let [many, long] = [missing, format!("\"{}\"", "gone".repeat(100_000))]
+        .map(|urls| format!("PROTO P0 [] {{ Inline {{ url [ {urls} ] }} }} {protos} P17 {{}}"));
+    for (body, part) in [
+        ("Inline { url \"19.wrl\" }", "more than 1000000 nodes"),
+        (&many, "more than 4000000 URLs"),
+        (&long, "more than 4000000 URLs"),
+    ] {
+        let start = Instant::now();
+        let error = load_file(&folder.write("a.wrl", body)).expect_err("too many");
+        assert!(error.message.contains(part), "{error}");
+        assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    }
+}
+
 /// Law: it makes no difference whether nodes are written in one file or in several.
 #[test]
 fn nodes_of_inlined_files_count_together() {
