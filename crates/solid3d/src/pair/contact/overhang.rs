@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::other::Other;
-use super::stars::Stars;
+use super::stars::{LEVEL, Stars};
 
 /// Looks for the triangles in front of the deepest points of a body.
 pub(super) struct Overhang<'a> {
@@ -15,20 +15,26 @@ pub(super) struct Overhang<'a> {
     /// The primitives that the body meets, or is near; ascending.
     met: &'a [u32],
     looked_at: BTreeSet<u32>,
+    /// The plane of a triangle that the body meets in front of where it is deepest, by its normal and its height along that: the last one.
+    covered: Option<(DVec3, f64)>,
     /// What was found: triangles that the body does not meet, each with the normal along which it leaves them.
     pub found: Vec<(u32, DVec3)>,
 }
 
 impl<'a> Overhang<'a> {
     pub fn new(stars: &'a Stars<'a>, body: Other<'a>, met: &'a [u32]) -> Self {
-        Overhang { stars, body, met, looked_at: BTreeSet::new(), found: Vec::new() }
+        Overhang { stars, body, met, looked_at: BTreeSet::new(), covered: None, found: Vec::new() }
     }
 
     /// Goes straight from a triangle that the body meets, and leaves along a normal of it, to the one in front of where it is deepest, through others of that
     /// plane which it does not meet. Cost: each of these is looked at once.
     pub fn look(&mut self, first: u32, out: DVec3) {
-        let tip = self.body.furthest(-out);
         let start = self.stars.corners(first).iter().sum::<DVec3>() / 3.0;
+        let height = out.dot(start);
+        if self.covered.is_some_and(|(normal, at)| normal == out && (height - at).abs() <= LEVEL) {
+            return;
+        }
+        let tip = self.body.furthest(-out);
         let mut triangle = first;
         while let Some(edge) = exit(&self.stars.corners(triangle), out, start, tip) {
             let vertices = self.stars.welded(triangle);
@@ -41,7 +47,9 @@ impl<'a> Overhang<'a> {
             let Some(next) = next else { return };
             triangle = next;
         }
-        if triangle != first {
+        if triangle == first {
+            self.covered = Some((out, height));
+        } else {
             self.found.push((triangle, out));
         }
     }

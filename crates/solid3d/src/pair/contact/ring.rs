@@ -35,12 +35,12 @@ impl On {
 pub(super) fn against(subject: &[DVec2], by: &[DVec2]) -> Corners {
     let area = area(by);
     let turn = area.signum();
-    let mut left = Ring::default();
-    left.take(subject);
     if is_within(subject, by, turn) {
-        return left.corners();
+        return distinct((0..).zip(subject).map(|(i, &at)| Clipped { at, origin: Origin::OfA(i) }));
     }
     let slack = slack(extent_squared(by), area);
+    let mut left = Ring::default();
+    left.take(subject);
     for j in 0..by.len() {
         let (from, to) = (by[j], by[(j + 1) % by.len()]);
         let Some(along) = (to - from).try_normalize() else { continue };
@@ -143,25 +143,23 @@ impl Ring {
         }
     }
 
-    /// The corners in order, of those at one place the first.
+    /// What is left.
     fn corners(&self) -> Corners {
-        let mut corners = Corners::new();
-        let Some(first) = self.first else { return corners };
-        let is_new = |corner: &Clipped, other: Option<&Clipped>| {
-            other.is_none_or(|other| other.at.distance_squared(corner.at) > ON_EDGE * ON_EDGE)
-        };
-        let mut at = first;
-        loop {
-            let Node { corner, after, .. } = &self.nodes[at];
-            if is_new(corner, corners.last()) && is_new(corner, corners.first()) {
-                corners.push(*corner);
-            }
-            at = *after;
-            if at == first {
-                return corners;
-            }
+        let after = |&at: &usize| Some(self.nodes[at].after).filter(|&next| Some(next) != self.first);
+        distinct(std::iter::successors(self.first, after).map(|at| self.nodes[at].corner))
+    }
+}
+
+/// Corners in order, of those at one place the first.
+fn distinct(all: impl Iterator<Item = Clipped>) -> Corners {
+    let is_apart = |x: &Clipped, y: &Clipped| x.at.distance_squared(y.at) > ON_EDGE * ON_EDGE;
+    let mut corners = Corners::new();
+    for corner in all {
+        if [corners.first(), corners.last()].into_iter().flatten().all(|other| is_apart(other, &corner)) {
+            corners.push(corner);
         }
     }
+    corners
 }
 
 /// The highest corner, sought from one on; past lower ones, if by no more than a slack.
