@@ -15,6 +15,7 @@ mod difference;
 mod face;
 mod inside;
 mod joining;
+mod leaving;
 mod map;
 mod one_point;
 mod other;

@@ -58,7 +58,7 @@ impl<'a> Side<'a> {
     /// The same as [`meeting_of_body`](Side::meeting_of_body), as far as corners in the body tell it; not of a ball.
     pub fn meeting_of_corners(&self, inside: &Inside, mirrored: bool) -> Option<Meeting> {
         let &[p, q, r] = self.corners else { return None };
-        if self.other.corners.len() == 1 { None } else { Some(inside.way(&[p, q, r])?.meeting(mirrored)) }
+        Some(inside.way(&[p, q, r])?.meeting(mirrored))
     }
 
     /// How a triangle and a body lie to each other, where that is known in closed form.

@@ -4,70 +4,38 @@ use std::cell::{Cell, OnceCell};
 use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
-use solid_convex::{Support, gjk};
 
 use super::super::reach::core;
 use super::super::table::PlacedConvex;
 use super::super::{Scratch, complex_convex};
 use super::difference::Polytope;
 use super::inside::Inside;
-use super::other::{Other, highest};
+use super::leaving::{Leaving, WayOut};
+use super::other::Other;
 use super::overhang::Overhang;
 use super::side::Side;
-use super::stars::{LEVEL, Stars};
-use super::{Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge, standing};
+use super::stars::Stars;
+use super::{Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge};
 use crate::shape::{Body, Complex};
 
 /// A soup and a body, of which primitives that meet it are looked at one after the other.
-struct Encounter<'a> {
-    pair: &'a Pair<'a>,
-    complex: &'a Complex,
-    stars: &'a Stars<'a>,
-    body: face::Placed<'a>,
-    other: Other<'a>,
-    /// What tells in closed form how a triangle lies to the body, once it was asked for.
-    told: OnceCell<(Option<Inside<'a>>, Option<Polytope>)>,
+pub(super) struct Encounter<'a> {
+    pub pair: &'a Pair<'a>,
+    pub complex: &'a Complex,
+    pub stars: &'a Stars<'a>,
+    pub body: face::Placed<'a>,
+    pub other: Other<'a>,
+    /// What tells in closed form how a triangle lies to the body, once they were asked for.
+    pub closed_forms: OnceCell<(Option<Inside<'a>>, Option<Polytope>)>,
     /// The primitives that meet the body, or with a margin are as near to it; ascending.
-    found: &'a [u32],
+    pub found: &'a [u32],
     /// Those that meet it; ascending.
-    met: &'a [u32],
+    pub met: &'a [u32],
     /// Whether the soup is the second of the pair.
-    mirrored: bool,
+    pub mirrored: bool,
     /// Whether some primitive that meets the body had contacts where they are in each other, and whether some had none.
     answered: Cell<bool>,
     unanswered: Cell<bool>,
-}
-
-/// How the body leaves a primitive.
-struct Leaving {
-    primitive: u32,
-    way: Way,
-    /// Whether the two meet.
-    meets: bool,
-}
-
-/// The way on which it does.
-enum Way {
-    /// The shortest, along a normal that the surface has, and how the two lie to each other along that.
-    Shortest { out: DVec3, meeting: Meeting },
-    /// Along the normal of a triangle, its own.
-    Own(DVec3),
-    /// Along that of a face next to it, or of the face of the body that the soup stands on.
-    Across(DVec3),
-    /// Along its own normal, which this is, or another: the surface does not have that of the shortest.
-    Open(DVec3),
-    /// Across that face, of what lies along it; where it is not under the face, the shortest is still to be found.
-    Under(DVec3),
-}
-
-impl Way {
-    /// The normal out of the primitive; of what is open its own.
-    fn out(&self) -> DVec3 {
-        match *self {
-            Way::Shortest { out, .. } => out,
-            Way::Own(out) | Way::Across(out) | Way::Open(out) | Way::Under(out) => out,
-        }
-    }
 }
 
 /// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
@@ -107,7 +75,7 @@ pub(super) fn soup_body(
         complex,
         stars: &Stars::new(complex, map_soup, found.len()),
         other: Other { primitive: 0, support: *support, map: map_body, corners, radius },
-        told: OnceCell::new(),
+        closed_forms: OnceCell::new(),
         found,
         met: &met,
         body: face::Placed::new(kind, map_body),
@@ -146,8 +114,8 @@ impl Encounter<'_> {
         self.with_side(leaving.primitive, |side| {
             let (mut out, mut touches) = (leaving.way.out(), self.touches(side, &leaving.way));
             if touches.is_empty()
-                && matches!(leaving.way, Way::Under(_))
-                && let Some(Leaving { way: way @ Way::Shortest { .. }, .. }) = self.way_out(side)
+                && matches!(leaving.way, WayOut::Under(_))
+                && let Some(Leaving { way: way @ WayOut::Shortest { .. }, .. }) = self.way_out(side)
             {
                 (out, touches) = (way.out(), self.touches(side, &way));
             }
@@ -179,7 +147,7 @@ impl Encounter<'_> {
         })
     }
 
-    fn with_side<R>(&self, primitive: u32, ask: impl FnOnce(&Side) -> R) -> R {
+    pub fn with_side<R>(&self, primitive: u32, ask: impl FnOnce(&Side) -> R) -> R {
         let body = Body::of_primitive(self.complex, primitive);
         let corners = self.stars.corners(primitive);
         let placed = face::Placed::of_primitive(&body, primitive, self.stars.map, &corners);
@@ -191,149 +159,16 @@ impl Encounter<'_> {
         (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
     }
 
-    /// How the body leaves all that was found; ascending. Of what stands on a face of the body, its corners in that mostly tell.
-    fn leaving(&self) -> Vec<Leaving> {
-        let (mut told, mut waiting) = (Vec::with_capacity(self.found.len()), Vec::new());
-        // Nothing stands on what is round.
-        let is_round = !self.other.corners.is_empty();
-        let first = |side: &Side| match self.way_at_once(side) {
-            Some(way) => Some(self.known(side.body.primitive, way)),
-            None if is_round => self.way_out(side),
-            None => None,
-        };
-        for &primitive in self.found {
-            match self.with_side(primitive, first) {
-                Some(leaving) => told.push(leaving),
-                None if is_round => {}
-                None => waiting.push(primitive),
-            }
-        }
-        if waiting.is_empty() && told.iter().all(|leaving| matches!(leaving.way, Way::Shortest { .. })) {
-            return told;
-        }
-        let mut standing = self.standing(&told);
-        let late = |&primitive: &u32| {
-            self.with_side(primitive, |side| match standing {
-                Some((_, out)) if side.is_gentle(out) => Some(self.known(primitive, Way::Under(out))),
-                _ => self.way_out(side),
-            })
-        };
-        told.extend(waiting.iter().filter_map(late));
-        told.sort_by_key(|leaving| leaving.primitive);
-        standing = standing.or_else(|| self.standing(&told).filter(|_| !waiting.is_empty()));
-        match standing {
-            Some((depth, out)) => self.stand(&mut told, depth, out),
-            None => told.iter_mut().for_each(|leaving| self.look_around(leaving)),
-        }
-        told
-    }
-
-    fn known(&self, primitive: u32, way: Way) -> Leaving {
-        Leaving { primitive, way, meets: self.met.binary_search(&primitive).is_ok() }
-    }
-
-    /// The way out of a primitive, where the surface is flat around it, or its corners in the body tell.
-    fn way_at_once(&self, side: &Side) -> Option<Way> {
-        if let Some(out) = side.flat() {
-            return Some(Way::Own(out));
-        }
-        let (inside, _) = self.told();
-        self.way_by(side, side.meeting_of_corners(inside.as_ref()?, self.mirrored)?)
-    }
-
-    /// How the body leaves a primitive, as far as that alone tells it; `None` where there is no contact.
-    fn way_out(&self, side: &Side) -> Option<Leaving> {
-        let meeting = self.meeting(side)?;
-        let way = self.way_by(side, meeting)?;
-        Some(Leaving { primitive: side.body.primitive, way, meets: meeting.depth >= 0.0 })
-    }
-
-    fn way_by(&self, side: &Side, meeting: Meeting) -> Option<Way> {
-        Some(match side.kept(meeting.normal * self.sign(), meeting.tilt) {
-            Some(out) if side.is_cut_short(out, self.found) => Way::Own(-out),
-            Some(out) => Way::Shortest { out, meeting: Meeting { normal: out * self.sign(), ..meeting } },
-            None => Way::Open(side.own()?),
-        })
-    }
-
-    /// The way across a face of the body, and how long it is, if the soup is known to stand on one.
-    fn standing(&self, told: &[Leaving]) -> Option<(f64, DVec3)> {
-        let ways = told.iter().filter_map(|leaving| match leaving.way {
-            Way::Shortest { out, meeting } => Some((meeting.depth, out)),
-            _ => None,
-        });
-        let has_left = |primitive, way| self.has_left(primitive, way);
-        standing::way(ways, &self.body, &self.other, self.stars, self.found, has_left)
-    }
-
-    /// Where the soup stands on a face of the body, that is left along its normal by all whose way would be longer.
-    fn stand(&self, told: &mut [Leaving], depth: f64, out: DVec3) {
-        let lowest = self.other.lowest(out);
-        for Leaving { primitive, way, .. } in told {
-            let is_longer = |own: DVec3| {
-                let corners = self.stars.corners(*primitive);
-                (highest(&corners, out) - lowest).min(depth) < self.other.depth(&corners, own) - LEVEL
-            };
-            match *way {
-                Way::Open(_) => *way = Way::Across(out),
-                Way::Own(own) if is_longer(own) => *way = Way::Across(out),
-                _ => {}
-            }
-        }
-    }
-
-    /// Where it does not, the normals of the faces around a primitive come into question.
-    fn look_around(&self, Leaving { primitive, way, .. }: &mut Leaving) {
-        if let Way::Open(own) = *way {
-            let shorter = self.with_side(*primitive, |side| side.shorter_around(own));
-            *way = shorter.map_or(Way::Own(own), Way::Across);
-        }
-    }
-
-    /// Whether the body does not meet a primitive, once it went some way. Space: common.
-    fn has_left(&self, primitive: u32, way: DVec3) -> bool {
-        let mut moved = self.other.map.affine;
-        moved.translation += way;
-        let hull = self.complex.primitive_hull(primitive);
-        let found = gjk::intersection(self.other.support, &moved, &hull, &self.stars.map.affine);
-        matches!(found, gjk::Outcome::Separated { .. })
-    }
-
     /// The contacts along the way out of a primitive, if any.
-    fn touches(&self, side: &Side, way: &Way) -> Vec<Touch> {
+    fn touches(&self, side: &Side, way: &WayOut) -> Vec<Touch> {
         let [a, b] = self.in_order(&side.body, &self.body);
         match *way {
-            Way::Shortest { meeting, .. } => self.pair.touches(a, b, &meeting),
-            Way::Across(out) | Way::Under(out) if !self.body.is_ball() => {
+            WayOut::Shortest { meeting, .. } => self.pair.touches(a, b, &meeting),
+            WayOut::Across(out) | WayOut::Under(out) if !self.body.is_ball() => {
                 self.pair.across(a, b, out * self.sign())
             }
             _ => self.over(side, way.out()),
         }
-    }
-
-    /// How a primitive and the body lie to each other; `None` when they are further apart than the margin.
-    fn meeting(&self, side: &Side) -> Option<Meeting> {
-        let Encounter { pair, mirrored, .. } = *self;
-        // Without a margin all of them are known to meet the body.
-        let must = pair.margin == 0.0;
-        let (inside, cuboid) = self.told();
-        match side.meeting_of_body(inside.as_ref(), cuboid.as_ref(), mirrored) {
-            Some(meeting) if must => Some(meeting.touching()),
-            Some(meeting) => meeting.within(pair.margin),
-            None => {
-                let hull = self.complex.primitive_hull(side.body.primitive);
-                let [a, b] = self.in_order::<&dyn Support>(&hull, self.other.support);
-                pair.meeting(a, b, must)
-            }
-        }
-    }
-
-    /// What tells in closed form how a triangle lies to the body.
-    fn told(&self) -> &(Option<Inside<'_>>, Option<Polytope>) {
-        self.told.get_or_init(|| {
-            let cuboid = (self.pair.margin == 0.0).then(|| Polytope::of(&self.body)).flatten();
-            (Inside::new(&self.body, self.found.len()), cuboid)
-        })
     }
 
     /// The contacts over a triangle along its own normal, or one that it has taken over.
@@ -349,12 +184,12 @@ impl Encounter<'_> {
     }
 
     /// What is of the first shape, then what is of the second.
-    fn in_order<T>(&self, of_soup: T, of_body: T) -> [T; 2] {
+    pub fn in_order<T>(&self, of_soup: T, of_body: T) -> [T; 2] {
         if self.mirrored { [of_body, of_soup] } else { [of_soup, of_body] }
     }
 
     /// A normal out of the soup times this leads from the second shape to the first.
-    fn sign(&self) -> f64 {
+    pub fn sign(&self) -> f64 {
         if self.mirrored { 1.0 } else { -1.0 }
     }
 }

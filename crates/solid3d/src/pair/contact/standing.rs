@@ -4,33 +4,56 @@
 //! own normals lead aside, or through the body.
 
 use glam::DVec3;
+use solid_convex::gjk;
 
 use super::DEPTH_ERROR;
-use super::face::Placed;
-use super::other::Other;
-use super::stars::{LEVEL, Stars};
+use super::leaving::{Leaving, WayOut};
+use super::other::highest;
+use super::soup_body::Encounter;
+use super::stars::LEVEL;
 
-/// The way out of all primitives of a soup that were found to meet a body, across a face of that, and how long it is; `None` where there is none, or it
-/// may not be the shortest. `ways` are the shortest ones out of some of them, with how long they are. No way out of all is shorter than the longest of
-/// these: where that leads out of all, it is the shortest. `has_left` tells whether the body does not meet a primitive, once it went such a way.
-pub(super) fn way(
-    ways: impl Iterator<Item = (f64, DVec3)>,
-    body: &Placed,
-    other: &Other,
-    stars: &Stars,
-    found: &[u32],
-    has_left: impl Fn(u32, DVec3) -> bool,
-) -> Option<(f64, DVec3)> {
-    let (depth, out) = ways.max_by(|(x, _), (y, _)| x.total_cmp(y))?;
-    if !body.face(-out).is_aligned() {
-        return None;
+impl Encounter<'_> {
+    /// The way out of all primitives that were found, across a face of the body, and how long it is; `None` where there is none, or it may not be the
+    /// shortest. No way out of all is shorter than the longest of those that some of them told: where that leads out of all, it is the shortest.
+    pub fn standing(&self, told: &[Leaving]) -> Option<(f64, DVec3)> {
+        let ways = told.iter().filter_map(|leaving| match leaving.way {
+            WayOut::Shortest { out, meeting } => Some((meeting.depth, out)),
+            _ => None,
+        });
+        let (depth, out) = ways.max_by(|(x, _), (y, _)| x.total_cmp(y))?;
+        if !self.body.face(-out).is_aligned() {
+            return None;
+        }
+        let length = depth + LEVEL + DEPTH_ERROR * depth.abs();
+        let height = self.other.lowest(out) + length;
+        let is_below = |primitive| highest(&self.stars.corners(primitive), out) <= height;
+        // Beside the face a primitive may be higher.
+        let is_left = |&primitive: &u32| is_below(primitive) || self.has_left(primitive, out * length);
+        self.found.iter().all(is_left).then_some((depth, out))
     }
-    let length = depth + LEVEL + DEPTH_ERROR * depth.abs();
-    let height = other.lowest(out) + length;
-    let is_below = |primitive: u32| stars.corners(primitive).iter().all(|corner| out.dot(*corner) <= height);
-    // Beside the face a primitive may be higher.
-    found
-        .iter()
-        .all(|&primitive| is_below(primitive) || has_left(primitive, out * length))
-        .then_some((depth, out))
+
+    /// Where the soup stands on a face of the body, that is left along its normal by all whose way would be longer.
+    pub fn stand(&self, told: &mut [Leaving], depth: f64, out: DVec3) {
+        let lowest = self.other.lowest(out);
+        for Leaving { primitive, way, .. } in told {
+            let is_longer = |own: DVec3| {
+                let corners = self.stars.corners(*primitive);
+                (highest(&corners, out) - lowest).min(depth) < self.other.depth(&corners, own) - LEVEL
+            };
+            match *way {
+                WayOut::Open(_) => *way = WayOut::Across(out),
+                WayOut::Own(own) if is_longer(own) => *way = WayOut::Across(out),
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether the body does not meet a primitive, once it went some way. Space: common.
+    fn has_left(&self, primitive: u32, way: DVec3) -> bool {
+        let mut moved = self.other.map.affine;
+        moved.translation += way;
+        let hull = self.complex.primitive_hull(primitive);
+        let found = gjk::intersection(self.other.support, &moved, &hull, &self.stars.map.affine);
+        matches!(found, gjk::Outcome::Separated { .. })
+    }
 }
