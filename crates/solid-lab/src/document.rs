@@ -76,7 +76,7 @@ mod tests {
         let of_experiments = all().iter().map(|experiment| (experiments, experiment.name));
         for (document, name) in of_experiments
             .chain([(experiments, "shortfalls"), (experiments, "threads")])
-            .chain([(peers, "peers"), (peers, "questions")])
+            .chain([(peers, "peers"), (peers, "questions"), (peers, "grounds")])
         {
             let [begin, end] = marks(name);
             assert!(document.contains(&begin) && document.contains(&end), "{name}");

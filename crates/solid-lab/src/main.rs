@@ -191,10 +191,10 @@ fn ask(measuring: Measuring, docs: Option<&Path>) -> Result<()> {
     let report = questions::run(effort(measuring), measuring.seed, |name| {
         eprintln!("{:5.1} s: {name}", start.elapsed().as_secs_f64());
     });
-    let table = questions::table(&report);
-    println!("{table}");
+    let (table, grounds) = (questions::table(&report), questions::table_of_grounds(&report));
+    println!("{table}\n\n{grounds}");
     match docs {
-        Some(docs) => document::fill(&docs.join("peers.md"), &[("questions", table)]),
+        Some(docs) => document::fill(&docs.join("peers.md"), &[("questions", table), ("grounds", grounds)]),
         None => Ok(()),
     }
 }

@@ -46,6 +46,7 @@ pub fn all(effort: Effort, rng: &mut StdRng) -> Vec<Kind> {
     ]
 }
 
-fn vectors(points: &[DVec3]) -> Vec<Vector> {
+/// Points, for parry.
+pub fn vectors(points: &[DVec3]) -> Vec<Vector> {
     points.iter().map(|p| vector(*p)).collect()
 }

@@ -8,11 +8,13 @@
 //! | `asked` | the questions |
 //! | `crowd` | worlds of a kind |
 //! | `field` | worlds at rest |
+//! | `ground` | what stands on a mesh |
 //! | `table` | what comes out |
 
 mod asked;
 mod crowd;
 mod field;
+mod ground;
 mod kinds;
 mod poses;
 mod table;
@@ -26,8 +28,9 @@ use crate::peers::{Effort, Spread, date, machine, with_commas};
 use asked::{ALONE, Asker, OF_PAIRS};
 use crowd::{Crowd, OF_CROWDS};
 use field::{Field, OF_FIELDS};
+use ground::{GROUNDS, Standing, ground};
 use kinds::Kind;
-pub use table::table;
+pub use table::{table, table_of_grounds};
 
 /// A turn takes at least so long.
 const TURN_MIN: Duration = Duration::from_millis(1);
@@ -70,6 +73,8 @@ pub struct Report {
     pub crowds: Asked,
     /// Of many at rest.
     pub fields: Asked,
+    /// The contacts of what stands on a mesh.
+    pub grounds: Asked,
 }
 
 impl Report {
@@ -113,7 +118,15 @@ pub fn run(effort: Effort, seed: u64, mut progress: impl FnMut(&str)) -> Report 
         let cells = OF_FIELDS.iter().map(|(_, ask)| race(effort, field.len(), ask(&field)));
         fields.rows.push((name, cells.collect()));
     }
-    Report { seed, machine: machine(), date: date(), pairs, alone, crowds, fields }
+    let mut grounds = Asked { questions: GROUNDS.map(|(name, _)| name).to_vec(), rows: Vec::new() };
+    let meshes = GROUNDS.map(|of| ground(effort, &mut rng, of));
+    for kind in convex {
+        progress(&format!("{} on a ground", kind.name));
+        let standing = meshes.each_ref().map(|mesh| Standing::new(effort, &mut rng, mesh, kind));
+        let cells = standing.iter().map(|standing| race(effort, standing.len(), standing.contacts()));
+        grounds.rows.push((kind.name.to_string(), cells.collect()));
+    }
+    Report { seed, machine: machine(), date: date(), pairs, alone, crowds, fields, grounds }
 }
 
 /// Lets both take turns at a question.
@@ -159,12 +172,13 @@ mod tests {
     #[test]
     fn every_question_is_asked_of_every_kind() {
         let report = run(Effort::Smoke, 1999, |_| {});
-        let rows = report.asked().map(|asked| asked.rows.len());
-        assert_eq!(rows, [28, 7, 7, 3]);
-        let cells = report.asked().into_iter().flat_map(|asked| &asked.rows).flat_map(|(_, cells)| cells);
+        let asked = || report.asked().into_iter().chain([&report.grounds]);
+        assert!(asked().map(|asked| asked.rows.len()).eq([28, 7, 7, 3, 6]));
+        let cells = asked().flat_map(|asked| &asked.rows).flat_map(|(_, cells)| cells);
         assert!(cells.clone().all(|cell| cell.micros > 0.0));
         // Of two meshes parry has no depth, no contacts and no time of impact.
         assert_eq!(cells.filter(|cell| cell.ratio.is_none()).count(), 3);
         assert!(table(&report).contains("ball, mesh of 5,000"));
+        assert!(table_of_grounds(&report).contains("| hull of 20 |"));
     }
 }

@@ -2,27 +2,29 @@ use std::fmt::Write;
 
 use super::{Asked, Cell, Report};
 
-/// The report as tables in Markdown: microseconds that ours takes, and how many times as long parry takes.
+/// The report as tables in Markdown, but for what stands on a ground: microseconds that ours takes, and how many times as long parry takes.
 pub fn table(report: &Report) -> String {
-    let mut text = of_asked("two shapes", &report.pairs);
-    text.push('\n');
-    text.push_str(&of_asked("one shape", &report.alone));
-    text.push('\n');
-    text.push_str(&of_asked("a frame of 1,000", &report.crowds));
-    text.push('\n');
-    text.push_str(&of_asked("objects at rest", &report.fields));
-    let rows = || report.asked().into_iter().flat_map(|asked| &asked.rows);
-    let ratios = || rows().flat_map(|(_, cells)| cells).filter_map(|cell| cell.ratio);
+    let [pairs, alone, crowds, fields] = report.asked();
+    let tables = [
+        of_asked("two shapes", pairs),
+        of_asked("one shape", alone),
+        of_asked("a frame of 1,000", crowds),
+        of_asked("objects at rest", fields),
+    ];
+    tables.join("\n") + &footer(report, &report.asked())
+}
+
+/// The same of what stands on a ground.
+pub fn table_of_grounds(report: &Report) -> String {
+    of_asked("contacts of what stands", &report.grounds) + &footer(report, &[&report.grounds])
+}
+
+fn footer(report: &Report, asked: &[&Asked]) -> String {
+    let cells = || asked.iter().flat_map(|asked| &asked.rows).flat_map(|(_, cells)| cells);
+    let ratios = || cells().filter_map(|cell| cell.ratio);
     let faster = ratios().filter(|&ratio| ratio >= 1.0).count();
-    let _ = write!(
-        text,
-        "\nParry takes longer in {faster} of {}; {}, {}, seed {}",
-        ratios().count(),
-        report.machine,
-        report.date,
-        report.seed
-    );
-    text
+    let Report { machine, date, seed, .. } = report;
+    format!("\nParry takes longer in {faster} of {}; {machine}, {date}, seed {seed}", ratios().count())
 }
 
 fn of_asked(of: &str, asked: &Asked) -> String {
