@@ -15,11 +15,14 @@ impl Builder<'_> {
         if section.len() < 2 || spine.len() < 2 {
             return self.empty(node);
         }
-        self.count(node, section.len().saturating_mul(spine.len()))?;
+        let vertices = section.len().saturating_mul(spine.len());
+        let of_sides = (2 * (section.len() - 1)).saturating_mul(spine.len() - 1);
+        self.room_for(node, vertices.saturating_add(of_sides))?;
+        self.count(node, vertices)?;
         let scale = self.for_each(node, "scale", graph.vectors2(node, "scale")?, spine.len(), DVec2::ONE);
         let turn = graph.rotations(node, "orientation")?;
         let turn = self.for_each(node, "orientation", turn, spine.len(), DQuat::IDENTITY);
-        let mut points = Vec::with_capacity(section.len() * spine.len());
+        let mut points = Vec::with_capacity(vertices);
         for (i, plane) in planes(&spine).into_iter().enumerate() {
             let flat = section.iter().map(|&p| p * scale[i]).map(|p| DVec3::new(p.x, 0.0, p.y));
             points.extend(flat.map(|p| spine[i] + plane * (turn[i] * p)));
@@ -73,7 +76,7 @@ impl Builder<'_> {
 
 /// Two triangles for each edge of the cross-section and each step of the spine.
 fn sides(section: usize, spine: usize) -> Vec<[u32; 3]> {
-    let mut triangles = Vec::new();
+    let mut triangles = Vec::with_capacity(2 * (section - 1) * (spine - 1));
     for ring in 0..spine - 1 {
         for corner in 0..section - 1 {
             let a = (ring * section + corner) as u32;

@@ -86,8 +86,14 @@ impl<'a> Builder<'a> {
 
     /// Counts vertices and primitives, or coordinates copied, against the limit.
     pub fn count(&mut self, node: Node, elements: usize) -> Result<(), SceneError> {
-        self.elements = self.elements.saturating_add(elements);
-        if self.elements > ELEMENTS_MAX {
+        self.room_for(node, elements)?;
+        self.elements += elements;
+        Ok(())
+    }
+
+    /// Refuses what would be too many vertices and primitives, before they are made.
+    fn room_for(&self, node: Node, elements: usize) -> Result<(), SceneError> {
+        if self.elements.saturating_add(elements) > ELEMENTS_MAX {
             let message = format!("the scene has more than {ELEMENTS_MAX} vertices and primitives");
             return Err(self.graph.error(node, message));
         }
