@@ -919,6 +919,28 @@ fn hills_hold_up_what_stands_on_them() {
     assert!(10 * upward > 9 * all, "{upward} of {all}");
 }
 
+/// What stands on hills, below others that are within the margin, is not in those.
+#[test]
+fn a_ceiling_within_the_margin_is_not_what_stands_on_the_floor() {
+    let hill = |x: f64, z: f64| 0.01 * (9.0 * x).sin() * (7.0 * z).cos();
+    // Down one sheet, and back by the other.
+    let cave = sheet(42, 21, [false, false], |u, v| {
+        let (x, z) = (4.0 * if u < 0.5 { u } else { 1.0 - u } - 1.0, 2.0 * v - 1.0);
+        DVec3::new(x, hill(x, z) + if u < 0.5 { 0.0 } else { 1.08 }, z)
+    });
+    let cave = cave.shape();
+    let mut rng = seeded(SEED);
+    for i in 0..100 {
+        let turn = DAffine3::from_rotation_y(rng.random_range(0.0..TAU));
+        let place = at(0.0, 0.5, 0.0) * turn;
+        let found = query::contacts(&cube(), &place, &cave, &DAffine3::IDENTITY, &within(0.1)).unwrap();
+        let points = || found.iter().flat_map(|manifold| &manifold.points);
+        assert!(deepest(&found) < 0.0101, "box {i}: {found:#?}");
+        assert!(points().any(|point| point.depth > 0.0 && point.point_on_b.y < 0.1), "box {i}: {found:#?}");
+        assert!(points().any(|point| point.depth < 0.0 && point.point_on_b.y > 1.0), "box {i}: {found:#?}");
+    }
+}
+
 /// A body that stands on a pebble in a groove is held by the walls of that, too.
 #[test]
 fn a_groove_holds_from_both_sides_what_stands_in_it() {

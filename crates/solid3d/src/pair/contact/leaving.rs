@@ -56,16 +56,17 @@ impl Encounter<'_> {
         }
         let at_once = self.standing(&told);
         let late = |&primitive: &u32| {
-            self.with_side(primitive, |side| match at_once {
-                Some((_, out)) if side.is_gentle(out) => Some(self.known(primitive, WayOut::Under(out))),
-                _ => self.way_out(side),
+            self.with_side(primitive, |side| {
+                let gentle = at_once.filter(|&(_, out)| side.is_gentle(out));
+                let under = gentle.map(|(_, out)| self.known(primitive, WayOut::Under(out)));
+                under.filter(|leaving| leaving.meets).or_else(|| self.way_out(side))
             })
         };
         told.extend(waiting.iter().filter_map(late));
         told.sort_by_key(|leaving| leaving.primitive);
         let standing = if waiting.is_empty() { at_once } else { at_once.or_else(|| self.standing(&told)) };
         match standing {
-            Some((depth, out)) => self.stand(&mut told, depth, out),
+            Some((depth, out)) => told.iter_mut().for_each(|leaving| self.stand(leaving, depth, out)),
             None => told.iter_mut().for_each(|leaving| self.look_around(leaving)),
         }
         told
@@ -108,7 +109,7 @@ impl Encounter<'_> {
     }
 
     /// Of what is open the normals of the faces around it come into question.
-    fn look_around(&self, Leaving { primitive, way, .. }: &mut Leaving) {
+    pub fn look_around(&self, Leaving { primitive, way, .. }: &mut Leaving) {
         if let WayOut::Open(own) = *way {
             let shorter = self.with_side(*primitive, |side| side.shorter_around(own));
             *way = shorter.map_or(WayOut::Own(own), WayOut::Across);

@@ -32,19 +32,22 @@ impl Encounter<'_> {
         self.found.iter().all(is_left).then_some((depth, out))
     }
 
-    /// Where the soup stands on a face of the body, that is left along its normal by all whose way would be longer.
-    pub fn stand(&self, told: &mut [Leaving], depth: f64, out: DVec3) {
-        let lowest = self.other.lowest(out);
-        for Leaving { primitive, way, .. } in told {
-            let is_longer = |own: DVec3| {
-                let corners = self.stars.corners(*primitive);
-                (highest(&corners, out) - lowest).min(depth) < self.other.depth(&corners, own) - LEVEL
-            };
-            match *way {
-                WayOut::Open(_) => *way = WayOut::Across(out),
-                WayOut::Own(own) if is_longer(own) => *way = WayOut::Across(out),
-                _ => {}
-            }
+    /// Where the soup stands on a face of the body, that is left along its normal by what would have a longer way, and by what meets it and is open. What is
+    /// only near may be on any side.
+    pub fn stand(&self, leaving: &mut Leaving, depth: f64, out: DVec3) {
+        if !leaving.meets {
+            self.look_around(leaving);
+        }
+        let Leaving { primitive, way, meets } = leaving;
+        let is_longer = |other: DVec3| {
+            let corners = self.stars.corners(*primitive);
+            let across = self.other.depth(&corners, out);
+            (if *meets { across.min(depth) } else { across }) < self.other.depth(&corners, other) - LEVEL
+        };
+        match *way {
+            WayOut::Open(_) => *way = WayOut::Across(out),
+            WayOut::Own(other) | WayOut::Across(other) if is_longer(other) => *way = WayOut::Across(out),
+            _ => {}
         }
     }
 
