@@ -919,6 +919,123 @@ fn hills_hold_up_what_stands_on_them() {
     assert!(10 * upward > 9 * all, "{upward} of {all}");
 }
 
+/// A flat ground of jittered squares, cut along either diagonal, with holes.
+fn ground_with_holes(rng: &mut StdRng) -> (Vec<[DVec3; 3]>, Shape) {
+    const SIDE: u32 = 16;
+    let mut place = |i: u32| f64::from(i) * 0.25 - 2.0 + rng.random_range(-0.08..0.08);
+    let vertices: Vec<DVec3> = (0..=SIDE)
+        .flat_map(|i| (0..=SIDE).map(move |j| (i, j)))
+        .map(|(i, j)| DVec3::new(place(i), 0.0, place(j)))
+        .collect();
+    let mut triangles = Vec::new();
+    for (i, j) in (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))) {
+        let [a, b] = [i * (SIDE + 1) + j, (i + 1) * (SIDE + 1) + j];
+        let square = if rng.random() {
+            [[a, a + 1, b], [b, a + 1, b + 1]]
+        } else {
+            [[a, a + 1, b + 1], [a, b + 1, b]]
+        };
+        if rng.random_bool(0.97) {
+            triangles.extend(square);
+        }
+    }
+    let corners = triangles.iter().map(|triangle| triangle.map(|i| vertices[i as usize])).collect();
+    (corners, Shape::mesh(vertices, triangles).unwrap())
+}
+
+/// What is left of a convex polygon on the left of each edge of a triangle, seen from above (Sutherland and Hodgman).
+fn clipped(polygon: &[DVec3], triangle: &[DVec3; 3]) -> Vec<DVec3> {
+    let mut left = polygon.to_vec();
+    for (from, to) in (0..3).map(|i| (triangle[i], triangle[(i + 1) % 3])) {
+        let inside = |p: DVec3| (to - from).cross(p - from).y;
+        let edges: Vec<_> = left.iter().copied().zip(left.iter().copied().cycle().skip(1)).collect();
+        left.clear();
+        for (p, q) in edges {
+            let (here, there) = (inside(p), inside(q));
+            left.extend((here >= 0.0).then_some(p));
+            left.extend(((here >= 0.0) != (there >= 0.0)).then(|| p.lerp(q, here / (here - there))));
+        }
+    }
+    left
+}
+
+/// Law: what a flat face has in common with a flat ground is what it has with all triangles of that.
+#[test]
+fn a_flat_ground_is_the_sum_of_its_triangles() {
+    const DEPTH: f64 = 0.002;
+    let (mut rng, mut holed, mut whole, cases) = (seeded(SEED), 0, 0, 300);
+    for case in 0..cases {
+        let (triangles, ground) = ground_with_holes(&mut rng);
+        let sides = if case % 3 == 0 { 4 } else { rng.random_range(3..30) };
+        let phase = rng.random_range(0.0..TAU);
+        let corner =
+            |i: u32| DQuat::from_rotation_y(phase - TAU * f64::from(i) / f64::from(sides)) * DVec3::X;
+        let face: Vec<DVec3> = (0..sides).map(corner).collect();
+        let body =
+            Shape::convex_hull(&face.iter().flat_map(|&p| [p, p + DVec3::Y]).collect::<Vec<_>>()).unwrap();
+        let middle = DVec3::new(rng.random_range(-0.8..0.8), -DEPTH, rng.random_range(-0.8..0.8));
+        let tilt = [0.0, 1e-4, 8e-3][case as usize / 3 % 3];
+        let way = DVec3::new(rng.random_range(-1.0..1.0), 0.0, rng.random_range(-1.0..1.0)).normalize();
+        let place = DAffine3::from_rotation_translation(DQuat::from_scaled_axis(way * tilt), middle);
+        // A triangle beside a hole is left aside, if that is shorter.
+        let error = 1.1 * (DEPTH + tilt);
+        let margin = [0.0, 0.002, 0.005][case as usize % 3];
+        let options = within(margin);
+        let on_face = |p: DVec3| {
+            let normal = place.transform_vector3(DVec3::Y);
+            let lift = normal.dot(place.translation - p) / normal.y;
+            p + DVec3::Y * lift
+        };
+        let seen: Vec<DVec3> =
+            face.iter().map(|&p| place.transform_point3(p) * DVec3::new(1.0, 0.0, 1.0)).collect();
+        let expected: Vec<DVec3> = triangles
+            .iter()
+            .flat_map(|triangle| clipped(&seen, triangle))
+            .filter(|&p| on_face(p).y <= margin)
+            .collect();
+        // Turned with all of it, so that normals are rounded.
+        let turn = DQuat::from_scaled_axis(in_cube(&mut rng) * f64::from(case % 2) * PI);
+        let turned = DAffine3::from_rotation_translation(turn, in_cube(&mut rng) * 10.0);
+        let found = query::contacts(&ground, &turned, &body, &(turned * place), &options).unwrap();
+        let back = turned.inverse();
+        let points = found.iter().flat_map(|manifold| &manifold.points);
+        let found: Vec<DVec3> = points.map(|point| back.transform_point3(point.point_on_a)).collect();
+        for k in 0..64 {
+            let along = DQuat::from_rotation_y(TAU * f64::from(k) / 64.0) * DVec3::X;
+            let reach = |points: &[DVec3]| points.iter().map(|p| p.dot(along)).fold(f64::MIN, f64::max);
+            let off = reach(&found) - reach(&expected);
+            assert!(off.abs() < error, "case {case}, {tilt}, {margin}: {off:e} along {along}");
+        }
+        *(if found.len() as u32 == sides { &mut whole } else { &mut holed }) += 1;
+    }
+    println!("{whole} faces are on the ground as a whole, {holed} are not");
+    assert!(whole > cases / 10 && holed > cases / 10, "{whole} {holed}");
+}
+
+/// Two flat grounds of one plane are two regions, each of which ends at the gap between them.
+#[test]
+fn a_gap_parts_a_flat_ground() {
+    let half = |side: f64| {
+        sheet(21, 21, [false, false], move |u, v| {
+            DVec3::new(side * (0.1 + 2.0 * v), 0.0, side * (2.0 * u - 1.0))
+        })
+    };
+    let [left, right] = [half(-1.0), half(1.0)].map(|half| half.shape());
+    let count = left.vertices().unwrap().len() as u32;
+    let vertices: Vec<DVec3> =
+        [&left, &right].iter().flat_map(|half| half.vertices().unwrap().to_vec()).collect();
+    let moved = right.triangles().unwrap().iter().map(|triangle| triangle.map(|i| i + count));
+    let triangles: Vec<_> = left.triangles().unwrap().iter().copied().chain(moved).collect();
+    let ground = Shape::mesh(vertices, triangles).unwrap();
+    let found = contacts(&cube(), &at(0.0, 0.49, 0.0), &ground, &DAffine3::IDENTITY);
+    assert_eq!(found.len(), 2);
+    for manifold in &found {
+        assert_flat(manifold, DVec3::Y, 0.01, 4);
+        let near = manifold.points.iter().filter(|point| (point.point_on_a.x.abs() - 0.1).abs() < 1e-9);
+        assert_eq!(near.count(), 2, "{manifold:#?}");
+    }
+}
+
 /// What stands on hills, below others that are within the margin, is not in those.
 #[test]
 fn a_ceiling_within_the_margin_is_not_what_stands_on_the_floor() {

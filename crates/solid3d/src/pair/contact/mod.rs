@@ -11,6 +11,7 @@
 
 mod ball;
 mod clip;
+mod cover;
 mod difference;
 mod face;
 mod inside;
@@ -431,25 +432,36 @@ impl<'a> Pair<'a> {
         let (seen_a, seen_b) = (Outline::new(face_a, flat), Outline::new(face_b, flat));
         let base = origin - normal * origin.dot(normal);
         let corners = clip(&seen_a.polygon, &seen_b.polygon);
-        let primitives = [a.primitive, b.primitive];
         let mut touches = Vec::with_capacity(corners.len());
         for clip::Clipped { at, origin } in &corners {
-            let at = base + u * at.x + v * at.y;
-            let heights = (a.height(face_a, at, normal, -normal), b.height(face_b, at, normal, normal));
-            let (Some(height_a), Some(height_b)) = heights else { continue };
-            let depth = height_b - height_a;
-            if depth < -self.margin - SAME_DEPTH {
-                continue;
-            }
-            let features = match *origin {
+            let features = || match *origin {
                 Origin::OfA(i) => [seen_a.vertex(i), face_b.feature()],
                 Origin::OfB(j) => [face_a.feature(), seen_b.vertex(j)],
                 Origin::Crossing(i, j) => [seen_a.edge(i), seen_b.edge(j)],
             };
-            let (on_a, on_b) = (at + normal * height_a, at + normal * height_b);
-            touches.push(Touch { on_a, on_b, depth, primitives, features });
+            let at = base + u * at.x + v * at.y;
+            touches.extend(self.touch([(a, face_a), (b, face_b)], normal, at, features));
         }
         touches
+    }
+
+    /// The contact of two faces on the line along a normal through a point of the plane across that through the origin; `None` where one is not on it, or they
+    /// are further apart than the margin.
+    #[inline(always)]
+    fn touch(
+        &self,
+        [(a, face_a), (b, face_b)]: [(&face::Placed, &Face); 2],
+        normal: DVec3,
+        at: DVec3,
+        features: impl FnOnce() -> [Feature; 2],
+    ) -> Option<Touch> {
+        let height_a = a.height(face_a, at, normal, -normal)?;
+        let height_b = b.height(face_b, at, normal, normal)?;
+        let depth = height_b - height_a;
+        let (on_a, on_b) = (at + normal * height_a, at + normal * height_b);
+        let primitives = [a.primitive, b.primitive];
+        let is_within = depth >= -self.margin - SAME_DEPTH;
+        is_within.then(|| Touch { on_a, on_b, depth, primitives, features: features() })
     }
 }
 

@@ -27,7 +27,7 @@ pub(super) struct Side<'a> {
     stars: &'a Stars<'a>,
     pub body: face::Placed<'a>,
     /// Space: common.
-    corners: &'a [DVec3],
+    pub corners: &'a [DVec3],
     other: Other<'a>,
 }
 

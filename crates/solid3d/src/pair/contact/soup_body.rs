@@ -8,6 +8,7 @@ use glam::{DAffine3, DVec3};
 use super::super::reach::core;
 use super::super::table::PlacedConvex;
 use super::super::{Scratch, complex_convex};
+use super::cover::Cover;
 use super::difference::Polytope;
 use super::inside::Inside;
 use super::leaving::{Leaving, WayOut};
@@ -15,7 +16,7 @@ use super::other::Other;
 use super::overhang::Overhang;
 use super::side::Side;
 use super::stars::Stars;
-use super::{Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge};
+use super::{Feature, Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge};
 use crate::shape::{Body, Complex};
 
 /// A soup and a body, of which primitives that meet it are looked at one after the other.
@@ -96,9 +97,11 @@ impl Encounter<'_> {
     /// The contacts of all that was found, and of what the body leans over.
     fn patches(&self) -> Vec<Patch> {
         let leaving = self.leaving();
+        let cover = self.cover(&leaving);
         let mut overhang = Overhang::new(self.stars, self.other, self.met);
-        let patch = |leaving| self.patch(leaving, &mut overhang);
-        let mut patches: Vec<Patch> = leaving.iter().filter_map(patch).collect();
+        let patch = |leaving| self.patch(leaving, cover.as_ref(), &mut overhang);
+        let mut patches = Vec::with_capacity(leaving.len());
+        patches.extend(leaving.iter().filter_map(patch));
         let behind = overhang.found.iter().filter_map(|&(triangle, out)| self.patch_behind(triangle, out));
         let behind: Vec<Patch> = behind.collect();
         if !behind.is_empty() {
@@ -110,9 +113,11 @@ impl Encounter<'_> {
     }
 
     /// The contacts of a primitive; `None` where there are none.
-    fn patch(&self, leaving: &Leaving, overhang: &mut Overhang) -> Option<Patch> {
+    fn patch(&self, leaving: &Leaving, cover: Option<&Cover>, overhang: &mut Overhang) -> Option<Patch> {
         self.with_side(leaving.primitive, |side| {
-            let (mut out, mut touches) = (leaving.way.out(), self.touches(side, &leaving.way));
+            let mut out = leaving.way.out();
+            let one = cover.and_then(|cover| self.touch_under(cover, side, out));
+            let mut touches = one.map_or_else(|| self.touches(side, &leaving.way), |touch| vec![touch]);
             if touches.is_empty()
                 && matches!(leaving.way, WayOut::Under(_))
                 && let Some(Leaving { way: way @ WayOut::Shortest { .. }, .. }) = self.way_out(side)
@@ -122,14 +127,23 @@ impl Encounter<'_> {
             if leaving.meets {
                 let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
                 (if is_told { &self.answered } else { &self.unanswered }).set(true);
-                // A ball that is not stretched meets the triangle in front of its deepest point.
+                // A ball that is not stretched meets the triangle in front of its deepest point, a face that covers what it meets those in front of its corners.
                 let is_round = matches!(self.other.corners, [_]);
-                if !is_round && side.is_own(out) {
+                if !is_round && cover.is_none() && side.is_own(out) {
                     overhang.look(leaving.primitive, out);
                 }
             }
             self.patch_of(side, out, touches)
         })
+    }
+
+    /// One contact of a triangle under a face that covers all, along its own normal, where it has none that tells how far that reaches.
+    fn touch_under(&self, cover: &Cover, side: &Side, out: DVec3) -> Option<Touch> {
+        let corner = cover.over(side.body.primitive, side.corners)?;
+        let (below, at) = (side.body.face(out), side.corners[corner]);
+        let features = || self.in_order(Feature::Vertex(below.corners[corner].vertex), cover.face.feature());
+        let faces = self.in_order((&side.body, &below), (&self.body, &cover.face));
+        self.pair.touch(faces, out * self.sign(), at - out * out.dot(at), features)
     }
 
     /// The contacts of a triangle that the body does not meet, but is behind.

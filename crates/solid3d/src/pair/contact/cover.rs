@@ -1,0 +1,96 @@
+//! A flat surface under a flat face of a body.
+//!
+//! Where all that a body meets is of one plane, with nothing else around it, and each corner of the face is over some of it, what the two have in common has the
+//! outline of the face. Triangles with none of these corners over them say no more than that they are connected: one point of each is enough.
+
+use glam::DVec3;
+use smallvec::SmallVec;
+
+use super::face::{self, Face};
+use super::leaving::{Leaving, WayOut};
+use super::soup_body::Encounter;
+use super::stars::LEVEL;
+
+/// Fewer triangles are each looked at.
+const FEW: usize = 8;
+
+/// A face of a body that is over a flat surface, with all of its corners.
+pub(super) struct Cover {
+    pub face: Face,
+    edges: Edges,
+    /// The primitives under its corners; ascending.
+    under_corners: Vec<u32>,
+}
+
+/// Those of a polygon.
+type Edges = SmallVec<[Edge; 4]>;
+
+/// An edge of a polygon as it is seen along a normal, and the way inward from it, as long as it is.
+struct Edge {
+    from: DVec3,
+    inward: DVec3,
+}
+
+impl Encounter<'_> {
+    /// The face of the body that covers all that it leaves, if one does.
+    pub fn cover(&self, leaving: &[Leaving]) -> Option<Cover> {
+        let first = leaving.first().filter(|_| leaving.len() > FEW)?;
+        let out = first.way.out();
+        let height = |primitive| out.dot(self.stars.corners(primitive)[0]);
+        let plane = height(first.primitive);
+        let is_of_plane = |&Leaving { primitive, ref way, .. }: &Leaving| {
+            matches!(*way, WayOut::Own(other) if other.distance_squared(out) <= LEVEL * LEVEL)
+                && self.stars.is_flat(primitive)
+                && (height(primitive) - plane).abs() <= LEVEL
+        };
+        if !leaving.iter().all(is_of_plane) {
+            return None;
+        }
+        let face = self.body.face(-out);
+        let is_beyond = |corner: &face::Corner| plane - out.dot(corner.point) > LEVEL - self.pair.margin;
+        if !(face.is_aligned() && face.corners.iter().all(is_beyond)) {
+            return None;
+        }
+        let mut is_held = vec![false; face.corners.len()];
+        let mut holds = |&primitive: &u32| {
+            let edges = edges(&self.stars.corners(primitive), out);
+            let mut any = false;
+            for (corner, is_held) in face.corners.iter().zip(&mut is_held) {
+                let holds = have_inside(&edges, corner.point);
+                *is_held |= holds;
+                any |= holds;
+            }
+            any
+        };
+        let primitives = leaving.iter().map(|leaving| leaving.primitive);
+        let under_corners = primitives.filter(&mut holds).collect();
+        let corners: SmallVec<[DVec3; 4]> = face.corners.iter().map(|corner| corner.point).collect();
+        let edges = edges(&corners, out);
+        is_held.iter().all(|&is_held| is_held).then_some(Cover { face, edges, under_corners })
+    }
+}
+
+impl Cover {
+    /// The first corner of a triangle that is under the face, where no corner of the face is over the triangle.
+    pub fn over(&self, primitive: u32, corners: &[DVec3]) -> Option<usize> {
+        let is_inner = self.under_corners.binary_search(&primitive).is_err();
+        let is_under = |corner: &DVec3| have_inside(&self.edges, *corner);
+        is_inner.then(|| corners.iter().position(is_under)).flatten()
+    }
+}
+
+/// Whether no edge of a polygon has a point on its outer side.
+fn have_inside(edges: &[Edge], point: DVec3) -> bool {
+    edges.iter().all(|Edge { from, inward }| {
+        let height = inward.dot(point - from);
+        height >= 0.0 || height * height <= LEVEL * LEVEL * inward.length_squared()
+    })
+}
+
+/// The edges of a convex polygon, whichever way around it goes.
+fn edges(corners: &[DVec3], normal: DVec3) -> Edges {
+    let ends = || corners.iter().zip(corners.iter().cycle().skip(1));
+    let area: f64 = ends().map(|(p, q)| normal.dot((p - corners[0]).cross(q - corners[0]))).sum();
+    let turned = normal * area.signum();
+    ends().map(|(&from, to)| Edge { from, inward: turned.cross(to - from) }).collect()
+}
