@@ -51,22 +51,26 @@ impl Encounter<'_> {
         if !(face.is_aligned() && face.corners.iter().all(is_beyond)) {
             return None;
         }
-        let mut is_held = vec![false; face.corners.len()];
-        let mut holds = |&primitive: &u32| {
+        let under_corners = self.under_corners(&face, leaving, out)?;
+        let corners: SmallVec<[DVec3; 4]> = face.corners.iter().map(|corner| corner.point).collect();
+        Some(Cover { face, edges: edges(&corners, out), under_corners })
+    }
+
+    /// The primitives under the corners of a face; `None` where one has none under it.
+    fn under_corners(&self, face: &Face, leaving: &[Leaving], out: DVec3) -> Option<Vec<u32>> {
+        let mut is_over = vec![false; face.corners.len()];
+        let mut holds_any = |&primitive: &u32| {
             let edges = edges(&self.stars.corners(primitive), out);
             let mut any = false;
-            for (corner, is_held) in face.corners.iter().zip(&mut is_held) {
+            for (corner, is_over) in face.corners.iter().zip(&mut is_over) {
                 let holds = have_inside(&edges, corner.point);
-                *is_held |= holds;
-                any |= holds;
+                (any, *is_over) = (any | holds, *is_over | holds);
             }
             any
         };
         let primitives = leaving.iter().map(|leaving| leaving.primitive);
-        let under_corners = primitives.filter(&mut holds).collect();
-        let corners: SmallVec<[DVec3; 4]> = face.corners.iter().map(|corner| corner.point).collect();
-        let edges = edges(&corners, out);
-        is_held.iter().all(|&is_held| is_held).then_some(Cover { face, edges, under_corners })
+        let under_corners = primitives.filter(&mut holds_any).collect();
+        is_over.iter().all(|&is_over| is_over).then_some(under_corners)
     }
 }
 
