@@ -35,20 +35,17 @@ impl Encounter<'_> {
     /// The face of the body that covers all that it leaves, if one does.
     pub fn cover(&self, leaving: &[Leaving]) -> Option<Cover> {
         let first = leaving.first().filter(|_| leaving.len() > FEW)?;
-        let out = first.way.out();
+        let (out, face) = (first.way.out(), self.body.face(-first.way.out()));
         let height = |primitive| out.dot(self.stars.corners(primitive)[0]);
         let plane = height(first.primitive);
+        let is_beyond = |corner: &face::Corner| plane - out.dot(corner.point) > LEVEL - self.pair.margin;
         let is_of_plane = |&Leaving { primitive, ref way, .. }: &Leaving| {
             matches!(*way, WayOut::Own(other) if other.distance_squared(out) <= LEVEL * LEVEL)
                 && self.stars.is_flat(primitive)
                 && (height(primitive) - plane).abs() <= LEVEL
         };
-        if !leaving.iter().all(is_of_plane) {
-            return None;
-        }
-        let face = self.body.face(-out);
-        let is_beyond = |corner: &face::Corner| plane - out.dot(corner.point) > LEVEL - self.pair.margin;
-        if !(face.is_aligned() && face.corners.iter().all(is_beyond)) {
+        let covers = face.is_aligned() && face.corners.iter().all(is_beyond);
+        if !(covers && leaving.iter().all(is_of_plane)) {
             return None;
         }
         let under_corners = self.under_corners(&face, leaving, out)?;

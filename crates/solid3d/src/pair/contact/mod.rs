@@ -440,7 +440,9 @@ impl<'a> Pair<'a> {
                 Origin::Crossing(i, j) => [seen_a.edge(i), seen_b.edge(j)],
             };
             let at = base + u * at.x + v * at.y;
-            touches.extend(self.touch([(a, face_a), (b, face_b)], normal, at, features));
+            if let Some(touch) = self.touch([(a, face_a), (b, face_b)], normal, at, features) {
+                touches.push(touch);
+            }
         }
         touches
     }
