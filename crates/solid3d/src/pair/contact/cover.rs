@@ -25,7 +25,7 @@ pub(super) struct Cover {
 /// Those of a polygon.
 type Edges = SmallVec<[Edge; 4]>;
 
-/// An edge of a polygon as it is seen along a normal, and the way inward from it, as long as it is.
+/// An edge of a polygon as it is seen along a normal, and a way inward from it.
 struct Edge {
     from: DVec3,
     inward: DVec3,
@@ -80,12 +80,9 @@ impl Cover {
     }
 }
 
-/// Whether no edge of a polygon has a point on its outer side.
+/// Whether no edge of a polygon has a point on its outer side. A corner on an edge may be rounded off both triangles there: then nothing covers.
 fn have_inside(edges: &[Edge], point: DVec3) -> bool {
-    edges.iter().all(|Edge { from, inward }| {
-        let height = inward.dot(point - from);
-        height >= 0.0 || height * height <= LEVEL * LEVEL * inward.length_squared()
-    })
+    edges.iter().all(|Edge { from, inward }| inward.dot(point - from) >= 0.0)
 }
 
 /// The edges of a convex polygon, whichever way around it goes.
