@@ -88,11 +88,8 @@ pub(crate) enum Body<'a> {
         /// What its points are called, when not by their places.
         names: Option<&'a [u32]>,
     },
-    /// A primitive of up to three vertices.
-    Simplex {
-        vertices: &'a [DVec3],
-        indices: &'a [u32],
-    },
+    /// A primitive of up to three vertices: which of the complex shape.
+    Simplex(&'a [u32]),
 }
 
 impl<'a> Body<'a> {
@@ -100,7 +97,7 @@ impl<'a> Body<'a> {
     pub fn of_primitive(complex: &'a Complex, primitive: u32) -> Body<'a> {
         let indices = complex.primitive(primitive);
         if indices.len() <= 3 {
-            return Body::Simplex { vertices: complex.vertices(), indices };
+            return Body::Simplex(indices);
         }
         Body::Hull { hull: complex.hull_of(primitive), names: Some(indices) }
     }

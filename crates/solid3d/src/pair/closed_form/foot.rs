@@ -41,7 +41,7 @@ pub(super) fn extent(body: &Body) -> Option<f64> {
         Body::Cylinder(shape) => shape.radius() + shape.height(),
         Body::Capsule(shape) => shape.radius() + shape.height(),
         Body::Hull { hull, .. } => hull.polytope().farthest(),
-        Body::Simplex { .. } => return None,
+        Body::Simplex(_) => return None,
     })
 }
 
@@ -85,7 +85,7 @@ pub(super) fn of_body(body: &Body, stretch: f64, p: DVec3) -> Option<Foot<DVec3>
         }
         Body::Cone(shape) => turned(p, |q| of_cone(shape.radius() * stretch, half(shape.height()), q)),
         Body::Hull { hull, .. } => of_hull(hull.polytope(), stretch, p)?,
-        Body::Simplex { .. } => return None,
+        Body::Simplex(_) => return None,
     })
 }
 

@@ -117,6 +117,8 @@ pub(super) struct Placed<'a> {
     pub map: &'a Map,
     /// Its number in the shape it is of.
     pub primitive: u32,
+    /// Where the corners of a primitive are; none of a shape that is one body.
+    pub corners: &'a [DVec3],
     /// The unit normal of a triangle that has one, by the order of its corners.
     pub plane: Option<DVec3>,
 }
@@ -124,16 +126,16 @@ pub(super) struct Placed<'a> {
 impl<'a> Placed<'a> {
     /// A shape that is one body.
     pub fn new(body: &'a Body<'a>, map: &'a Map) -> Self {
-        Placed { body, map, primitive: 0, plane: None }
+        Placed { body, map, primitive: 0, corners: &[], plane: None }
     }
 
     /// A primitive of a complex shape, whose corners are there.
-    pub fn of_primitive(body: &'a Body<'a>, primitive: u32, map: &'a Map, corners: &[DVec3]) -> Self {
+    pub fn of_primitive(body: &'a Body<'a>, primitive: u32, map: &'a Map, corners: &'a [DVec3]) -> Self {
         let plane = match *corners {
             [p, q, r] => triangle_normal([p, q, r]),
             _ => None,
         };
-        Placed { body, map, primitive, plane }
+        Placed { body, map, primitive, corners, plane }
     }
 
     pub fn body(&self) -> &'a Body<'a> {
@@ -147,7 +149,7 @@ impl<'a> Placed<'a> {
 
     /// Whether what a face says of the heights is only true at its corners.
     fn is_round(&self) -> bool {
-        !matches!(self.body, Body::Cuboid(_) | Body::Hull { .. } | Body::Simplex { .. })
+        !matches!(self.body, Body::Cuboid(_) | Body::Hull { .. } | Body::Simplex(_))
     }
 
     /// The face that faces a direction best, of those at the furthest point along it. Space of the direction: common.
@@ -160,7 +162,7 @@ impl<'a> Placed<'a> {
             Body::Cylinder(cylinder) => self.cylinder(cylinder, direction, local),
             Body::Capsule(capsule) => self.capsule(capsule, direction, local),
             Body::Hull { hull, names } => self.facet(hull, *names, direction, local),
-            Body::Simplex { vertices, indices } => self.simplex(vertices, indices, direction),
+            Body::Simplex(vertices) => self.simplex(vertices, direction),
         }
     }
 
@@ -217,7 +219,7 @@ impl<'a> Placed<'a> {
             Body::Cone(cone) => cone.chord(&line),
             Body::Cylinder(cylinder) => cylinder.chord(&line),
             Body::Capsule(capsule) => capsule.chord(&line),
-            Body::Cuboid(_) | Body::Hull { .. } | Body::Simplex { .. } => None,
+            Body::Cuboid(_) | Body::Hull { .. } | Body::Simplex(_) => None,
         }?;
         Some([chord.enter.t, chord.leave.t])
     }
@@ -376,13 +378,15 @@ impl<'a> Placed<'a> {
     }
 
     /// Both sides of a triangle are its face. One without area is a segment.
-    fn simplex(&self, vertices: &[DVec3], indices: &[u32], direction: DVec3) -> Face {
-        let mut corners: Corners = indices.iter().map(|&i| self.corner(vertices[i as usize], i)).collect();
+    fn simplex(&self, vertices: &[u32], direction: DVec3) -> Face {
+        let corner = |i: usize| Corner { point: self.corners[i], vertex: vertices[i] };
         if let Some(normal) = self.plane {
+            let corners = smallvec![corner(0), corner(1), corner(2)];
             let cosine = normal.dot(direction);
             let number = u32::from(cosine < 0.0);
             return Face { corners, normal: normal * cosine.signum(), number, cosine: cosine.abs() };
         }
+        let mut corners: Corners = (0..vertices.len()).map(corner).collect();
         if let [p, q, r] = corners[..] {
             let length = |pair: &[Corner; 2]| pair[0].point.distance_squared(pair[1].point);
             let longest = [[p, q], [q, r], [p, r]].into_iter().max_by(|x, y| length(x).total_cmp(&length(y)));

@@ -37,7 +37,7 @@ impl<'a> Inside<'a> {
     pub fn new(body: &Placed<'a>, count: usize) -> Option<Inside<'a>> {
         match *body.body() {
             Body::Hull { hull, .. } => facets(hull, body.map, count).map(Inside::Facets),
-            Body::Simplex { .. } => None,
+            Body::Simplex(_) => None,
             _ => {
                 let at = Similarity::new(body.map.linear())?;
                 Some(Inside::Similar(body.body(), at, body.map.affine.translation))

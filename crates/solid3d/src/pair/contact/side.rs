@@ -26,8 +26,6 @@ const GENTLE_COSINE: f64 = 0.9;
 pub(super) struct Side<'a> {
     stars: &'a Stars<'a>,
     pub body: face::Placed<'a>,
-    /// Space: common.
-    pub corners: &'a [DVec3],
     other: Other<'a>,
 }
 
@@ -51,13 +49,13 @@ impl Corrected {
 }
 
 impl<'a> Side<'a> {
-    pub fn new(stars: &'a Stars<'a>, body: face::Placed<'a>, corners: &'a [DVec3], other: Other<'a>) -> Self {
-        Side { stars, body, corners, other }
+    pub fn new(stars: &'a Stars<'a>, body: face::Placed<'a>, other: Other<'a>) -> Self {
+        Side { stars, body, other }
     }
 
     /// The same as [`meeting_of_body`](Side::meeting_of_body), as far as corners in the body tell it; not of a ball.
     pub fn meeting_of_corners(&self, inside: &Inside, mirrored: bool) -> Option<Meeting> {
-        let &[p, q, r] = self.corners else { return None };
+        let &[p, q, r] = self.body.corners else { return None };
         Some(inside.way(&[p, q, r])?.meeting(mirrored))
     }
 
@@ -68,7 +66,7 @@ impl<'a> Side<'a> {
         cuboid: Option<&Polytope>,
         mirrored: bool,
     ) -> Option<Meeting> {
-        let &[p, q, r] = self.corners else { return None };
+        let &[p, q, r] = self.body.corners else { return None };
         let triangle = [p, q, r];
         let way = match *self.other.corners {
             [center] => way(&triangle, center, self.other.radius)?,
@@ -82,7 +80,7 @@ impl<'a> Side<'a> {
 
     /// How a triangle and a ball that is over it lie to each other along a normal out of it that is its own, or nearly; `None` for others.
     pub fn meeting_of_ball(&self, out: DVec3, mirrored: bool) -> Option<Meeting> {
-        let (&[p, q, r], normal) = (self.corners, self.body.plane?) else { return None };
+        let (&[p, q, r], normal) = (self.body.corners, self.body.plane?) else { return None };
         let tip = self.other.furthest(-out);
         let is_over = face::is_aligned(normal.dot(out).abs());
         let way = is_over.then(|| way_along(&[p, q, r], normal, tip, out))??;
@@ -91,7 +89,7 @@ impl<'a> Side<'a> {
 
     /// Whether the other is a ball, or a point, that is not over the triangle along its normal, nor nearly.
     fn has_ball_beside(&self, normal: DVec3) -> bool {
-        match (self.corners, self.other.corners) {
+        match (self.body.corners, self.other.corners) {
             (&[p, q, r], &[center]) => is_beside(&[p, q, r], normal, center),
             _ => false,
         }
@@ -127,12 +125,12 @@ impl<'a> Side<'a> {
     /// The normal of a triangle, or its opposite: to the side on which more of another soup is.
     fn toward(&self, other: &Stars, normal: DVec3) -> DVec3 {
         let [low, high] = other.extremes(normal);
-        if low + high < 2.0 * normal.dot(self.corners[0]) { -normal } else { normal }
+        if low + high < 2.0 * normal.dot(self.body.corners[0]) { -normal } else { normal }
     }
 
     /// Whether it is a triangle that is larger than another.
     pub fn is_wider(&self, other: &Side) -> bool {
-        let square = |side: &Side| match *side.corners {
+        let square = |side: &Side| match *side.body.corners {
             [p, q, r] => Some((q - p).cross(r - p).length_squared()),
             _ => None,
         };
@@ -158,7 +156,7 @@ impl<'a> Side<'a> {
 
     /// A normal or its opposite: to the side on which the way out is shorter.
     fn shorter(&self, normal: DVec3) -> DVec3 {
-        let [depth, opposite] = self.other.depths(self.corners, normal);
+        let [depth, opposite] = self.other.depths(self.body.corners, normal);
         if depth <= opposite { normal } else { -normal }
     }
 
@@ -175,7 +173,7 @@ impl<'a> Side<'a> {
         if self.stars.orientation != 0.0 {
             return false;
         }
-        let [depth, opposite] = self.other.depths(self.corners, out);
+        let [depth, opposite] = self.other.depths(self.body.corners, out);
         if depth <= opposite {
             return false;
         }
@@ -237,7 +235,8 @@ impl<'a> Side<'a> {
     /// The normal of a face next to the triangle that the surface has where they meet, when the way out along it is shorter
     /// than along the triangle's own: that of the shortest.
     pub fn shorter_around(&self, own: DVec3) -> Option<DVec3> {
-        let Side { stars, corners, other, .. } = *self;
+        let Side { stars, other, .. } = *self;
+        let corners = self.body.corners;
         let vertices = stars.welded(self.body.primitive);
         let mut shortest = Shortest { depth: other.depth(corners, own) - LEVEL, normal: None };
         let hubs: SmallVec<[u32; 3]> =
@@ -314,7 +313,7 @@ mod tests {
                 let out = in_cube(&mut rng).normalize();
                 let [found, expected] = [&with_hubs, &without].map(|stars| {
                     let placed = face::Placed::of_primitive(&body, triangle, &here, &corners);
-                    Side::new(stars, placed, &corners, other).corrected(out, 0.0)
+                    Side::new(stars, placed, other).corrected(out, 0.0)
                 });
                 let (Some(found), Some(expected)) = (found, expected) else {
                     assert!(found.is_none() && expected.is_none(), "case {case}, triangle {triangle}");

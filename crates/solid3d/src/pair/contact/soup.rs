@@ -104,8 +104,8 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         let placed_b = face::Placed::of_primitive(&body_b, j, map_b, &corners_b);
         let other_a = Other { primitive: i, support: &hull_a, map: map_a, corners: &corners_a, radius: 0.0 };
         let other_b = Other { primitive: j, support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
-        let of_a = Side::new(&stars_a, placed_a, &corners_a, other_b);
-        let of_b = Side::new(&stars_b, placed_b, &corners_b, other_a);
+        let of_a = Side::new(&stars_a, placed_a, other_b);
+        let of_b = Side::new(&stars_b, placed_b, other_a);
         let meeting = LazyCell::new(|| match must.then(|| way_of([&corners_a, &corners_b])).flatten() {
             Some(way) => Some(way.meeting(false).touching()),
             None => pair.meeting(&hull_a, &hull_b, must),

@@ -139,8 +139,8 @@ impl Encounter<'_> {
 
     /// One contact of a triangle under a face that covers all, along its own normal, where it has none that tells how far that reaches.
     fn touch_under(&self, cover: &Cover, side: &Side, out: DVec3) -> Option<Touch> {
-        let corner = cover.over(side.body.primitive, side.corners)?;
-        let (below, at) = (side.body.face(out), side.corners[corner]);
+        let corner = cover.over(side.body.primitive, side.body.corners)?;
+        let (below, at) = (side.body.face(out), side.body.corners[corner]);
         let features = || self.in_order(Feature::Vertex(below.corners[corner].vertex), cover.face.feature());
         let faces = self.in_order((&side.body, &below), (&self.body, &cover.face));
         self.pair.touch(faces, out * self.sign(), at - out * out.dot(at), features)
@@ -165,7 +165,7 @@ impl Encounter<'_> {
         let body = Body::of_primitive(self.complex, primitive);
         let corners = self.stars.corners(primitive);
         let placed = face::Placed::of_primitive(&body, primitive, self.stars.map, &corners);
-        ask(&Side::new(self.stars, placed, &corners, self.other))
+        ask(&Side::new(self.stars, placed, self.other))
     }
 
     fn patch_of(&self, side: &Side, out: DVec3, touches: Vec<Touch>) -> Option<Patch> {

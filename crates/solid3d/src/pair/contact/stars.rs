@@ -5,6 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::{DMat3, DVec3};
 use smallvec::SmallVec;
+use solid_convex::simd::each;
 use solid_convex::{Polytope, Support};
 
 use super::face;
@@ -78,7 +79,7 @@ impl<'a> Stars<'a> {
 
     /// Where the corners of a primitive are.
     pub fn corners(&self, primitive: u32) -> SmallVec<[DVec3; 4]> {
-        self.complex.points_of(primitive).map(|point| self.map.point(point)).collect()
+        few(self.complex.primitive(primitive), |vertex| self.place(vertex))
     }
 
     /// Where a vertex is.
@@ -118,11 +119,15 @@ impl<'a> Stars<'a> {
     /// ask for themselves.
     pub fn have(&self, normal: DVec3, tilt: f64, vertices: &[u32]) -> bool {
         let local = self.map.linear().transpose() * normal;
-        let height = |vertex: u32| local.dot(self.complex.vertices()[vertex as usize]);
-        let highest = vertices.iter().map(|&i| height(i)).fold(f64::NEG_INFINITY, f64::max);
+        let heights = few(vertices, |vertex| local.dot(self.complex.vertices()[vertex as usize]));
+        let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let level = LEVEL + if tilt > 0.0 { tilt * self.extent(vertices) } else { 0.0 };
-        let is_touched = |vertex: &u32| height(*vertex) >= highest - level;
-        let touched: SmallVec<[u32; 4]> = vertices.iter().copied().filter(is_touched).collect();
+        let mut touched: SmallVec<[u32; 4]> = SmallVec::new();
+        for (&vertex, height) in vertices.iter().zip(heights) {
+            if height >= highest - level {
+                touched.push(vertex);
+            }
+        }
         let star = (touched.len() == 1).then(|| (touched[0], local));
         if star.is_some() && star == self.last.get() {
             return true;
@@ -331,12 +336,24 @@ impl<'a> Stars<'a> {
 
     /// The vertices that stand for those of a primitive and all at their positions.
     pub fn welded(&self, primitive: u32) -> SmallVec<[u32; 4]> {
-        self.complex.welded(primitive).collect()
+        few(self.complex.primitive(primitive), |vertex| self.complex.topology().welded(vertex))
     }
 
     /// Whether a primitive has a vertex that stands for all at its position.
     pub fn has(&self, primitive: u32, welded: u32) -> bool {
         self.complex.welded(primitive).any(|vertex| vertex == welded)
+    }
+}
+
+/// What there is of each vertex of a primitive, of which most have three.
+#[inline(always)]
+fn few<T: Copy>(vertices: &[u32], of: impl Fn(u32) -> T) -> SmallVec<[T; 4]> {
+    match *vertices {
+        [p, q, r] => {
+            let [p, q, r] = each([p, q, r], of);
+            SmallVec::from_buf_and_len([p, q, r, r], 3)
+        }
+        _ => vertices.iter().map(|&vertex| of(vertex)).collect(),
     }
 }
 
