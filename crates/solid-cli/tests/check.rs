@@ -466,6 +466,18 @@ fn links_lead_to_what_is_read_and_written() {
     assert!(desk.read("-").starts_with("frame,"));
 }
 
+#[test]
+fn a_run_that_fails_on_the_way_leaves_what_was_there() {
+    let placements = "frame,object,tx,ty,tz,qx,qy,qz,qw\n0,b,0,0,0,0,0,0,1\n5,b,1e101,0,0,0,0,0,1\n";
+    let desk =
+        Desk::with_boxes().file("p.csv", placements).file("out.json", "before").file("out.csv", "before");
+    let run = "check a.obj b.obj --placements p.csv --json out.json --csv";
+    desk.run(&format!("{run} out.csv")).assert_fails(&["p.csv:3: ", "1e101"]);
+    assert_eq!(["out.json", "out.csv"].map(|name| desk.read(name)), ["before", "before"]);
+    desk.run(&format!("{run} new.csv")).assert_fails(&["p.csv:3: "]);
+    assert!(!desk.path("new.csv").exists());
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_an_error() {

@@ -1,6 +1,7 @@
 //! Collisions as CSV: a row for each, and one for each pair that is nearer than its clearance.
 
-use std::io::Write;
+use std::cell::Cell;
+use std::io::{self, Write};
 
 use anyhow::Result;
 use csv::Writer;
@@ -32,8 +33,24 @@ pub struct CsvColumns {
 /// `contact_time`, with empty fields for what is not known. Rows with a ray tell of an object that it meets, `a`; others with a
 /// distance are pairs that are near, the rest collisions.
 pub struct CsvRecorder<W: Write> {
-    writer: Writer<W>,
+    writer: Writer<FlushedAtEnd<W>>,
     columns: CsvColumns,
+}
+
+/// Is flushed only where all is written: a [`Writer`] flushes also when it is dropped, as where a run fails on the way.
+struct FlushedAtEnd<W> {
+    output: W,
+    is_finished: Cell<bool>,
+}
+
+impl<W: Write> Write for FlushedAtEnd<W> {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        self.output.write(buffer)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.is_finished.get() { self.output.flush() } else { Ok(()) }
+    }
 }
 
 /// What a row may tell beside the frame and the names.
@@ -50,7 +67,8 @@ struct Known<'a> {
 }
 
 impl<W: Write> CsvRecorder<W> {
-    pub fn new(writer: W, columns: CsvColumns) -> Result<Self> {
+    pub fn new(output: W, columns: CsvColumns) -> Result<Self> {
+        let writer = FlushedAtEnd { output, is_finished: Cell::new(false) };
         let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(writer);
         let distances: &[&str] = if columns.distances { &DISTANCES } else { &[] };
         let rays: &[&str] = if columns.rays { &RAYS } else { &[] };
@@ -115,6 +133,7 @@ impl<W: Write> Recorder for CsvRecorder<W> {
     }
 
     fn finish(&mut self, _summary: &Summary) -> Result<()> {
+        self.writer.get_ref().is_finished.set(true);
         Ok(self.writer.flush()?)
     }
 }
