@@ -61,8 +61,8 @@ Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any char
     origin = [0, 0.5, 2]
     to = [0, 0.5, -2]               # the end of a segment; or, without end: direction = [0, 0, -1]
   A rule for the pair overrides one for an object, which overrides the default; of two objects with rules the first
-  in the scene decides. Of the rules of one level the last that matches holds. A rule for a pair also holds on a root
-  path. --response overrides the default, --clearance the clearance that is not of a pair.
+  in the scene decides. Of the rules of one level the last that matches holds. A response for a pair also holds on a
+  root path. --response overrides the default, --clearance the clearance that is not of a pair.
 
 Clearance (--clearance DISTANCE):
   Reports every pair that comes nearer than DISTANCE, in units of length of the scene (metres in glTF and VRML97), in each
