@@ -25,7 +25,7 @@ pub const PAIRS_MAX_OF_MANY_POINTS: u64 = 100_000;
 const EXIT_STATUS: &str = "\
 Exit status:
   0  no collisions
-  1  collisions, or objects nearer than --clearance
+  1  collisions, or objects nearer than --clearance or the clearances of --rules
   2  bad input or usage, or a warning where --strict is given; one message on standard error says what and where";
 
 const CHECK_NOTES: &str = "\

@@ -172,6 +172,9 @@ impl Source {
         let origin = DVec3::from(origin);
         let ray = match (direction, to) {
             (Some(direction), None) => Ray::new(origin, direction.into()),
+            (None, Some(to)) if origin == to.into() => {
+                return Err(anyhow!("{place}: the end of a ray (to) is its origin"));
+            }
             (None, Some(to)) => Ray::segment(origin, to.into()),
             (Some(_), Some(_)) => {
                 return Err(anyhow!("{place}: a ray has a direction or an end (to), not both"));
@@ -183,7 +186,13 @@ impl Source {
 
     fn fault(&self, error: &toml::de::Error) -> anyhow::Error {
         let place = error.span().map_or_else(|| self.path.display().to_string(), |span| self.place(span));
-        anyhow!("{place}: {}", error.message().replace('\n', "; "))
+        let message = error.message().replace('\n', "; ");
+        let instead = match message.strip_suffix(", expected a sequence") {
+            Some("invalid type: map") => "; rules begin with two brackets, as in [[object]]",
+            Some(_) => "; lists stand in brackets, as in [\"ship*\"]",
+            None => "",
+        };
+        anyhow!("{place}: {message}{instead}")
     }
 
     fn place(&self, span: Range<usize>) -> String {
@@ -304,6 +313,14 @@ mod tests {
             ),
             ("\n[[pair]]\na = \"x\"\nb = \"y\"", "rules.toml:3: a pair needs a response or a clearance"),
             ("object = 3", "rules.toml:1: invalid type: integer"),
+            (
+                "\n[object]\nname = \"x\"",
+                "rules.toml:2: invalid type: map, expected a sequence; rules begin with two brackets, as in [[object]]",
+            ),
+            (
+                "solid = \"x\"",
+                "rules.toml:1: invalid type: string \"x\", expected a sequence; lists stand in brackets, as in [\"ship*\"]",
+            ),
             ("[[ray]]\nname = \"x\"\norigin = [0, 0, 0]", "rules.toml:2: a ray needs a direction or an end"),
             (
                 "[[ray]]\nname = \"x\"\norigin = [0, 0, 0]\nto = [1, 0, 0]\ndirection = [1, 0, 0]",
@@ -312,6 +329,10 @@ mod tests {
             (
                 "[[ray]]\nname = \"x\"\norigin = [0, 0, 0]\ndirection = [0, 0, 0]",
                 "rules.toml:2: ray.direction is (0.0, 0.0, 0.0)",
+            ),
+            (
+                "[[ray]]\nname = \"x\"\norigin = [0, 0, 1]\nto = [0, 0, 1]",
+                "rules.toml:2: the end of a ray (to) is its origin",
             ),
             ("[[ray]]\nname = \"x\"\norigin = [0, 0]\nto = [0, 0, 1]", "rules.toml:3: invalid length 2"),
         ] {
