@@ -143,6 +143,42 @@ fn what_is_flat_is_entered_before_it_is_left() {
     assert_rate("rays", hits, cases);
 }
 
+/// Law: no hit is at a negative zero, which would come before zero: where the ray starts on what it grazes, the first of all hits is the first hit still.
+#[test]
+fn no_hit_is_at_a_negative_zero() {
+    let corners = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z];
+    let shapes = [
+        Shape::sphere(1.0).unwrap(),
+        Shape::cuboid([2.0, 2.0, 2.0]).unwrap(),
+        Shape::cone(1.0, 2.0).unwrap(),
+        Shape::cylinder(1.0, 2.0).unwrap(),
+        Shape::capsule(1.0, 2.0).unwrap(),
+        Shape::convex_hull(&corners).unwrap(),
+        cube(1.0).shape(),
+    ];
+    let (here, steps) = (DAffine3::IDENTITY, [-1.0, -0.0, 0.0, 1.0]);
+    let places = steps.map(|x| steps.map(|y| steps.map(|z| DVec3::new(x, y, z))));
+    let places = || places.iter().flatten().flatten().copied();
+    let mut at_once = 0;
+    for shape in &shapes {
+        for (from, way) in places().flat_map(|from| places().map(move |way| (from, way))) {
+            for options in [BY_DEFAULT, PASSES] {
+                if way == DVec3::ZERO {
+                    continue;
+                }
+                let ray = Ray::new(from, way);
+                let all = query::cast_ray_all(shape, &here, &ray, &options).unwrap();
+                let first = query::cast_ray(shape, &here, &ray, &options).unwrap();
+                let context = || format!("{} {ray:?}: {first:?} {all:?}", shape.kind());
+                assert!(all.iter().chain(&first).all(|hit| hit.t.is_sign_positive()), "{}", context());
+                assert_eq!(first, all.first().copied(), "{}", context());
+                at_once += usize::from(first.is_some_and(|hit| hit.t == 0.0));
+            }
+        }
+    }
+    assert!(at_once > 1000, "{at_once}");
+}
+
 /// Where the ray of local space meets the shape, that of the world meets it, at the same `t`.
 #[test]
 fn a_placement_takes_hits_along() {

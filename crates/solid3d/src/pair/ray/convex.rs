@@ -109,7 +109,7 @@ fn first_of(
     };
     let normal = facing(or_way(placed(normal), ray), back);
     let surface = SurfaceHit { normal, back, primitive: 0, barycentric: None };
-    Some(RayHit { t, point: ray.at(t), surface: Some(surface) })
+    Some(RayHit::on(ray, t, Some(surface)))
 }
 
 /// A normal; of one that vanishes, as of a flattened apex, the way of the ray will do.

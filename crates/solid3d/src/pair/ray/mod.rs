@@ -132,6 +132,14 @@ pub struct RayHit {
     pub surface: Option<SurfaceHit>,
 }
 
+impl RayHit {
+    #[inline(always)]
+    fn on(ray: &Ray, t: f64, surface: Option<SurfaceHit>) -> RayHit {
+        // A negative zero would come before zero in the order of all hits.
+        RayHit { t: t + 0.0, point: ray.at(t), surface }
+    }
+}
+
 /// The surface that a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceHit {
@@ -188,7 +196,7 @@ impl<'r> Hits<'r> {
 
     #[inline]
     fn add(&mut self, t: f64, surface: Option<SurfaceHit>) {
-        let hit = RayHit { t, point: self.ray.at(t), surface };
+        let hit = RayHit::on(self.ray, t, surface);
         match self.wanted {
             // Nothing comes before what has no surface.
             Wanted::First => self.until = if surface.is_some() { t } else { -1.0 },
