@@ -11,6 +11,7 @@ use common::{direction, in_cube, placement, random_mesh, some_shape, torus};
 use glam::{DAffine3, DVec3};
 use rand::Rng;
 use solid_oracle::generate::seeded;
+use solid3d::convex::gjk::CAST_ERROR;
 use solid3d::{Shape, glam, query};
 
 fn moved(at: &DAffine3, motion: DVec3, t: f64) -> DAffine3 {
@@ -123,6 +124,30 @@ fn from_afar_balls_come_as_near() {
         let gap = -2.0 - (motion.x * found.time - far);
         assert!((-1e-14 * far..=4e-10_f64.max(1e-14 * far)).contains(&gap), "{far}: {gap}");
     }
+}
+
+/// What passes a corner more closely than the search for the last step tells is not met from further away than is stated.
+#[test]
+fn what_passes_a_corner_is_met_at_the_stated_gap() {
+    let mut rng = seeded(103);
+    let corners =
+        [[0.75, 0.25, 0.25], [0.0, -0.25, -0.5], [-1.0, -0.75, 0.25], [0.5, 0.0, -0.25]].map(DVec3::from);
+    let (wedge, here) = (Shape::convex_hull(&corners).unwrap(), DAffine3::IDENTITY);
+    let point = Shape::convex_hull(&[DVec3::ZERO]).unwrap();
+    let (mut hits, cases) = (0, 20_000);
+    for case in 0..cases {
+        let (motion, past) =
+            (in_cube(&mut rng), 10f64.powf(rng.random_range(-11.0..-6.0)) * in_cube(&mut rng));
+        let from = DAffine3::from_translation(corners[case % 4] + past - 0.7 * motion);
+        let Some(cast) = query::cast_shape(&point, &from, motion, &wedge, &here, DVec3::ZERO).unwrap() else {
+            continue;
+        };
+        hits += 1;
+        let gap = query::distance(&point, &moved(&from, motion, cast.time), &wedge, &here).unwrap().distance;
+        assert!(gap <= 3.0 * CAST_ERROR, "case {case}: {gap:e}, {cast:?}");
+    }
+    println!("{hits} of {cases} hit");
+    assert!(hits > cases / 5);
 }
 
 /// Two meshes by their trees, and primitive by primitive.

@@ -50,9 +50,8 @@ const CONTACT_GAP: f64 = 4.0;
 /// A gap within which objects may count as touching, though one axis may still be found: [`intersects`] is asked. In the unit of the difference.
 const NEARLY_TOUCHING: f64 = 64.0 * TOUCHING_ERROR;
 
-/// Once the gap was no more than this, in the unit of the difference, a lean search that is not sure ends the cast: the objects are no further apart
-/// than they were, and likely nearer by some digits.
-const SETTLED: f64 = 0.5 * CAST_ERROR;
+/// Where the gap is surely no more than this, in the unit of the difference, a lean search that is not sure ends the cast.
+const SETTLED: f64 = CAST_ERROR;
 
 /// How far apart the points that meet may be, in the unit of the difference.
 const WITNESS_GAP: f64 = 10.0 * CAST_ERROR;
@@ -107,15 +106,15 @@ where
     let at_b = DAffine3 { translation: way, ..*placement_b };
     let at_a = |lambda: f64| DAffine3 { translation: motion * lambda, ..*placement_a };
     let length = way.abs().max_element();
-    // lambda: the time, never past the impact; r: the motion, in the unit of the difference.
-    let (mut lambda, mut normal, mut gap_before) = (0.0, None, f64::INFINITY);
+    // lambda: the time, never past the impact; r: the motion, in the unit of the difference; gap_max: no gap is wider at lambda.
+    let (mut lambda, mut normal, mut gap_max) = (0.0, None, f64::INFINITY);
     let (mut lean, mut known) = (Lean::default(), Known::NONE);
     for _ in 0..STEPS_MAX {
         let at_a = at_a(lambda);
         let clip = Clip { radii, way: length, lean: &mut lean, known: &mut known };
         let clipped = match task::run(&core_a, &at_a, &core_b, &at_b, clip) {
             Ok(clipped) => clipped,
-            Err(Unsure) if gap_before <= SETTLED => break,
+            Err(Unsure) if gap_max <= SETTLED => break,
             Err(Unsure) => {
                 let clip = Clip { radii, way: length, lean: &mut lean, known: &mut known };
                 clip.robustly(&Difference::new(&core_a, &at_a, &core_b, &at_b))
@@ -141,7 +140,9 @@ where
         if next == lambda {
             break;
         }
-        (lambda, gap_before) = (next, gap);
+        // On a step along the surface it may grow, by as much as that is long.
+        gap_max = gap / (1.0 - STEP_TOLERANCE) + r.length() * (next - lambda);
+        lambda = next;
     }
     let Some(normal) = normal else { return at_once(a, placement_a, motion, b, placement_b) };
     let (normal, points) = contact((&core_a, &at_a(lambda)), (&core_b, &at_b), normal, &known);
