@@ -9,7 +9,7 @@
 mod common;
 
 use common::{direction, in_cube, log_uniform, placement, random_complex, random_mesh, rescaled, torus};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{random_flat, random_shape, seeded};
@@ -426,4 +426,18 @@ fn bad_input_is_refused() {
         query::signed_distance(&ball, &flat, DVec3::ZERO),
         Err(Error::SingularPlacement { .. })
     ));
+}
+
+/// A point inside is its own closest one, also under a placement on the way through which most of its digits are lost.
+#[test]
+fn what_is_inside_is_itself_the_closest() {
+    let solid = torus(8, 8, 0.5).shape().into_solid().unwrap();
+    let turn = DMat3::from_axis_angle(DVec3::ONE.normalize(), 0.7);
+    for stretch in [1.0, 1e3, 1e6] {
+        let linear = turn * DMat3::from_diagonal(DVec3::new(stretch, 1.0, 1.0)) * turn;
+        let at = DAffine3 { matrix3: linear, translation: DVec3::new(0.1, 0.2, 0.3) };
+        let point = at.transform_point3(DVec3::new(0.6, 0.05, 0.1));
+        let found = query::closest_point(&solid, &at, point).unwrap();
+        assert_eq!((found.distance, found.point), (0.0, point), "{stretch:e}");
+    }
 }

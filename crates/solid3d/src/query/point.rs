@@ -51,7 +51,8 @@ fn at_length(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<Closes
     let Placed { shape, placement } = placed("placement", shape, placement)?;
     let (of_point, at) = as_shape(point)?;
     let Distance { distance, point_on_a, .. } = distance(shape, placement, of_point, &at)?;
-    Ok(ClosestPoint { point: point_on_a, distance })
+    // What is inside is itself the closest, whatever its coordinates lose on the way to local space and back.
+    Ok(ClosestPoint { point: if distance == 0.0 { point } else { point_on_a }, distance })
 }
 
 /// How often a mesh winds around a point: the generalised winding number. Of a closed mesh that is not solid it is a whole number,
