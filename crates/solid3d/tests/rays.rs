@@ -334,6 +334,31 @@ fn the_normal_of_a_needle_is_on_the_side_that_the_ray_comes_from() {
     assert!(hits > cases / 20);
 }
 
+/// Rays to the tip of a cone, where rounding decides on which side of the axis they meet it.
+#[test]
+fn the_normal_at_a_tip_is_on_the_side_that_the_ray_comes_from() {
+    let mut rng = seeded(76);
+    let options = RayOptions { from_inside: FromInside::Passes, ..BY_DEFAULT };
+    let (mut hits, mut backs, cases) = (0, 0, 40_000);
+    for case in 0..cases {
+        let [radius, height] = std::array::from_fn(|_| rng.random_range(0.05..1.0));
+        let cone = Shape::cone(radius, height).unwrap();
+        let at = if case % 2 == 0 { DAffine3::IDENTITY } else { placement(&mut rng, 1.0) };
+        let (tip, way) = (at.transform_point3(DVec3::Y * height * 0.5), direction(&mut rng));
+        let from = if case % 5 == 0 { 0.0 } else { rng.random_range(0.0..2.0) };
+        let ray = Ray::new(tip - way * from, way);
+        let found = query::cast_ray_all(&cone, &at, &ray, &options).unwrap();
+        hits += usize::from(!found.is_empty());
+        for surface in found.iter().filter_map(|hit| hit.surface) {
+            backs += usize::from(surface.back);
+            let along = surface.normal.dot(way);
+            assert!(along <= 1e-8 && surface.normal.is_normalized(), "case {case}: {along:e}, {found:?}");
+        }
+    }
+    println!("{hits} of {cases} hit, {backs} from behind");
+    assert!(hits > cases / 4 && backs > cases / 10);
+}
+
 /// From so far off that rounding leaves few digits of where a ray meets a shape, normals are unit vectors still.
 #[test]
 fn normals_are_unit_vectors_from_any_distance() {

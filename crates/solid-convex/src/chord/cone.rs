@@ -8,6 +8,9 @@ use crate::Cone;
 /// A cone whose height is this part of its radius, or less, is no higher than the rounding of where a line is closest to its middle: its sides would be lost.
 const FLAT: f64 = 16.0 * f64::EPSILON;
 
+/// A normal that is on the wrong side of a line by the sine of this is of no digits: it is at the apex.
+const AT_APEX: f64 = 1e-9;
+
 /// A quadratic `a t^2 + 2 b t + c`, whose sign says on which side of a double cone a point of a line is.
 struct Quadratic {
     a: f64,
@@ -53,23 +56,27 @@ fn endless_cone(foot: DVec3, along: DVec3, apex: f64, radius: f64, height: f64) 
         c: h * (foot.x * foot.x + foot.z * foot.z) - r * depth * depth,
     };
     let depth_at = |t: f64| depth - t * along.y;
-    // By the way from the axis alone: near to the apex the depth is rounded.
-    let end = |t: f64| {
-        let (x, z) = (foot.x + along.x * t, foot.z + along.z * t);
-        let out = DVec3::new(height * x, radius * (x * x + z * z).sqrt(), height * z);
-        End { t, normal: out.try_normalize().unwrap_or(DVec3::Y) }
+    // By the way from the axis alone: near to the apex the depth is rounded. At it that way is, too: where it leads to the wrong side of the
+    // line, that of the line itself will do, which is `outward` along it.
+    let normal =
+        |x: f64, z: f64| DVec3::new(height * x, radius * (x * x + z * z).sqrt(), height * z).try_normalize();
+    let end = |t: f64, outward: f64| {
+        let there = normal(foot.x + along.x * t, foot.z + along.z * t);
+        let there = there.filter(|normal| normal.dot(along) * outward > -AT_APEX);
+        let normal = there.or_else(|| normal(along.x * outward, along.z * outward)).unwrap_or(DVec3::Y);
+        End { t, normal }
     };
     let [first, last] = quadratic.roots()?;
     if quadratic.a > 0.0 {
         // Flatter than the cone: both ends are in one half of it, or at the apex.
         let below = depth_at(0.5 * first + 0.5 * last) >= 0.0;
-        return below.then(|| Chord { enter: end(first), leave: end(last) });
+        return below.then(|| Chord { enter: end(first, -1.0), leave: end(last, 1.0) });
     }
     // Steeper: from one end on downward; which is endless where the line is parallel to the side, in the upper half.
     Some(if along.y < 0.0 {
-        Chord { enter: end(last), ..Chord::WHOLE }
+        Chord { enter: end(last, -1.0), ..Chord::WHOLE }
     } else {
-        Chord { leave: end(first), ..Chord::WHOLE }
+        Chord { leave: end(first, 1.0), ..Chord::WHOLE }
     })
 }
 
