@@ -22,7 +22,7 @@ pub(crate) struct Facets {
     faces: Vec<Facet>,
     /// The faces at each point.
     at_point: Incidence,
-    /// The extreme points: the faces of a hull that is a segment or a point.
+    /// The extreme points: of a hull that is a segment up to rounding its ends, which are its face, as a point is.
     extreme: Vec<u32>,
 }
 
@@ -62,9 +62,12 @@ impl Facets {
         // In a unit near the extent, so that no product overflows.
         let unit: Vec<DVec3> = points.iter().map(|&p| (p - center) * scale).collect();
         let hull = Hull::of(&unit);
-        let (triangles, extreme) = hull
+        let (triangles, mut extreme) = hull
             .map_or((Vec::new(), Vec::new()), |hull| (hull.triangles().to_vec(), hull.vertices().to_vec()));
         let faces = merged(&unit, &triangles);
+        if faces.is_empty() && extreme.len() > 2 {
+            extreme = ends(&unit, &extreme).to_vec();
+        }
         let at_point = Incidence::of(points.len(), faces.iter().map(|face| face.corners.iter().copied()));
         Facets { faces, at_point, extreme }
     }
@@ -90,10 +93,27 @@ impl Facets {
     }
 }
 
+/// The ends of points that lie on a line up to rounding.
+fn ends(points: &[DVec3], extreme: &[u32]) -> [u32; 2] {
+    let furthest_from = |from: u32| {
+        let distance = |&i: &u32| points[i as usize].distance_squared(points[from as usize]);
+        extreme.iter().copied().max_by(|i, j| distance(i).total_cmp(&distance(j))).expect("there are points")
+    };
+    let end = furthest_from(extreme[0]);
+    let other = furthest_from(end);
+    [end.min(other), end.max(other)]
+}
+
 /// Grows a face from each triangle, the largest first, over its neighbours in the same plane.
 fn merged(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Facet> {
     let corner = |index: u32| points[index as usize];
     let cross = |[i, j, k]: [u32; 3]| (corner(j) - corner(i)).cross(corner(k) - corner(i));
+    let longest_edge = |[i, j, k]: [u32; 3]| {
+        [[i, j], [j, k], [k, i]]
+            .map(|[from, to]| corner(from).distance(corner(to)))
+            .into_iter()
+            .fold(0.0, f64::max)
+    };
     // Of a flat hull a diagonal is run through the same way by a triangle of either side.
     let mut beyond: HashMap<[u32; 2], SmallVec<[usize; 2]>> = HashMap::new();
     for (index, &[i, j, k]) in triangles.iter().enumerate() {
@@ -108,8 +128,11 @@ fn merged(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Facet> {
     let mut taken = vec![false; triangles.len()];
     let mut faces = Vec::new();
     for seed in seeds {
-        // What is left of no area is a sliver within a face, or has no plane.
-        let Some(normal) = cross(triangles[seed]).try_normalize().filter(|_| !taken[seed]) else { continue };
+        // What is left that is no wider than rounding is a sliver within a face, or has no plane.
+        let wide = cross(triangles[seed]).length() > FLATNESS * longest_edge(triangles[seed]);
+        let Some(normal) = cross(triangles[seed]).try_normalize().filter(|_| wide && !taken[seed]) else {
+            continue;
+        };
         let origin = corner(triangles[seed][0]);
         let in_plane = |&index: &u32| normal.dot(corner(index) - origin).abs() <= FLATNESS;
         let (mut stack, mut members) = (vec![seed], Vec::new());
@@ -168,5 +191,9 @@ mod tests {
         let segment = Facets::of(&[x, 2.0 * x, 3.0 * x]);
         assert_eq!((segment.faces.len(), segment.extreme()), (0, [0, 2].as_slice()));
         assert_eq!(Facets::of(&[x, x]).extreme().len(), 1);
+        // On a line up to rounding.
+        let along = DVec3::new(0.1, 0.7, 0.3);
+        let points: Vec<DVec3> = (0..9).map(|i| x * 0.1 + along * f64::from(i) * 0.1).collect();
+        assert_eq!((Facets::of(&points).faces.len(), Facets::of(&points).extreme()), (0, [0, 8].as_slice()));
     }
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
-use solid_oracle::generate::{Pair, Regime, random_pair, seeded};
+use solid_oracle::generate::{Pair, Regime, direction, in_cube, random_pair, seeded};
 use solid3d::query::{self, ContactPoint, Feature};
 use solid3d::{ComplexShapeBuilder, Shape, glam};
 
@@ -252,4 +252,26 @@ fn far_from_local_origins_contacts_are_the_same() {
         assert!((deepest(&here) - deepest(&there)).abs() < 1e-9 || here.is_empty(), "case {case}");
     }
     assert_rate("pairs", hits, cases);
+}
+
+/// A hull of points on a line, which rounding takes off it by turns, touches where it is.
+#[test]
+fn contacts_of_a_hull_that_is_a_line_up_to_rounding_are_on_it() {
+    let mut rng = seeded(SEED + 17);
+    let (ground, slab) = (floor(1), Shape::cuboid([4.0, 1.0, 4.0]).unwrap());
+    let (mut hits, cases) = (0, 8_000);
+    for case in 0..cases {
+        let (from, along) = (in_cube(&mut rng) * DVec3::new(1.0, 0.3, 1.0), direction(&mut rng));
+        let points: Vec<DVec3> = (0..3 + case % 6).map(|i| from + along * (0.25 * i as f64)).collect();
+        let rod = Shape::convex_hull(&points).unwrap();
+        for (shape, there) in [(&ground, at(0.0, 0.0, 0.0)), (&slab, at(0.0, -0.5, 0.0))] {
+            let found = contacts(shape, &there, &rod, &DAffine3::IDENTITY);
+            hits += usize::from(!found.is_empty());
+            for point in found.iter().flat_map(|manifold| &manifold.points) {
+                let off = query::closest_point(&rod, &DAffine3::IDENTITY, point.point_on_b).unwrap().distance;
+                assert!(off < 1e-8, "case {case}: {off:e}, {point:?}");
+            }
+        }
+    }
+    assert_rate("rods", hits, 2 * cases);
 }
