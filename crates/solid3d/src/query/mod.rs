@@ -8,7 +8,7 @@
 //! their local origins), answers are right beyond 1e-12, at any size: scaling everything by a power of two changes no
 //! answer. Within it, shapes may count as touching, and touching shapes intersect. Of shapes for which [`intersects`] is true the
 //! [`distance`](distance()) is 0, always; it may also be 0 for some that it keeps apart. Which of two convex shapes is the first changes no
-//! answer; of meshes it may, where they touch up to the rounding of positions. See
+//! answer but the last digits of numbers; of meshes it may, where they touch up to the rounding of positions. See
 //! [`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR).
 
 mod cast;
