@@ -288,3 +288,20 @@ fn powers_of_two_change_nothing() {
         }
     }
 }
+
+/// Of more pairs of triangles than are told the deepest point is, or the closest ones.
+#[test]
+fn of_a_million_pairs_one_contact_is_told() {
+    let copies = |corners: [DVec3; 3]| Shape::mesh(corners, vec![[0, 1, 2]; 1_100]).unwrap();
+    let wall = copies([DVec3::ZERO, DVec3::X, DVec3::Y]);
+    let fin = copies([DVec3::new(0.2, 0.2, -0.1), DVec3::new(0.3, 0.2, 1.0), DVec3::new(0.2, 0.3, 1.0)]);
+    let [here, away] = [0.0, 0.5].map(|z| DAffine3::from_translation(DVec3::Z * z));
+    let found = only(&fin, &here, &wall, &here);
+    let [deepest] = found.points[..] else { panic!("{found:?}") };
+    let penetration = query::penetration(&fin, &here, &wall, &here).unwrap().unwrap();
+    assert_eq!((deepest.depth, found.normal), (penetration.depth, penetration.normal));
+    assert!(contacts(&fin, &away, &wall, &here).is_empty());
+    let near = query::contacts(&fin, &away, &wall, &here, &within(0.5)).unwrap();
+    assert!((near[0].points[0].depth + 0.4).abs() < 1e-12 && (near[0].normal - DVec3::Z).length() < 1e-9);
+    assert_eq!((near.len(), near[0].points.len()), (1, 1));
+}

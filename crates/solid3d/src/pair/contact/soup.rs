@@ -9,6 +9,7 @@ use std::ops::ControlFlow;
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::simd::level;
+use solid_convex::{Closest, Witness};
 
 use super::super::frame::Frame;
 use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
@@ -22,6 +23,10 @@ use super::stars::Stars;
 use super::{Meeting, Pair, Patch, SAME_DEPTH, Touch, face, leave_across};
 use crate::shape::{Body, Complex};
 use crate::tree::{LeafPairs, bits, pairs_on};
+
+/// The most pairs of primitives whose contacts are told, at up to a kilobyte each. Of more, as where one of many triangles lies in the place of another, or the
+/// margin is as large as both, the deepest point alone is.
+const PAIRS_MAX: usize = 1 << 20;
 
 /// Looks for pairs of primitives that meet; with a margin, those whose boxes are as near.
 struct NearPairs<'s> {
@@ -65,7 +70,7 @@ impl LeafPairs<()> for NearPairs<'_> {
                 }
             }
         }
-        ControlFlow::Continue(())
+        if self.found.len() > PAIRS_MAX { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
@@ -91,8 +96,11 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     rows.iter_mut().for_each(Rows::clear);
     let (soups, maps) = ([a, b], &placing.common);
     let mut near = NearPairs { soups, maps, margin, rows, primitive_tests, found: Vec::new() };
-    let _ = pairs_on(level(), a.tree(), b.tree(), &relative, &|| None, traversal, &mut near);
+    let walk = pairs_on(level(), a.tree(), b.tree(), &relative, &|| None, traversal, &mut near);
     let mut found = near.found;
+    if walk.is_break() {
+        return whole(pair, scratch).or_else(|| nearest(pair, scratch)).into_iter().collect();
+    }
     found.sort_unstable();
     let (stars_a, stars_b) = (Stars::new(a, map_a, found.len()), Stars::new(b, map_b, found.len()));
     let patch = |(primitives, must): ([u32; 2], bool)| {
@@ -195,18 +203,31 @@ fn way_of(corners: [&[DVec3]; 2]) -> Option<Way> {
 /// told.
 pub(super) fn whole(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
     let found = table::penetration(pair.a, pair.b, scratch)?;
-    let [from_a, from_b] = &pair.maps;
-    let touch = Touch {
-        on_a: from_a.point(found.points.on_a),
-        on_b: from_b.point(found.points.on_b),
-        depth: found.depth * pair.frame.scale,
-        primitives: [0, 0],
-        features: [super::Feature::Face(0); 2],
-    };
-    Some(Patch { normal: found.direction, touches: vec![touch], is_inward: false })
+    Some(pair.patch_of_both(pair.placed(found.points), found.direction, found.depth))
+}
+
+/// The closest points of two shapes as wholes that are apart, within the margin.
+fn nearest(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
+    let margin = pair.margin / pair.frame.scale;
+    let Closest { distance, points } = table::closest_within(pair.a, pair.b, margin, scratch)?;
+    let [on_a, on_b] = pair.placed(points);
+    Some(pair.patch_of_both([on_a, on_b], (on_a - on_b).try_normalize()?, -distance))
 }
 
 impl Pair<'_> {
+    /// A point of each shape in the common frame.
+    fn placed(&self, points: Witness) -> [DVec3; 2] {
+        let [from_a, from_b] = &self.maps;
+        [from_a.point(points.on_a), from_b.point(points.on_b)]
+    }
+
+    /// One contact of two shapes as wholes, of a depth in the world.
+    fn patch_of_both(&self, [on_a, on_b]: [DVec3; 2], normal: DVec3, depth: f64) -> Patch {
+        let (primitives, features) = ([0, 0], [super::Feature::Face(0); 2]);
+        let touch = Touch { on_a, on_b, depth: depth * self.frame.scale, primitives, features };
+        Patch { normal, touches: vec![touch], is_inward: false }
+    }
+
     /// The margin in a frame, and in the local spaces of the two.
     pub(super) fn margins(&self, placing: &Frame) -> (f64, [f64; 2]) {
         let margin = self.margin / self.frame.scale * placing.scale;
