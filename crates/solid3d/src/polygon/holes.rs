@@ -3,9 +3,8 @@
 use glam::DVec2;
 
 use super::bridges::{Bridges, Waiting};
-use super::corner::sees;
 use super::error::{PolygonError, Result};
-use super::exact::{segment_contains, segments_cross, segments_overlap, turn};
+use super::exact::{segment_contains, segments_cross, segments_overlap};
 use super::planar;
 
 /// Joins holes to the boundary around them; chains are places in `points`. The result runs as `outer` does.
@@ -60,44 +59,39 @@ fn bounds(chain: &[DVec2]) -> [DVec2; 2] {
 
 /// Whether a hole lies in the polygon; they may touch.
 fn is_inside(hole: &[DVec2], outer: &[DVec2]) -> bool {
-    let is_outside = |x: DVec2| !planar::contains(outer, x);
-    let inside = |x: DVec2| planar::contains_strictly(hole, x);
-    !invades(hole, outer, -planar::sense(outer), &is_outside)
-        && !invades(outer, hole, planar::sense(hole), &inside)
-        && !run_along(hole, outer, -planar::sense(hole) * planar::sense(outer))
+    !invades(hole, outer, false) && !invades(outer, hole, true) && !run_along(hole, outer, false)
 }
 
 /// Whether two holes have more in common than parts of their boundaries.
 fn overlap(a: &[DVec2], b: &[DVec2]) -> bool {
-    invades(a, b, planar::sense(b), &|x| planar::contains_strictly(b, x))
-        || invades(b, a, planar::sense(a), &|x| planar::contains_strictly(a, x))
-        || run_along(a, b, planar::sense(a) * planar::sense(b))
+    invades(a, b, true) || invades(b, a, true) || run_along(a, b, true)
 }
 
-/// Whether an edge of `chain` enters the open region that lies to the left of `border`, when `sense` is 1.
-fn invades(chain: &[DVec2], border: &[DVec2], sense: f64, region: &dyn Fn(DVec2) -> bool) -> bool {
-    if chain.iter().any(|&x| region(x)) {
+/// Whether an edge of `chain` enters the inside of `border`, or the outside. What is all around a doubled edge is on both of its sides.
+fn invades(chain: &[DVec2], border: &[DVec2], inside: bool) -> bool {
+    let is_on_border = |x: DVec2| planar::edges(border).any(|(p, q)| segment_contains(p, q, x));
+    if chain.iter().any(|&x| planar::contains(border, x) == inside && !is_on_border(x)) {
         return true;
     }
     planar::edges(chain).any(|(p, q)| {
         // From either end, when it lies on the border.
         let enters = |from: DVec2, to: DVec2| {
-            (0..border.len()).any(|k| {
-                let n = border.len();
-                let corner @ [_, v, after] = [(k + n - 1) % n, k, (k + 1) % n].map(|i| border[i]);
-                let on_edge = from != v && from != after && segment_contains(v, after, from);
-                (from == v && from != to && sees(corner, to, sense))
-                    || (on_edge && sense * turn(v, after, to) > 0.0)
-            })
+            let is_entered = |side: f64| planar::contains_beside(border, from, to, side) == inside;
+            from != to && is_on_border(from) && is_entered(1.0) && is_entered(-1.0)
         };
         enters(p, q) || enters(q, p) || planar::edges(border).any(|(r, s)| segments_cross(p, q, r, s))
     })
 }
 
-/// Whether edges of two chains overlap that run the same way, when `same` is 1, or opposite ways.
-fn run_along(a: &[DVec2], b: &[DVec2], same: f64) -> bool {
+/// Whether edges of two chains overlap that have the inside of `a` on a side where they have the inside of `b`, or the outside.
+fn run_along(a: &[DVec2], b: &[DVec2], inside: bool) -> bool {
     planar::edges(a).any(|(p, q)| {
-        planar::edges(b).any(|(r, s)| segments_overlap(p, q, r, s) && same * (q - p).dot(s - r) > 0.0)
+        planar::edges(b).filter(|&(r, s)| segments_overlap(p, q, r, s)).any(|(r, s)| {
+            let first = if (q - p).dot(s - r) > 0.0 { r } else { s };
+            let from = if segment_contains(r, s, p) { p } else { first };
+            let beside = |chain: &[DVec2], side: f64| planar::contains_beside(chain, from, q, side);
+            [1.0, -1.0].iter().any(|&side| beside(a, side) && beside(b, side) == inside)
+        })
     })
 }
 

@@ -196,3 +196,54 @@ fn holes_may_touch_between_vertices() {
     let needle = |x: f64| Polygon::new([-1.0, 1.0, 1.0].map(|z| DVec3::new(x, 0.5, 3.0 + z))).unwrap();
     assert_eq!([0.5, 2.0, 3.5].map(|x| corners.intersects(&needle(x))), [true, false, true]);
 }
+
+/// Law: a boundary with slits has the holes that it has without them, also those that touch a slit: at its tip, beside it, or all along. An
+/// antenna is no part of the inside.
+#[test]
+fn holes_may_touch_slits() {
+    let chain = |points: &[(f64, f64)]| -> Vec<DVec3> {
+        raise(&points.iter().map(|&point| DVec2::from(point)).collect::<Vec<_>>())
+    };
+    let with_slit = |to: &[(f64, f64)]| {
+        let back = to.iter().rev().skip(1).copied();
+        let slit: Vec<(f64, f64)> = to.iter().copied().chain(back).chain([(0.0, 2.0)]).collect();
+        chain(&[&[(0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0), (0.0, 2.0)][..], &slit].concat())
+    };
+    let hole = |low: (f64, f64), high: (f64, f64)| chain(&[low, (high.0, low.1), high, (low.0, high.1)]);
+    let slits = [vec![(2.0, 2.0)], vec![(1.0, 2.0), (2.0, 2.0)], vec![(2.0, 2.0), (2.0, 3.0)]];
+    let holes = [
+        hole((2.0, 2.0), (3.0, 3.0)),
+        hole((2.0, 1.0), (3.0, 3.0)),
+        hole((1.0, 1.0), (3.0, 2.0)),
+        hole((0.0, 1.0), (1.0, 2.0)),
+        hole((1.0, 2.0), (2.0, 3.0)),
+    ];
+    for slit in &slits {
+        for hole in &holes {
+            for turned in 0..4 {
+                let (mut outer, mut hole) = (with_slit(slit), hole.clone());
+                hole.rotate_left(turned);
+                if turned % 2 == 1 {
+                    outer.reverse();
+                }
+                let size = (hole[0] - hole[2]).abs();
+                let polygon = Polygon::with_holes(outer, [hole.clone()]);
+                let polygon = polygon.unwrap_or_else(|error| panic!("{error}: {slit:?}, {hole:?}"));
+                let flat: Vec<DVec2> = polygon.vertices().iter().map(|p| p.truncate()).collect();
+                let triangles = polygon.triangles();
+                let areas =
+                    triangles.iter().map(|t| planar::doubled_area(&t.map(|i| flat[i as usize])).abs());
+                assert_eq!([polygon.area(), areas.sum::<f64>() / 2.0], [24.0 - size.x * size.y; 2]);
+            }
+        }
+    }
+    let cut = Polygon::with_holes(with_slit(&slits[0]), [hole((1.0, 1.0), (3.0, 3.0))]);
+    assert_eq!(cut.unwrap_err(), PolygonError::HoleOutside { hole: 0 });
+    let antenna = with_slit(&[(-2.0, 2.0)]);
+    for outside in
+        [hole((-3.0, 2.0), (-2.0, 3.0)), hole((-2.0, 2.0), (0.0, 3.0)), hole((-1.0, 1.0), (0.0, 2.0))]
+    {
+        let apart = Polygon::with_holes(antenna.clone(), [outside]);
+        assert_eq!(apart.unwrap_err(), PolygonError::HoleOutside { hole: 0 });
+    }
+}
