@@ -117,14 +117,14 @@ fn triangles(complex: &Complex, leaf: &Row) -> u32 {
     pieces.fold(triangles, |whole, i| whole & !(1 << i))
 }
 
-/// The penetration of a convex shape and that primitive of a surface, of those to be looked at, which is deepest in it. EPA is asked of a primitive unless another is
+/// That primitive of a surface, of those to be looked at, which is deepest in a convex shape, and their penetration. EPA is asked of a primitive unless another is
 /// deeper than this one can be, by an axis along which a third left the shape.
 pub(super) fn deepest_primitive(
     complex: PlacedComplex,
     convex: PlacedConvex,
     among: impl Fn(u32) -> bool,
     scratch: &mut Scratch,
-) -> Option<Penetration> {
+) -> Option<(u32, Penetration)> {
     let Frame { common: [from_complex, from_convex], scale, .. } = complex_convex::frame(complex, convex);
     let (mut axes, mut deepest) = (Axes::default(), Deepest::default());
     let (has_polygons, mut looked_at) = (complex.0.has_polygons(), BTreeSet::new());
@@ -141,7 +141,7 @@ pub(super) fn deepest_primitive(
             let local = from_convex.matrix3.transpose() * found.direction;
             let end = from_convex.transform_point3(convex.0.support(local));
             axes.keep(found.direction, found.direction.dot(end));
-            deepest.take([i, 0], found.depth * scale, found);
+            deepest.take([i, 0], found.depth * scale, (i, found));
         }
         ControlFlow::Continue(())
     };

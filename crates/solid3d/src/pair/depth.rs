@@ -25,7 +25,7 @@ pub(super) fn complex_convex(
     if a.0.is_solid() {
         return complex_convex::intersects(a, b, scratch).then(|| of_common((&a.0.hull(), a.1), b));
     }
-    deepest_primitive(a, b, |_| true, scratch)
+    deepest_primitive(a, b, |_| true, scratch).map(|(_, found)| found)
 }
 
 pub(super) fn complex_complex(
@@ -40,8 +40,10 @@ pub(super) fn complex_complex(
         return None;
     }
     let deepest = match (a.0.is_solid(), b.0.is_solid()) {
-        (true, false) => deepest_primitive(b, (&a.0.hull(), a.1), |_| true, scratch).mirrored(),
-        (false, true) => deepest_primitive(a, (&b.0.hull(), b.1), |_| true, scratch),
+        (true, false) => {
+            deepest_primitive(b, (&a.0.hull(), a.1), |_| true, scratch).map(|(_, found)| found.mirrored())
+        }
+        (false, true) => deepest_primitive(a, (&b.0.hull(), b.1), |_| true, scratch).map(|(_, found)| found),
         _ => None,
     };
     // Also when rounding keeps the hull of a solid apart from what it meets.
@@ -62,9 +64,27 @@ pub(super) fn of_pairs(
         }
         (Class::Complex(x), Class::Convex(y)) => {
             deepest_primitive((x, a.placement), (y, b.placement), |i| among([i, 0]), scratch)
+                .map(|(_, found)| found)
         }
         (Class::Convex(x), Class::Complex(y)) => {
-            deepest_primitive((y, b.placement), (x, a.placement), |j| among([0, j]), scratch).mirrored()
+            deepest_primitive((y, b.placement), (x, a.placement), |j| among([0, j]), scratch)
+                .map(|(_, found)| found.mirrored())
+        }
+        (Class::Convex(_), Class::Convex(_)) => None,
+    }
+}
+
+/// The primitives that are deepest in each other, of all that intersect; `None` when none does. Solids are taken for surfaces.
+pub(super) fn primitives(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<[u32; 2]> {
+    match (a.shape.class(), b.shape.class()) {
+        (Class::Complex(x), Class::Complex(y)) => {
+            deepest_pair((x, a.placement), (y, b.placement), |_| true, scratch)
+        }
+        (Class::Complex(x), Class::Convex(y)) => {
+            deepest_primitive((x, a.placement), (y, b.placement), |_| true, scratch).map(|(i, _)| [i, 0])
+        }
+        (Class::Convex(x), Class::Complex(y)) => {
+            deepest_primitive((y, b.placement), (x, a.placement), |_| true, scratch).map(|(j, _)| [0, j])
         }
         (Class::Convex(_), Class::Convex(_)) => None,
     }

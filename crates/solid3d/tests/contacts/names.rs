@@ -133,3 +133,39 @@ fn on_the_way_there_are_no_contacts() {
     assert!(collisions[0].manifolds().unwrap().is_empty() && collisions[0].point().is_some());
     assert_eq!((collisions[0].depth(), collisions[0].normal()), (None, None));
 }
+
+/// Law: a point is on the primitive that it names, also where no primitive tells contacts of its own: of a segment that ends just behind the
+/// edges of rough ground.
+#[test]
+fn points_are_on_the_primitives_that_they_name() {
+    let mut rng = seeded(SEED);
+    let (n, here) = (8, DAffine3::IDENTITY);
+    let triangles: Vec<[u32; 3]> = (0..n * n)
+        .map(|cell| cell / n * (n + 1) + cell % n)
+        .flat_map(|i| [[i, i + 1, i + n + 2], [i, i + n + 2, i + n + 1]])
+        .collect();
+    let (mut points, mut of_wholes) = (0, 0);
+    for _ in 0..3_000 {
+        let vertices: Vec<DVec3> = (0..(n + 1) * (n + 1))
+            .map(|i| DVec3::new(f64::from(i / (n + 1)), 2.0 * in_cube(&mut rng).y, f64::from(i % (n + 1))))
+            .collect();
+        let ground = Shape::mesh(vertices.clone(), triangles.clone()).unwrap();
+        let corners = |triangle: u32| triangles[triangle as usize].map(|i| vertices[i as usize]);
+        let [p, q, _] = corners((points % triangles.len()) as u32);
+        let ends = [0, 1].map(|_| 0.5 * (p + q) + 0.2 * in_cube(&mut rng));
+        let segment = Shape::convex_hull(&ends).unwrap();
+        for mirrored in [false, true] {
+            let [a, b] = if mirrored { [&segment, &ground] } else { [&ground, &segment] };
+            let found = query::contacts(a, &here, b, &here, &ContactOptions::default()).unwrap();
+            for point in found.iter().flat_map(|region| &region.points) {
+                let on = if mirrored { point.point_on_b } else { point.point_on_a };
+                let triangle = Shape::convex_hull(&corners(point.primitives[usize::from(mirrored)])).unwrap();
+                let off = query::closest_point(&triangle, &here, on).unwrap().distance;
+                assert!(off < 1e-9, "{off:e}: {point:?}");
+                points += 1;
+                of_wholes += usize::from(point.features == [Feature::Face(0); 2]);
+            }
+        }
+    }
+    assert!(of_wholes > 10, "{of_wholes} of {points}");
+}

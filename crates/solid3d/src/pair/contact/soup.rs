@@ -14,7 +14,7 @@ use solid_convex::{Closest, Witness};
 use super::super::frame::Frame;
 use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
 use super::super::triangle_triangle::Triangle;
-use super::super::{Scratch, table, triangle_triangle};
+use super::super::{Scratch, depth, table, triangle_triangle};
 use super::ball::Way;
 use super::difference::{self, Polytope};
 use super::other::Other;
@@ -200,10 +200,11 @@ fn way_of(corners: [&[DVec3]; 2]) -> Option<Way> {
 }
 
 /// The deepest point of two shapes as wholes: of what is wholly inside a solid, or touches by so little that no pair of primitives
-/// told.
+/// told. What is wholly inside meets no primitive.
 pub(super) fn whole(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
     let found = table::penetration(pair.a, pair.b, scratch)?;
-    Some(pair.patch_of_both(pair.placed(found.points), found.direction, found.depth))
+    let primitives = depth::primitives(pair.a, pair.b, scratch).unwrap_or_default();
+    Some(pair.patch_of_both(primitives, pair.placed(found.points), found.direction, found.depth))
 }
 
 /// The closest points of two shapes as wholes that are apart, within the margin.
@@ -211,7 +212,7 @@ fn nearest(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
     let margin = pair.margin / pair.frame.scale;
     let Closest { distance, points } = table::closest_within(pair.a, pair.b, margin, scratch)?;
     let [on_a, on_b] = pair.placed(points);
-    Some(pair.patch_of_both([on_a, on_b], (on_a - on_b).try_normalize()?, -distance))
+    Some(pair.patch_of_both([0, 0], [on_a, on_b], (on_a - on_b).try_normalize()?, -distance))
 }
 
 impl Pair<'_> {
@@ -222,9 +223,15 @@ impl Pair<'_> {
     }
 
     /// One contact of two shapes as wholes, of a depth in the world.
-    fn patch_of_both(&self, [on_a, on_b]: [DVec3; 2], normal: DVec3, depth: f64) -> Patch {
-        let (primitives, features) = ([0, 0], [super::Feature::Face(0); 2]);
-        let touch = Touch { on_a, on_b, depth: depth * self.frame.scale, primitives, features };
+    fn patch_of_both(
+        &self,
+        primitives: [u32; 2],
+        [on_a, on_b]: [DVec3; 2],
+        normal: DVec3,
+        depth: f64,
+    ) -> Patch {
+        let (depth, features) = (depth * self.frame.scale, [super::Feature::Face(0); 2]);
+        let touch = Touch { on_a, on_b, depth, primitives, features };
         Patch { normal, touches: vec![touch], is_inward: false }
     }
 
