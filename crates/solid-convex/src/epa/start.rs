@@ -104,8 +104,9 @@ where
     // Of what is off the line, however long its points are along it.
     let normal = line.cross(off_line(&r)).normalize();
     let off_plane = |x: &SupportPoint| {
-        let flat = side([p.w, q.w, r.w], x.w) == 0.0;
-        if flat { 0.0 } else { normal.dot(from_p(x)).abs() }
+        // Of points so far off that they have no side, none is known to be.
+        let off = side([p.w, q.w, r.w], x.w).abs() > 0.0;
+        if off { normal.dot(from_p(x)).abs() } else { 0.0 }
     };
     let (mut s, mut height) = furthest(points, off_plane);
     if height <= HEIGHT_ERROR {

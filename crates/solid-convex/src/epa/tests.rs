@@ -503,6 +503,30 @@ fn a_support_mapping_that_lies_is_survived() {
     }
 }
 
+/// Gives points that are far beyond its reach, or no numbers.
+struct Wild(std::sync::atomic::AtomicU32);
+
+impl Support for Wild {
+    fn support(&self, direction: DVec3) -> DVec3 {
+        let call = self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let far = [1.0, 1e110, 1e200, 1e300, f64::INFINITY, f64::NAN]
+            [(call.wrapping_mul(2_654_435_761) >> 16) as usize % 6];
+        placement(call).translation + direction.signum() * far
+    }
+
+    fn reach(&self) -> DVec3 {
+        DVec3::ONE
+    }
+}
+
+#[test]
+fn support_points_beyond_all_numbers_are_survived() {
+    for seed in 0..2_000 {
+        let (wild, other) = (Wild(seed.into()), Wild((7 * seed).into()));
+        penetration(&wild, &DAffine3::IDENTITY, &other, &placement(seed));
+    }
+}
+
 /// What is round about one axis has its depth in a circle of directions at once: that of the half-planes at the axis.
 #[test]
 fn coaxial_shapes_have_the_depth_of_their_profiles() {
