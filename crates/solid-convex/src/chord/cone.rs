@@ -8,8 +8,11 @@ use crate::Cone;
 /// A cone whose height is this part of its radius, or less, is no higher than the rounding of where a line is closest to its middle: its sides would be lost.
 const FLAT: f64 = 16.0 * f64::EPSILON;
 
-/// A normal that is on the wrong side of a line by the sine of this is of no digits: it is at the apex.
-const AT_APEX: f64 = 1e-9;
+/// A normal this near to the apex, in the unit of length, that is on the wrong side of a line by the sine of [`WRONG_SIDE`], is of no digits.
+const AT_APEX: f64 = 1e-6;
+
+/// See [`AT_APEX`].
+const WRONG_SIDE: f64 = 1e-9;
 
 /// A quadratic `a t^2 + 2 b t + c`, whose sign says on which side of a double cone a point of a line is.
 struct Quadratic {
@@ -61,8 +64,9 @@ fn endless_cone(foot: DVec3, along: DVec3, apex: f64, radius: f64, height: f64) 
     let normal =
         |x: f64, z: f64| DVec3::new(height * x, radius * (x * x + z * z).sqrt(), height * z).try_normalize();
     let end = |t: f64, outward: f64| {
-        let there = normal(foot.x + along.x * t, foot.z + along.z * t);
-        let there = there.filter(|normal| normal.dot(along) * outward > -AT_APEX);
+        let (x, z) = (foot.x + along.x * t, foot.z + along.z * t);
+        let is_off_apex = DVec3::new(x, depth_at(t), z).abs().max_element() > AT_APEX;
+        let there = normal(x, z).filter(|normal| is_off_apex || normal.dot(along) * outward > -WRONG_SIDE);
         let normal = there.or_else(|| normal(along.x * outward, along.z * outward)).unwrap_or(DVec3::Y);
         End { t, normal }
     };

@@ -193,3 +193,23 @@ fn special_lines() {
     assert_eq!(Line::new(DVec3::ZERO, DVec3::NAN), None);
     assert_eq!(Line::new(DVec3::INFINITY, DVec3::X), None);
 }
+
+/// Where a line touches the rim of a cone's base the normal is that of the place, up to the rounding of where that is.
+#[test]
+fn normals_at_the_rim_of_a_cone() {
+    let cone = Cone::new(3.0, 4.0).unwrap();
+    for (origin, direction) in [
+        (DVec3::new(-3.0, -2.0, -4.5), DVec3::Z),
+        (DVec3::new(3.0, -2.0, 1.5), DVec3::NEG_Z),
+        (DVec3::new(0.0, -2.0, 3.0), DVec3::X),
+        (DVec3::new(-3.0 + 1e-15, -2.0, -4.5), DVec3::Z),
+        (DVec3::new(3.0 - 1e-15, -2.0, 4.5), DVec3::NEG_Z),
+    ] {
+        let outward = origin.reject_from_normalized(direction).with_y(0.0).normalize();
+        let chord = cone.chord(&Line::new(origin, direction).unwrap()).unwrap();
+        for normal in [chord.enter.normal, chord.leave.normal] {
+            let expected = outward * 0.8 + DVec3::Y * 0.6;
+            assert!((normal - expected).length() < 1e-6, "{origin} {direction}: {normal}");
+        }
+    }
+}
