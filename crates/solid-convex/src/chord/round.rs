@@ -32,11 +32,15 @@ fn endless_cylinder(foot: DVec3, along: DVec3, radius: f64) -> Option<Chord> {
     let squared = radius * radius * across - area * area;
     let half = (squared >= 0.0).then(|| squared.sqrt() / across)?;
     let middle = -(foot.x * along.x + foot.z * along.z) / across;
-    let end = |t: f64| {
-        let normal = DVec3::new(foot.x + t * along.x, 0.0, foot.z + t * along.z);
-        End { t, normal: normal / radius }
-    };
+    let end = |t: f64| on_side(foot, along, radius, t);
     Some(Chord { enter: end(middle - half), leave: end(middle + half) })
+}
+
+/// An end on the side of a cylinder around the axis y.
+#[inline(always)]
+fn on_side(foot: DVec3, along: DVec3, radius: f64, t: f64) -> End {
+    let normal = DVec3::new(foot.x + t * along.x, 0.0, foot.z + t * along.z);
+    End { t, normal: normal / radius }
 }
 
 /// The chord of a cylinder around the axis y.
@@ -88,7 +92,11 @@ impl Capsule {
         let (foot, scale) = line.near(radius + half)?;
         let (radius, half) = (radius * scale, half * scale);
         let end = |center: f64| ball(line, foot, center, radius);
-        let parts = [capped_cylinder(foot, line.along, radius, half), end(half), end(-half)];
+        // Its flat ends are within the balls, but for their rims, where the capsule is as steep as its side.
+        let side = |end: End| on_side(foot, line.along, radius, end.t);
+        let tube = capped_cylinder(foot, line.along, radius, half);
+        let tube = tube.map(|tube| Chord { enter: side(tube.enter), leave: side(tube.leave) });
+        let parts = [tube, end(half), end(-half)];
         line.chord(parts.into_iter().flatten().reduce(Chord::hull), scale)
     }
 }

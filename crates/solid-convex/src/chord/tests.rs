@@ -194,6 +194,22 @@ fn special_lines() {
     assert_eq!(Line::new(DVec3::INFINITY, DVec3::X), None);
 }
 
+/// Where the side of a capsule meets its ends, also where a line only touches it there, the normal is that of the side.
+#[test]
+fn normals_at_the_seams_of_a_capsule() {
+    let capsule = Capsule::new(2.0, 4.0).unwrap();
+    let chord =
+        |origin: DVec3, direction: DVec3| capsule.chord(&Line::new(origin, direction).unwrap()).unwrap();
+    for axis in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z] {
+        for down in [DVec3::Y, DVec3::NEG_Y] {
+            let along_side = chord(axis * 2.0 - down * 7.0, down);
+            assert_eq!([along_side.enter.normal, along_side.leave.normal], [axis; 2], "{axis} {down}");
+            let normal = chord(axis * 5.0 - down * 8.0, down * 2.0 - axis).enter.normal;
+            assert!((normal - axis).length() < 1e-14, "{axis} {down}: {normal}");
+        }
+    }
+}
+
 /// Where a line touches the rim of a cone's base the normal is that of the place, up to the rounding of where that is.
 #[test]
 fn normals_at_the_rim_of_a_cone() {
