@@ -14,6 +14,10 @@ const AT_APEX: f64 = 1e-6;
 /// See [`AT_APEX`].
 const WRONG_SIDE: f64 = 1e-9;
 
+/// By how much, relative to it, the square of the steepness of a line that is parallel to the side may be off. Its `a` is -0: its endless root is then
+/// that of those a little steeper. Where `a` is rounding, so would roots be that are one by it.
+const PARALLEL: f64 = 16.0 * f64::EPSILON;
+
 /// A quadratic `a t^2 + 2 b t + c`, whose sign says on which side of a double cone a point of a line is.
 struct Quadratic {
     a: f64,
@@ -51,10 +55,11 @@ fn endless_cone(foot: DVec3, along: DVec3, apex: f64, radius: f64, height: f64) 
     // In b^2 - a c of a flat cone nearly all would cancel, and its sides be lost.
     let at_apex = foot * along.y + along * depth;
     let turn = foot.x * along.z - foot.z * along.x;
+    let down = r * along.y * along.y;
+    let steeper = down - h * (along.x * along.x + along.z * along.z);
     let quadratic = Quadratic {
         discriminant: h * (r * (at_apex.x * at_apex.x + at_apex.z * at_apex.z) - h * turn * turn),
-        // -0 of a line that is parallel to the side: its endless root is then that of those a little steeper.
-        a: -(r * along.y * along.y - h * (along.x * along.x + along.z * along.z)),
+        a: if steeper.abs() <= PARALLEL * down { -0.0 } else { -steeper },
         b: h * (foot.x * along.x + foot.z * along.z) + r * depth * along.y,
         c: h * (foot.x * foot.x + foot.z * foot.z) - r * depth * depth,
     };

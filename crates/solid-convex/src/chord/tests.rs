@@ -229,3 +229,21 @@ fn normals_at_the_rim_of_a_cone() {
         }
     }
 }
+
+/// A line in a plane that touches a cone, parallel to its side there but beside it, meets nothing, though rounding may tilt it a little.
+#[test]
+fn lines_beside_the_side_of_a_cone_miss() {
+    for (radius, height) in [(2.0, 2.0), (1.0, 2.0), (3.0, 1.0), (0.7, 1.9), (1e-3, 1.0), (1.0, 1e-6)] {
+        let cone = Cone::new(radius, height).unwrap();
+        for i in 0..10_000 {
+            let turn = if i % 2 == 0 { 0.0 } else { 3.0 * spread(i, 0.7549) };
+            let (sin, cos) = turn.sin_cos();
+            let side = DVec3::new(cos * radius, -height, sin * radius);
+            let beside = DVec3::new(-sin, 0.0, cos) * radius * (0.6 + 0.35 * spread(i, 0.5698));
+            let origin = DVec3::Y * 0.5 * height + side * 1.5 * spread(i, 0.3247) + beside;
+            let direction = side * if i % 3 == 0 { 1.0 } else { 1.5 + spread(i, 0.618) };
+            let chord = cone.chord(&Line::new(origin, direction).unwrap());
+            assert_eq!(chord, None, "{radius} {height}, {i}");
+        }
+    }
+}
