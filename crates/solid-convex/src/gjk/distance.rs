@@ -108,7 +108,8 @@ where
         let (core_a, core_b) = (Core::of(a, placement_a), Core::of(b, placement_b));
         of_rounded((&core_a, placement_a), (&core_b, placement_b), bound)?
     };
-    if closest.distance <= bound { Ok(closest) } else { Err(v) }
+    // One that is no number, of support points that are none, is beyond nothing.
+    if closest.distance > bound { Err(v) } else { Ok(closest) }
 }
 
 /// The closest points are sought, up to a bound in world units; from what is known of them.

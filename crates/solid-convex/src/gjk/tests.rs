@@ -601,3 +601,26 @@ fn a_cast_passes_nothing_that_is_flat() {
         }
     }
 }
+
+/// A support mapping that gives no numbers has no distance; nothing panics.
+#[test]
+fn support_points_that_are_no_numbers_are_survived() {
+    struct Nowhere(f64);
+    impl Support for Nowhere {
+        fn support(&self, direction: DVec3) -> DVec3 {
+            direction.signum() * self.0
+        }
+        fn reach(&self) -> DVec3 {
+            DVec3::ONE
+        }
+    }
+    let ball = Sphere::new(1.0).unwrap();
+    let (here, there) = (DAffine3::IDENTITY, DAffine3::from_translation(DVec3::new(3.0, 1.0, 0.0)));
+    for far in [f64::NAN, f64::INFINITY, 1e300] {
+        let nowhere = Nowhere(far);
+        super::closest_points(&nowhere, &here, &ball, &there);
+        super::closest_points(&nowhere, &here, &nowhere, &there);
+        super::Coherent::new(&ball, &nowhere).closest_points(&here, &there);
+        super::cast(&nowhere, &here, DVec3::X, &ball, &there, 1.0);
+    }
+}

@@ -21,7 +21,8 @@ use crate::shape::Shape;
 /// - **A closed convex mesh** counts as the body that it bounds. What is inside one that is not solid, and does not collide with it, is
 ///   near its triangles.
 /// - **Of more than a million pairs of primitives** of two meshes or complex shapes that meet, or are nearer than the margin, as where one lies in its own
-///   place many times over, the one contact of the [`penetration`](super::penetration()), or of the closest points, is told: all would take a gigabyte.
+///   place many times over, the one contact of the [`penetration`](super::penetration()), or of the closest points, which name no
+///   primitives but the first, is told: all would take a gigabyte.
 /// - **In a [solid](Shape::into_solid) mesh** that is not convex, normals point out of it. What is wholly inside has the
 ///   one contact of its [`penetration`](super::penetration()).
 ///
