@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use fearless_simd::{Simd, f64x2, prelude::*};
 use glam::{DAffine3, DMat3, DVec3};
-pub(crate) use solid_convex::direction::{direction, direction_of_nearly_unit, length, length_and_direction};
+pub(crate) use solid_convex::direction::{direction, length, length_and_direction};
 use solid_convex::simd::dispatch;
 use solid_convex::{MAGNITUDE_MAX, MAGNITUDE_MIN, unit_scale};
 

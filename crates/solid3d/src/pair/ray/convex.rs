@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::simd::dispatch;
 use solid_convex::similarity::plain_square;
-use solid_convex::{Chord, Line, Sphere, Support, gjk};
+use solid_convex::{Chord, Line, Support, gjk};
 
 use super::super::closed_form::{to_body, to_world};
 use super::super::reach::{image_reach, world_bounds};
@@ -12,7 +12,7 @@ use super::super::{POINT, Placed};
 use super::{Faces, FromInside, Hits, Ray, RayHit, RayOptions, SurfaceHit, Wanted, facing, world_normal};
 use crate::bounds::Aabb;
 use crate::error::Result;
-use crate::placement::{direction, direction_of_nearly_unit, inverse_linear};
+use crate::placement::{direction, inverse_linear};
 use crate::shape::{Class, Shape};
 use crate::tree::entry;
 
@@ -21,7 +21,7 @@ type End = (f64, DVec3);
 
 /// What a placement leaves what it is, as a ray sees it.
 struct Similar<'a> {
-    body: Placed<'a>,
+    at: &'a DAffine3,
     /// The square of the scale.
     square: f64,
 }
@@ -29,32 +29,22 @@ struct Similar<'a> {
 impl<'a> Similar<'a> {
     /// `None` for what is not a rotation with a uniform scale of a plain size: of a good placement then.
     #[inline(always)]
-    fn new<S: Simd>(simd: S, body: Placed<'a>) -> Option<Self> {
-        Some(Similar { body, square: plain_square(simd, body.placement)? })
+    fn new<S: Simd>(simd: S, at: &'a DAffine3) -> Option<Self> {
+        Some(Similar { at, square: plain_square(simd, at)? })
     }
 
     #[inline(always)]
-    fn chord(&self, ray: &Ray) -> Option<Option<Chord>> {
-        let Placed { shape, placement: at } = self.body;
+    fn chord(&self, shape: &Shape, ray: &Ray) -> Option<Option<Chord>> {
         let inverse = 1.0 / self.square;
-        let to_local = |v: DVec3| to_body(&at.matrix3, v) * inverse;
-        chord(shape, to_local(ray.origin - at.translation), to_local(ray.direction))
+        let to_local = |v: DVec3| to_body(&self.at.matrix3, v) * inverse;
+        chord(shape, to_local(ray.origin - self.at.translation), to_local(ray.direction))
     }
 
-    /// The same of a ball, which has no directions of its own: of the world are those of the chord.
+    /// The world's unit normal, by that in local space; of one that vanishes the way of the ray. What is seen from so far that its digits are few may tell one that
+    /// is not of length one.
     #[inline(always)]
-    fn chord_of_ball(&self, ray: &Ray) -> Option<Option<Chord>> {
-        let Placed { shape, placement: at } = self.body;
-        let radius = shape.ball_radius().filter(|&radius| radius > 0.0)?;
-        let ball = Sphere::new(radius * self.square.sqrt()).ok()?;
-        Some(ball.chord(&Line::new(ray.origin - at.translation, ray.direction)?))
-    }
-
-    /// The world's unit normal, by that in local space, if it does not vanish. What is seen from so far that its digits are few may tell one that is not of length
-    /// one.
-    #[inline(always)]
-    fn normal(&self, local: DVec3) -> Option<DVec3> {
-        direction(to_world(&self.body.placement.matrix3, local))
+    fn normal(&self, local: DVec3, way: DVec3) -> DVec3 {
+        direction(to_world(&self.at.matrix3, local)).unwrap_or_else(|| way.normalize_or_zero())
     }
 }
 
@@ -77,62 +67,39 @@ pub(crate) fn first_hit(
     }
     // What is given back is written once, where the caller has it.
     dispatch!(simd => {
-        let Some(similar) = Similar::new(simd, body) else { return otherwise() };
-        if let Some(chord) = similar.chord_of_ball(ray) {
-            return Ok(first_of(chord, ray, options, direction_of_nearly_unit));
+        let Some(similar) = Similar::new(simd, body.placement) else { return otherwise() };
+        let Some(chord) = similar.chord(body.shape, ray) else { return otherwise() };
+        let Some(Chord { enter, leave }) = chord else { return Ok(None) };
+        if options.from_inside == FromInside::Hits && enter.t <= 0.0 && leave.t >= 0.0 {
+            return Ok(Some(RayHit { t: 0.0, point: ray.origin, surface: None }));
         }
-        let Some(chord) = similar.chord(ray) else { return otherwise() };
-        Ok(first_of(chord, ray, options, |local| similar.normal(local)))
+        let counts = |t: f64, back: bool| options.faces.includes(back) && (0.0..=ray.max).contains(&t);
+        let (t, normal, back) = if counts(enter.t, false) {
+            (enter.t, enter.normal, false)
+        } else if counts(leave.t.max(enter.t), true) {
+            // As [`report`] has it.
+            (leave.t.max(enter.t), leave.normal, true)
+        } else {
+            return Ok(None);
+        };
+        let normal = facing(similar.normal(normal, ray.direction), back);
+        let surface = SurfaceHit { normal, back, primitive: 0, barycentric: None };
+        Ok(Some(RayHit::on(ray, t, Some(surface))))
     })
-}
-
-/// The first hit on what a ray's line has in common with a body; `placed` makes the world's unit normals of those of the chord, if they do not vanish.
-#[inline(always)]
-fn first_of(
-    chord: Option<Chord>,
-    ray: &Ray,
-    options: &RayOptions,
-    placed: impl Fn(DVec3) -> Option<DVec3>,
-) -> Option<RayHit> {
-    let Chord { enter, leave } = chord?;
-    if options.from_inside == FromInside::Hits && enter.t <= 0.0 && leave.t >= 0.0 {
-        return Some(RayHit { t: 0.0, point: ray.origin, surface: None });
-    }
-    let counts = |t: f64, back: bool| options.faces.includes(back) && (0.0..=ray.max).contains(&t);
-    let (t, normal, back) = if counts(enter.t, false) {
-        (enter.t, enter.normal, false)
-    } else if counts(leave.t.max(enter.t), true) {
-        // As [`report`] has it.
-        (leave.t.max(enter.t), leave.normal, true)
-    } else {
-        return None;
-    };
-    let normal = facing(or_way(placed(normal), ray), back);
-    let surface = SurfaceHit { normal, back, primitive: 0, barycentric: None };
-    Some(RayHit::on(ray, t, Some(surface)))
-}
-
-/// A normal; of one that vanishes, as of a flattened apex, the way of the ray will do.
-#[inline(always)]
-fn or_way(normal: Option<DVec3>, ray: &Ray) -> DVec3 {
-    normal.unwrap_or_else(|| ray.direction.normalize_or_zero())
 }
 
 /// All hits that are wanted on a convex shape.
 pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
     let (at, ray) = (placed.placement, hits.ray);
-    let told = if let Some(similar) = dispatch!(simd => Similar::new(simd, placed)) {
-        match similar.chord_of_ball(ray) {
-            Some(chord) => {
-                chord_hits(Some(chord), hits, |normal| or_way(direction_of_nearly_unit(normal), ray))
-            }
-            None => chord_hits(similar.chord(ray), hits, |local| or_way(similar.normal(local), ray)),
-        }
+    let told = if let Some(similar) = dispatch!(simd => Similar::new(simd, at)) {
+        chord_hits(similar.chord(placed.shape, ray), hits, |local| similar.normal(local, ray.direction))
     } else {
         let to_local = inverse_linear(&at.matrix3);
         let origin = to_local * (ray.origin - at.translation);
-        let chord = chord(placed.shape, origin, to_local * ray.direction);
-        chord_hits(chord, hits, |local| or_way(world_normal(&to_local, local), ray))
+        // A normal of a flattened apex may vanish; then the way of the ray will do.
+        chord_hits(chord(placed.shape, origin, to_local * ray.direction), hits, |local| {
+            world_normal(&to_local, local).unwrap_or_else(|| ray.direction.normalize_or_zero())
+        })
     };
     if !told {
         hull_hits(shape, at, 0, || into_world_box(placed, ray), hits);
