@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 use solid_convex::{Closest, Penetration, Support, Witness, gjk, unit_scale};
 
-use super::depth::{of_common, of_pairs};
+use super::depth::{of_common, of_deepest};
 use super::table::{PlacedConvex, axis, closest, closest_within, penetration};
 use super::{Placed, Scratch, meeting_primitives};
 use crate::shape::Class;
@@ -46,7 +46,8 @@ fn of_surfaces(before: [Placed; 2], pairs: &[[u32; 2]], scratch: &mut Scratch) -
     if pairs.is_empty() {
         return None;
     }
-    if let Some(deepest) = of_pairs(before, pairs, scratch) {
+    let is_among = |pair| pairs.binary_search(&pair).is_ok();
+    if let Some((_, deepest)) = of_deepest(before, is_among, scratch) {
         return Some(deep(deepest));
     }
     let (found, pair) = nearest(before, pairs)?;

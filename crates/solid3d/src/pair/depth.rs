@@ -50,41 +50,24 @@ pub(super) fn complex_complex(
     deepest.or_else(|| Some(of_common((&a.0.hull(), a.1), (&b.0.hull(), b.1))))
 }
 
-/// Of those pairs of primitives, in ascending order, that intersect, the deepest; `None` when none does. Solids are taken for surfaces.
-pub(super) fn of_pairs(
+/// Of the pairs of primitives that are to be looked at and intersect the deepest, and their penetration; `None` when none does. Solids are taken for surfaces.
+pub(super) fn of_deepest(
     [a, b]: [Placed; 2],
-    pairs: &[[u32; 2]],
+    is_among: impl Fn([u32; 2]) -> bool,
     scratch: &mut Scratch,
-) -> Option<Penetration> {
-    let among = |pair| pairs.binary_search(&pair).is_ok();
+) -> Option<([u32; 2], Penetration)> {
     match (a.shape.class(), b.shape.class()) {
         (Class::Complex(x), Class::Complex(y)) => {
             let (x, y) = ((x, a.placement), (y, b.placement));
-            deepest_pair(x, y, among, scratch).map(|pair| of_primitives(x, y, pair))
+            deepest_pair(x, y, is_among, scratch).map(|pair| (pair, of_primitives(x, y, pair)))
         }
         (Class::Complex(x), Class::Convex(y)) => {
-            deepest_primitive((x, a.placement), (y, b.placement), |i| among([i, 0]), scratch)
-                .map(|(_, found)| found)
+            deepest_primitive((x, a.placement), (y, b.placement), |i| is_among([i, 0]), scratch)
+                .map(|(i, found)| ([i, 0], found))
         }
         (Class::Convex(x), Class::Complex(y)) => {
-            deepest_primitive((y, b.placement), (x, a.placement), |j| among([0, j]), scratch)
-                .map(|(_, found)| found.mirrored())
-        }
-        (Class::Convex(_), Class::Convex(_)) => None,
-    }
-}
-
-/// The primitives that are deepest in each other, of all that intersect; `None` when none does. Solids are taken for surfaces.
-pub(super) fn primitives(a: Placed, b: Placed, scratch: &mut Scratch) -> Option<[u32; 2]> {
-    match (a.shape.class(), b.shape.class()) {
-        (Class::Complex(x), Class::Complex(y)) => {
-            deepest_pair((x, a.placement), (y, b.placement), |_| true, scratch)
-        }
-        (Class::Complex(x), Class::Convex(y)) => {
-            deepest_primitive((x, a.placement), (y, b.placement), |_| true, scratch).map(|(i, _)| [i, 0])
-        }
-        (Class::Convex(x), Class::Complex(y)) => {
-            deepest_primitive((y, b.placement), (x, a.placement), |_| true, scratch).map(|(j, _)| [0, j])
+            deepest_primitive((y, b.placement), (x, a.placement), |j| is_among([0, j]), scratch)
+                .map(|(j, found)| ([0, j], found.mirrored()))
         }
         (Class::Convex(_), Class::Convex(_)) => None,
     }

@@ -38,7 +38,7 @@ mod ways;
 
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
-use solid_convex::{Penetration, Support, epa, gjk};
+use solid_convex::{Penetration, Support, Witness, epa, gjk};
 
 use super::approach::is_solid;
 use super::depth::of_common;
@@ -296,6 +296,12 @@ impl<'a> Pair<'a> {
         Pair { a, b, frame, maps, margin }
     }
 
+    /// A point of each shape in the common frame.
+    fn placed(&self, points: Witness) -> [DVec3; 2] {
+        let [from_a, from_b] = &self.maps;
+        [from_a.point(points.on_a), from_b.point(points.on_b)]
+    }
+
     /// How the two spaces lie to each other, as it is seen where it is decided which primitives meet, here as everywhere.
     fn placing(&self) -> Frame {
         let Pair { a, b, .. } = self;
@@ -361,9 +367,8 @@ impl<'a> Pair<'a> {
     /// The same by how deep they are in each other, if they are.
     fn meeting_by(&self, found: Option<Penetration>, a: &dyn Support, b: &dyn Support) -> Option<Meeting> {
         let (at_a, at_b) = (self.a.placement, self.b.placement);
-        let [from_a, from_b] = &self.maps;
         if let Some(found) = found {
-            let (on_a, on_b) = (from_a.point(found.points.on_a), from_b.point(found.points.on_b));
+            let [on_a, on_b] = self.placed(found.points);
             let depth = found.depth * self.frame.scale;
             return Some(Meeting { normal: found.direction, tilt: 0.0, depth, on_a, on_b });
         }
@@ -375,7 +380,7 @@ impl<'a> Pair<'a> {
         if distance > self.margin {
             return None;
         }
-        let (on_a, on_b) = (from_a.point(closest.points.on_a), from_b.point(closest.points.on_b));
+        let [on_a, on_b] = self.placed(closest.points);
         let between = (on_a - on_b).try_normalize();
         // Each end of the way is off by that; unit vectors never by more than 2.
         let tilt = (2.0 * self.frame.rounding / distance).min(2.0);

@@ -8,9 +8,10 @@ use std::ops::ControlFlow;
 
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
+use solid_convex::Closest;
 use solid_convex::simd::level;
-use solid_convex::{Closest, Witness};
 
+use super::super::approach::is_solid;
 use super::super::frame::Frame;
 use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
 use super::super::triangle_triangle::Triangle;
@@ -202,8 +203,16 @@ fn way_of(corners: [&[DVec3]; 2]) -> Option<Way> {
 /// The deepest point of two shapes as wholes: of what is wholly inside a solid, or touches by so little that no pair of primitives
 /// told. What is wholly inside meets no primitive.
 pub(super) fn whole(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
-    let found = table::penetration(pair.a, pair.b, scratch)?;
-    let primitives = depth::primitives(pair.a, pair.b, scratch).unwrap_or_default();
+    let shapes = [pair.a, pair.b];
+    let deepest = depth::of_deepest(shapes, |_| true, scratch);
+    // A solid is as deep as its hull.
+    let (primitives, found) = match deepest {
+        Some(deepest) if !shapes.iter().any(is_solid) => deepest,
+        _ => {
+            let primitives = deepest.map(|(primitives, _)| primitives).unwrap_or_default();
+            (primitives, table::penetration(pair.a, pair.b, scratch)?)
+        }
+    };
     Some(pair.patch_of_both(primitives, pair.placed(found.points), found.direction, found.depth))
 }
 
@@ -216,12 +225,6 @@ fn nearest(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
 }
 
 impl Pair<'_> {
-    /// A point of each shape in the common frame.
-    fn placed(&self, points: Witness) -> [DVec3; 2] {
-        let [from_a, from_b] = &self.maps;
-        [from_a.point(points.on_a), from_b.point(points.on_b)]
-    }
-
     /// One contact of two shapes as wholes, of a depth in the world.
     fn patch_of_both(
         &self,
