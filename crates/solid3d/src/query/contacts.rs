@@ -17,7 +17,8 @@ use crate::shape::Shape;
 ///   greatest depth is the penetration depth, up to 1e-6 of it and 1e-9 of the size of the data.
 /// - **Meshes and complex shapes** have a region for each part of the surface that is connected and has one normal there,
 ///   up to 0.001 radians. An edge or a corner inside the surface gives no normals of its own unless the surface is convex there: a
-///   flat floor has only its own normal, however it is divided, and only the corners of the whole region.
+///   flat floor has only its own normal, however it is divided, and only the corners of the whole region. Wherever surfaces meet there is a contact: where no
+///   primitive of a place tells one, it is that across an edge beside it, or of the primitive that is deepest; but none that leads into a solid.
 /// - **A closed convex mesh** counts as the body that it bounds. What is inside one that is not solid, and does not collide with it, is
 ///   near its triangles.
 /// - **Of more than a million pairs of primitives** of two meshes or complex shapes that meet, or are nearer than the margin, as where one lies in its own

@@ -11,6 +11,7 @@ mod common;
 mod ground;
 mod margins;
 mod names;
+mod places;
 mod surfaces;
 
 use common::sheet;

@@ -134,7 +134,7 @@ fn on_the_way_there_are_no_contacts() {
     assert_eq!((collisions[0].depth(), collisions[0].normal()), (None, None));
 }
 
-/// Law: a point is on the primitive that it names, also where no primitive tells contacts of its own: of a segment that ends just behind the
+/// Law: a point is on the primitive that it names, also where no primitive is left along a normal of its own: by a segment that ends just behind the
 /// edges of rough ground.
 #[test]
 fn points_are_on_the_primitives_that_they_name() {
@@ -144,7 +144,7 @@ fn points_are_on_the_primitives_that_they_name() {
         .map(|cell| cell / n * (n + 1) + cell % n)
         .flat_map(|i| [[i, i + 1, i + n + 2], [i, i + n + 2, i + n + 1]])
         .collect();
-    let (mut points, mut of_wholes) = (0, 0);
+    let mut points = 0;
     for _ in 0..3_000 {
         let vertices: Vec<DVec3> = (0..(n + 1) * (n + 1))
             .map(|i| DVec3::new(f64::from(i / (n + 1)), 2.0 * in_cube(&mut rng).y, f64::from(i % (n + 1))))
@@ -163,9 +163,8 @@ fn points_are_on_the_primitives_that_they_name() {
                 let off = query::closest_point(&triangle, &here, on).unwrap().distance;
                 assert!(off < 1e-9, "{off:e}: {point:?}");
                 points += 1;
-                of_wholes += usize::from(point.features == [Feature::Face(0); 2]);
             }
         }
     }
-    assert!(of_wholes > 10, "{of_wholes} of {points}");
+    assert!(points > 2_000, "{points}");
 }

@@ -117,7 +117,7 @@ impl Encounter<'_> {
     }
 
     /// How a primitive and the body lie to each other; `None` when they are further apart than the margin.
-    fn meeting(&self, side: &Side) -> Option<Meeting> {
+    pub fn meeting(&self, side: &Side) -> Option<Meeting> {
         let Encounter { pair, mirrored, .. } = *self;
         // Without a margin all of them are known to meet the body.
         let must = pair.margin == 0.0;

@@ -23,6 +23,7 @@ mod other;
 mod outline;
 mod overhang;
 mod own_feature;
+mod places;
 mod planes;
 mod region;
 mod ridge;
@@ -159,6 +160,11 @@ impl Meeting {
     fn within(self, margin: f64) -> Option<Meeting> {
         (self.depth >= -margin).then_some(self)
     }
+}
+
+/// Of what lies to each other in some ways the deepest, the first of several.
+fn deepest<T>(meetings: impl Iterator<Item = (T, Meeting)>) -> Option<(T, Meeting)> {
+    meetings.reduce(|most, other| if other.1.depth > most.1.depth { other } else { most })
 }
 
 /// A pair in its common frame.

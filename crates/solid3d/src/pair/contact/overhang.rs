@@ -17,8 +17,8 @@ pub(super) struct Overhang<'a> {
     looked_at: BTreeSet<u32>,
     /// The plane of a triangle that the body meets in front of where it is deepest, by its normal and its height along that: the last one.
     covered: Option<(DVec3, f64)>,
-    /// What was found: triangles that the body does not meet, each with the normal along which it leaves them.
-    pub found: Vec<(u32, DVec3)>,
+    /// What was found: a triangle that the body meets, the one that it does not meet and leans over beside that, and the normal along which it leaves both.
+    pub found: Vec<(u32, u32, DVec3)>,
 }
 
 impl<'a> Overhang<'a> {
@@ -50,7 +50,7 @@ impl<'a> Overhang<'a> {
         if triangle == first {
             self.covered = Some((out, height));
         } else {
-            self.found.push((triangle, out));
+            self.found.push((first, triangle, out));
         }
     }
 }

@@ -38,8 +38,12 @@ struct Look {
 
 /// The shortest way of a body out of a surface along a normal that this has at an edge of one of some triangles, between those of the two that meet there,
 /// and the triangle. Cost: five support points for each edge, and fifty where there is such a way.
-pub(super) fn shortest(stars: &Stars, body: &Other, triangles: &[u32]) -> Option<(u32, Way)> {
-    let edges = triangles.iter().filter_map(|&triangle| Edge::all(stars, triangle)).flatten();
+pub(super) fn shortest(
+    stars: &Stars,
+    body: &Other,
+    triangles: impl Iterator<Item = u32>,
+) -> Option<(u32, Way)> {
+    let edges = triangles.filter_map(|triangle| Edge::all(stars, triangle)).flatten();
     let ways = edges.flat_map(|edge| {
         let of_edge = edge.arcs(stars, body).into_iter().filter_map(move |arc| edge.way(arc, body));
         of_edge.map(move |way| (edge.triangle, way))

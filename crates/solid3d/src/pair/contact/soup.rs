@@ -19,9 +19,10 @@ use super::super::{Scratch, depth, table, triangle_triangle};
 use super::ball::Way;
 use super::difference::{self, Polytope};
 use super::other::Other;
+use super::places::{told, untold};
 use super::side::{Corrected, Side};
 use super::stars::Stars;
-use super::{Meeting, Pair, Patch, SAME_DEPTH, Touch, face, leave_across};
+use super::{Meeting, Pair, Patch, SAME_DEPTH, Touch, deepest, face, leave_across};
 use crate::shape::{Body, Complex};
 use crate::tree::{LeafPairs, bits, pairs_on};
 
@@ -92,7 +93,6 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     let (margin, [in_a, in_b]) = pair.margins(&placing);
     relative.slack_in_a += in_a;
     relative.slack_in_b += in_b;
-    let [map_a, map_b] = &pair.maps;
     let Scratch { traversal, rows, primitive_tests, .. } = scratch;
     rows.iter_mut().for_each(Rows::clear);
     let (soups, maps) = ([a, b], &placing.common);
@@ -103,30 +103,87 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
         return whole(pair, scratch).or_else(|| nearest(pair, scratch)).into_iter().collect();
     }
     found.sort_unstable();
-    let (stars_a, stars_b) = (Stars::new(a, map_a, found.len()), Stars::new(b, map_b, found.len()));
-    let patch = |(primitives, must): ([u32; 2], bool)| {
-        let [i, j] = primitives;
-        let (hull_a, hull_b) = (a.primitive_hull(i), b.primitive_hull(j));
-        let (body_a, body_b) = (Body::of_primitive(a, i), Body::of_primitive(b, j));
+    let stars = [&Stars::new(a, &pair.maps[0], found.len()), &Stars::new(b, &pair.maps[1], found.len())];
+    let soups = Soups { pair, stars };
+    let mut patches: Vec<Patch> =
+        found.iter().filter_map(|&(primitives, must)| soups.patch(primitives, must)).collect();
+    let met: Vec<[u32; 2]> =
+        found.iter().filter(|(_, must)| *must).map(|(primitives, _)| *primitives).collect();
+    let places = untold([Some(a), Some(b)], &met, &told(&patches, []));
+    if !places.is_empty() {
+        patches.extend(places.iter().filter_map(|place| soups.deepest(place)));
+        patches.sort_by_key(|patch| patch.touches[0].primitives); // stable
+    }
+    patches
+}
+
+/// Two soups, of which pairs of primitives are looked at one after the other.
+struct Soups<'a> {
+    pair: &'a Pair<'a>,
+    stars: [&'a Stars<'a>; 2],
+}
+
+impl Soups<'_> {
+    /// The contacts of two primitives, along a normal that the surfaces have; `None` where there are none. `must` says that they are known to meet.
+    fn patch(&self, primitives: [u32; 2], must: bool) -> Option<Patch> {
+        self.with_sides(primitives, must, |sides, meeting| {
+            let (normal, touches) = match level_touches(self.pair, sides, must, meeting) {
+                Some(found) => found,
+                None => touches(self.pair, sides, &meeting()?)?,
+            };
+            patch_of(sides, normal, touches)
+        })
+    }
+
+    /// The contacts of those of some pairs that are deepest in each other; they do not leave a solid for its inside.
+    fn deepest(&self, pairs: &[[u32; 2]]) -> Option<Patch> {
+        let meeting = |&primitives: &[u32; 2]| {
+            self.with_sides(primitives, true, |sides, meeting| {
+                let meeting = meeting().filter(|meeting| !is_inward(sides, meeting.normal))?;
+                Some((primitives, meeting))
+            })
+        };
+        let (primitives, meeting) = deepest(pairs.iter().filter_map(meeting))?;
+        self.with_sides(primitives, true, |sides, _| {
+            let touches = self.pair.touches(&sides[0].body, &sides[1].body, &meeting);
+            patch_of(sides, meeting.normal, touches)
+        })
+    }
+
+    /// What there is to say of two primitives by the surface of each, and by how they lie to each other; `None` where that is further apart than the margin.
+    fn with_sides<R>(
+        &self,
+        [i, j]: [u32; 2],
+        must: bool,
+        ask: impl FnOnce([&Side; 2], &dyn Fn() -> Option<Meeting>) -> Option<R>,
+    ) -> Option<R> {
+        let Soups { pair, stars: [stars_a, stars_b] } = *self;
+        let (hull_a, hull_b) = (stars_a.complex.primitive_hull(i), stars_b.complex.primitive_hull(j));
+        let (body_a, body_b) =
+            (Body::of_primitive(stars_a.complex, i), Body::of_primitive(stars_b.complex, j));
         let (corners_a, corners_b) = (stars_a.corners(i), stars_b.corners(j));
+        let [map_a, map_b] = &pair.maps;
         let placed_a = face::Placed::of_primitive(&body_a, i, map_a, &corners_a);
         let placed_b = face::Placed::of_primitive(&body_b, j, map_b, &corners_b);
         let other_a = Other { primitive: i, support: &hull_a, map: map_a, corners: &corners_a, radius: 0.0 };
         let other_b = Other { primitive: j, support: &hull_b, map: map_b, corners: &corners_b, radius: 0.0 };
-        let of_a = Side::new(&stars_a, placed_a, other_b);
-        let of_b = Side::new(&stars_b, placed_b, other_a);
+        let of_a = Side::new(stars_a, placed_a, other_b);
+        let of_b = Side::new(stars_b, placed_b, other_a);
         let meeting = LazyCell::new(|| match must.then(|| way_of([&corners_a, &corners_b])).flatten() {
             Some(way) => Some(way.meeting(false).touching()),
             None => pair.meeting(&hull_a, &hull_b, must),
         });
-        let (normal, touches) = match level_touches(pair, [&of_a, &of_b], must, || *meeting) {
-            Some(found) => found,
-            None => touches(pair, &of_a, &of_b, &(*meeting)?)?,
-        };
-        let is_inward = of_a.is_inward(-normal) || of_b.is_inward(normal);
-        (!touches.is_empty()).then_some(Patch { normal, touches, is_inward })
-    };
-    found.into_iter().filter_map(patch).collect()
+        ask([&of_a, &of_b], &|| *meeting)
+    }
+}
+
+/// Whether a normal, given from the second to the first, points into a solid.
+fn is_inward([of_a, of_b]: [&Side; 2], normal: DVec3) -> bool {
+    of_a.is_inward(-normal) || of_b.is_inward(normal)
+}
+
+fn patch_of(sides: [&Side; 2], normal: DVec3, touches: Vec<Touch>) -> Option<Patch> {
+    (!touches.is_empty()).then(|| Patch { normal, touches, is_inward: is_inward(sides, normal) })
 }
 
 /// The contacts of two triangles of which one has all around it in its plane, along the normal of that, unless the other is larger; of two such along that
@@ -135,7 +192,7 @@ fn level_touches(
     pair: &Pair,
     sides: [&Side; 2],
     must: bool,
-    meeting: impl FnOnce() -> Option<Meeting>,
+    meeting: &dyn Fn() -> Option<Meeting>,
 ) -> Option<(DVec3, Vec<Touch>)> {
     let of_first = match sides.map(Side::is_level) {
         [false, false] => return None,
@@ -170,7 +227,7 @@ fn own_touches(pair: &Pair, [of_a, of_b]: [&Side; 2], of_first: bool) -> Option<
 
 /// The contacts of two primitives, along a normal that the surfaces have; `None` where there is none. Where one surface does not have that along which they
 /// are left, it is the normal of a triangle: of the larger one, if that may be.
-fn touches(pair: &Pair, of_a: &Side, of_b: &Side, meeting: &Meeting) -> Option<(DVec3, Vec<Touch>)> {
+fn touches(pair: &Pair, [of_a, of_b]: [&Side; 2], meeting: &Meeting) -> Option<(DVec3, Vec<Touch>)> {
     let on_b = of_b.corrected(meeting.normal, meeting.tilt)?;
     let on_a = || of_a.corrected(-meeting.normal, meeting.tilt);
     let is_replaced = |on: Corrected| matches!(on, Corrected::Replaced(_));

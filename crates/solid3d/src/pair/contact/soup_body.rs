@@ -1,6 +1,6 @@
 //! The contacts of a soup and a body.
 
-use std::cell::{Cell, OnceCell};
+use std::cell::OnceCell;
 use std::ops::ControlFlow;
 
 use glam::{DAffine3, DVec3};
@@ -14,9 +14,10 @@ use super::inside::Inside;
 use super::leaving::{Leaving, WayOut};
 use super::other::Other;
 use super::overhang::Overhang;
+use super::places::{told, untold};
 use super::side::Side;
 use super::stars::Stars;
-use super::{Feature, Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge};
+use super::{Feature, Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, deepest, face, ridge};
 use crate::shape::{Body, Complex};
 
 /// A soup and a body, of which primitives that meet it are looked at one after the other.
@@ -34,9 +35,6 @@ pub(super) struct Encounter<'a> {
     pub met: &'a [u32],
     /// Whether the soup is the second of the pair.
     pub mirrored: bool,
-    /// Whether some primitive that meets the body had contacts where they are in each other, and whether some had none.
-    answered: Cell<bool>,
-    unanswered: Cell<bool>,
 }
 
 /// The contacts of a soup and a body; `mirrored` when the soup is the second of the pair.
@@ -81,35 +79,44 @@ pub(super) fn soup_body(
         met: &met,
         body: face::Placed::new(kind, map_body),
         mirrored,
-        answered: Cell::new(false),
-        unanswered: Cell::new(false),
     };
-    let mut patches = encounter.patches();
-    if encounter.unanswered.get() && !encounter.answered.get() {
+    let (mut patches, led) = encounter.patches();
+    let told = told(&patches, encounter.pairs(&led));
+    let places = untold(encounter.soups(), &encounter.pairs(&met), &told);
+    if !places.is_empty() {
         // Where a body leaves an edge last it may lean over that, and not meet it.
-        let near = beside_body(soup, convex, 0.0, scratch);
-        patches.extend(encounter.patch_at_a_ridge(&near));
+        let mut near = beside_body(soup, convex, 0.0, scratch);
+        near.extend(&met);
+        near.sort_unstable();
+        near.dedup();
+        let mut near = encounter.pairs(&near);
+        near.retain(|pair| told.binary_search(pair).is_err());
+        patches.extend(encounter.patches_of_places(&places, &near));
+        patches.sort_by_key(|patch| patch.touches[0].primitives); // stable
     }
     patches
 }
 
 impl Encounter<'_> {
-    /// The contacts of all that was found, and of what the body leans over.
-    fn patches(&self) -> Vec<Patch> {
+    /// The contacts of all that was found, and of what the body leans over; and what led to these.
+    fn patches(&self) -> (Vec<Patch>, Vec<u32>) {
         let leaving = self.leaving();
         let cover = self.cover(&leaving);
         let mut overhang = Overhang::new(self.stars, self.other, self.met);
         let patch = |leaving| self.patch(leaving, cover.as_ref(), &mut overhang);
         let mut patches = Vec::with_capacity(leaving.len());
         patches.extend(leaving.iter().filter_map(patch));
-        let behind = overhang.found.iter().filter_map(|&(triangle, out)| self.patch_behind(triangle, out));
-        let behind: Vec<Patch> = behind.collect();
-        if !behind.is_empty() {
-            self.answered.set(true);
-            patches.extend(behind);
+        let mut led = Vec::new();
+        for &(first, triangle, out) in &overhang.found {
+            if let Some(patch) = self.patch_behind(triangle, out) {
+                patches.push(patch);
+                led.push(first);
+            }
+        }
+        if !led.is_empty() {
             patches.sort_by_key(|patch| patch.touches[0].primitives); // stable
         }
-        patches
+        (patches, led)
     }
 
     /// The contacts of a primitive; `None` where there are none.
@@ -125,8 +132,6 @@ impl Encounter<'_> {
                 (out, touches) = (way.out(), self.touches(side, &way));
             }
             if leaving.meets {
-                let is_told = touches.iter().any(|touch| touch.depth >= -SAME_DEPTH);
-                (if is_told { &self.answered } else { &self.unanswered }).set(true);
                 // A ball that is not stretched meets the triangle in front of its deepest point, a face that covers what it meets those in front of its corners.
                 let is_round = matches!(self.other.corners, [_]);
                 if !is_round && cover.is_none() && side.is_own(out) {
@@ -146,19 +151,50 @@ impl Encounter<'_> {
         self.pair.touch(faces, out * self.sign(), at - out * out.dot(at), features)
     }
 
+    /// The contacts of places in which no primitive tells one: across an edge of the surface, which is one of what is connected with them and `near` the body, else where
+    /// a primitive of each is deepest in that.
+    fn patches_of_places(&self, places: &[Vec<[u32; 2]>], near: &[[u32; 2]]) -> Vec<Patch> {
+        let primitive = |pair: &[u32; 2]| pair[usize::from(self.mirrored)];
+        let mut patches = Vec::new();
+        for around in untold(self.soups(), near, &[]) {
+            let place = |pair| places.binary_search_by_key(pair, |place| place[0]).ok();
+            let mut places = around.iter().filter_map(place).map(|i| &places[i]).peekable();
+            if places.peek().is_none() {
+                continue;
+            }
+            match ridge::shortest(self.stars, &self.other, around.iter().map(primitive)) {
+                Some((triangle, way)) => {
+                    patches.extend(self.patch_along(triangle, &way.meeting(self.mirrored)))
+                }
+                None => patches.extend(places.filter_map(|place| {
+                    let (primitive, meeting) = self.deepest(place.iter().map(primitive))?;
+                    self.patch_along(primitive, &meeting)
+                })),
+            }
+        }
+        patches
+    }
+
+    /// The contacts of a primitive along a normal.
+    fn patch_along(&self, primitive: u32, meeting: &Meeting) -> Option<Patch> {
+        self.with_side(primitive, |side| {
+            let [a, b] = self.in_order(&side.body, &self.body);
+            self.patch_of(side, meeting.normal * self.sign(), self.pair.touches(a, b, meeting))
+        })
+    }
+
+    /// Of some primitives the one that is deepest in the body; it does not leave a solid for its inside.
+    fn deepest(&self, primitives: impl Iterator<Item = u32>) -> Option<(u32, Meeting)> {
+        let is_out = |side: &Side, meeting: &Meeting| !side.is_inward(meeting.normal * self.sign());
+        let meeting = |side: &Side| self.meeting(side).filter(|meeting| is_out(side, meeting));
+        let meetings =
+            primitives.filter_map(|primitive| Some((primitive, self.with_side(primitive, meeting)?)));
+        deepest(meetings)
+    }
+
     /// The contacts of a triangle that the body does not meet, but is behind.
     fn patch_behind(&self, triangle: u32, out: DVec3) -> Option<Patch> {
         self.with_side(triangle, |side| self.patch_of(side, out, self.over(side, out)))
-    }
-
-    /// The contacts across an edge of the surface, which is one of some triangles.
-    fn patch_at_a_ridge(&self, triangles: &[u32]) -> Option<Patch> {
-        let (triangle, way) = ridge::shortest(self.stars, &self.other, triangles)?;
-        self.with_side(triangle, |side| {
-            let [a, b] = self.in_order(&side.body, &self.body);
-            let touches = self.pair.touches(a, b, &way.meeting(self.mirrored));
-            self.patch_of(side, way.out, touches)
-        })
     }
 
     pub fn with_side<R>(&self, primitive: u32, ask: impl FnOnce(&Side) -> R) -> R {
@@ -195,6 +231,15 @@ impl Encounter<'_> {
         let meeting = side.meeting_of_ball(out, mirrored);
         let near = meeting.and_then(|meeting| meeting.within(pair.margin + SAME_DEPTH));
         near.map_or_else(Vec::new, |meeting| pair.touches(a, b, &meeting))
+    }
+
+    /// Primitives with the body, which is one.
+    fn pairs(&self, primitives: &[u32]) -> Vec<[u32; 2]> {
+        primitives.iter().map(|&primitive| self.in_order(primitive, 0)).collect()
+    }
+
+    fn soups(&self) -> [Option<&Complex>; 2] {
+        self.in_order(Some(self.complex), None)
     }
 
     /// What is of the first shape, then what is of the second.

@@ -31,7 +31,7 @@ const PART: usize = 128;
 
 /// The stars of the vertices of a soup: the primitives around each.
 pub(super) struct Stars<'a> {
-    complex: &'a Complex,
+    pub complex: &'a Complex,
     pub map: &'a Map,
     /// 1 when the normals of the triangles point out of a solid, -1 when into it, 0 when there is none.
     pub orientation: f64,
@@ -347,7 +347,7 @@ impl<'a> Stars<'a> {
 
 /// What there is of each vertex of a primitive, of which most have three.
 #[inline(always)]
-fn few<T: Copy>(vertices: &[u32], of: impl Fn(u32) -> T) -> SmallVec<[T; 4]> {
+pub(super) fn few<T: Copy>(vertices: &[u32], of: impl Fn(u32) -> T) -> SmallVec<[T; 4]> {
     match *vertices {
         [p, q, r] => {
             let [p, q, r] = each([p, q, r], of);
