@@ -45,7 +45,8 @@ pub(super) struct Field<'a> {
     pub value: &'a Value,
     /// Whether the file gives it a value.
     pub written: bool,
-    /// The name in the interface of the PROTO around that it is connected to by IS.
+    /// The name in the interface of the PROTO around that it has its value from by IS. An eventIn or eventOut has none to give: where
+    /// these alone are connected, the value is that of the field itself.
     pub is: Option<&'a str>,
 }
 
@@ -144,7 +145,10 @@ impl Document {
     pub fn field(&self, node: Syntax, name: &str) -> Option<Field<'_>> {
         let index = self.scene.get_predefined_field(node, name)?;
         let field = &self.scene.node(node).fields[index];
-        let is = field.references.first().map(|reference| self.interface_name(*reference));
+        let gives_value =
+            |&reference: &&FieldRef| self.interface(*reference).access & access::INITIALIZE_ONLY != 0;
+        let is = field.references.iter().find(gives_value);
+        let is = is.map(|reference| self.interface(*reference).name.as_str());
         Some(Field { value: &field.value, written: field.modified, is })
     }
 
@@ -191,8 +195,8 @@ impl Document {
         SceneError::new(&self.file, self.line(node), format!("{}: {message}", self.describe(node)))
     }
 
-    fn interface_name(&self, reference: FieldRef) -> &str {
-        &self.scene.protos[reference.proto].fields[reference.index].name
+    fn interface(&self, reference: FieldRef) -> &vrml97::scene::Field {
+        &self.scene.protos[reference.proto].fields[reference.index]
     }
 }
 

@@ -46,6 +46,30 @@ fn a_proto_stands_for_its_first_node_with_its_fields() {
     assert_eq!(pose(&scene, 0.0).objects[1].placement.translation, DVec3::new(1.0, 2.0, 3.0));
 }
 
+/// An eventIn of the interface has no value; the field that receives it keeps its own until there is an event.
+#[test]
+fn a_field_that_receives_events_of_a_proto_keeps_its_value() {
+    let event = "eventIn SFVec3f move";
+    for (interface, fields, x) in [
+        (event, "translation 1 2 3 set_translation IS move", 1.0),
+        (event, "set_translation IS move translation 1 2 3", 1.0),
+        ("eventOut SFVec3f move", "translation 1 2 3 translation_changed IS move", 1.0),
+        ("eventIn SFVec3f move field SFVec3f at 4 2 3", "set_translation IS move translation IS at", 4.0),
+    ] {
+        let cube = "children Shape { geometry Box {} }";
+        let scene = scene(&format!("PROTO P [ {interface} ] {{ Transform {{ {fields} {cube} }} }} P {{}}"));
+        assert_eq!(origin(&scene, 0.0), DVec3::new(x, 2.0, 3.0), "{fields}");
+    }
+    let scene = scene(
+        "PROTO Inner [ exposedField SFVec3f at 1 2 3 ] { Transform { translation IS at children Shape { geometry Box {} } } }
+         PROTO Outer [ eventIn SFVec3f move ] { Inner { at 4 2 3 set_at IS move } }
+         DEF O Outer {} DEF C TimeSensor { startTime 1 } DEF I PositionInterpolator { key 0 keyValue 7 0 0 }
+         ROUTE C.fraction_changed TO I.set_fraction ROUTE I.value_changed TO O.move",
+    );
+    assert_eq!(origin(&scene, 0.0), DVec3::new(4.0, 2.0, 3.0));
+    assert_eq!(origin(&scene, 1.0), DVec3::new(7.0, 0.0, 0.0));
+}
+
 #[test]
 fn protos_nest_and_take_nodes() {
     let scene = scene(&format!(
