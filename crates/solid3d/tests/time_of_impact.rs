@@ -108,6 +108,25 @@ fn no_contact_comes_before_the_time_of_impact() {
     assert_rate("turning pairs", hits, cases as usize);
 }
 
+/// Half way from a placement to a mirrored one a mesh is flat, and just there a piece of the other's turn ends.
+#[test]
+fn what_is_turned_inside_out_is_met_before_it_is_flat() {
+    let corners = [DVec3::X, DVec3::NEG_X, DVec3::Y - DVec3::X, DVec3::Z - DVec3::X];
+    let arrow = Shape::mesh(corners, [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]).unwrap();
+    let disc =
+        Shape::mesh([DVec3::Y, DVec3::Z, -DVec3::ONE].map(|p| p * DVec3::new(0.0, 9.0, 9.0)), [[0, 1, 2]]);
+    let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+    let (from, to) = (at(-3.0), at(3.0) * DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)));
+    // The tip is at -2 + 4 t.
+    for (wall, x) in [(disc.unwrap(), -0.25), (Shape::cuboid([0.5, 9.0, 9.0]).unwrap(), 0.0)] {
+        let turned = at(x) * DAffine3::from_rotation_x(std::f64::consts::FRAC_PI_2);
+        let found = query::time_of_impact(&arrow, &from, &to, &wall, &at(x), &turned, &OPTIONS).unwrap();
+        assert!((found.unwrap().time - 0.4375).abs() < 1e-6, "{}: {found:?}", wall.kind());
+        let swapped = query::time_of_impact(&wall, &at(x), &turned, &arrow, &from, &to, &OPTIONS).unwrap();
+        assert!((swapped.unwrap().time - 0.4375).abs() < 1e-6, "{}: {swapped:?}", wall.kind());
+    }
+}
+
 /// Whatever the tolerance, the gap at the time of impact is less than it, or than what rounding leaves of directions.
 #[test]
 fn the_gap_is_within_the_tolerance_or_what_rounding_leaves() {

@@ -38,6 +38,10 @@ const WAY_ERROR: f64 = 1e-13;
 /// The most by which a shape turns in a piece of its way: an arc is then off its chord by 0.5 % of the radius.
 const PIECE_ANGLE: f64 = std::f64::consts::PI / 16.0;
 
+/// How much earlier a piece may end, as a part of it, where a shape would be flat: on a straight way it is so at three times at most, and there is but
+/// one straight way where pieces end, as the other turns.
+const EARLIER: [f64; 4] = [0.0, 0.125, 0.25, 0.375];
+
 /// What arrives at the very end counts.
 const END: f64 = 1.0 + 8.0 * f64::EPSILON;
 
@@ -191,11 +195,20 @@ impl Course {
         })
     }
 
-    /// Spans of time in which no shape turns by much, in order.
+    /// Spans of time in which no shape turns by much, in order. They end where no shape is flat, for boxes are compared in the space that one
+    /// has at the end.
     fn pieces(&self) -> impl Iterator<Item = Span> + use<> {
         let angle = self.ways.iter().filter_map(|way| way.turn).map(|turn| turn.angle()).fold(0.0, f64::max);
         let count = (angle / PIECE_ANGLE).ceil().max(1.0) as u32;
-        let time = move |i: u32| f64::from(i) / f64::from(count);
+        let ways = self.ways;
+        let time = move |i: u32| {
+            let [evenly, others @ ..] = EARLIER.map(|earlier| (f64::from(i) - earlier) / f64::from(count));
+            let is_flat = |t: &f64| ways.iter().any(|way| way.is_flat_at(*t));
+            if i == 0 || i == count || !is_flat(&evenly) {
+                return evenly;
+            }
+            others.into_iter().find(|t| !is_flat(t)).unwrap_or(evenly)
+        };
         (0..count).map(move |i| Span { from: time(i), to: time(i + 1) })
     }
 

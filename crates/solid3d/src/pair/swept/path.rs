@@ -42,6 +42,9 @@ const POLAR_STEPS_MAX: usize = 1024;
 /// The iteration ends when no entry changes by more.
 const POLAR_ERROR: f64 = 1e-15;
 
+/// A map is flat when its volume is less, of the larger of those at the ends of the way.
+const FLAT: f64 = 1e-6;
+
 /// A rotation at constant speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
@@ -144,6 +147,14 @@ impl Way {
                 DAffine3 { matrix3: self.rotation(t) * linear, translation: self.origin_at(t) }
             }
         }
+    }
+
+    /// Whether the shape is flat at a time, or nearly: as it is half way where one placement mirrors and the other does not. There it has no
+    /// local space.
+    pub fn is_flat_at(&self, t: f64) -> bool {
+        let [from, to] = self.linear;
+        let volume = |linear: DMat3| linear.determinant().abs();
+        volume(from * (1.0 - t) + to * t) < FLAT * volume(from).max(volume(to))
     }
 
     /// `Q(t)`.
