@@ -171,6 +171,21 @@ fn caps_of_a_concave_section_keep_their_area() {
     assert!((closed - open - 2.0).abs() < 1e-6);
 }
 
+/// Sides and both caps face outwards; were it not so, no extrusion would be closed.
+#[test]
+fn a_closed_extrusion_bounds_a_solid() {
+    let arrow = "crossSection [ 0 0, 2 1, 0 2, 1 1, 0 0 ]";
+    let bent = "spine [ 0 0 0, 0 2 0, 3 2 0, 3 2 3 ]";
+    let around = "spine [ 9 0 0, 0 0 9, -9 0 0, 0 0 -9, 9 0 0 ]";
+    for fields in ["", arrow, bent, around, &format!("{arrow} {bent} scale [ 1 1, 2 1, 1 3, .5 .5 ]")] {
+        let scene = scene(&shape(&format!("Extrusion {{ {fields} }}")));
+        let solid = scene.objects()[0].shape().clone().into_solid();
+        assert!(solid.is_ok(), "{fields}: {solid:?}");
+    }
+    let cut = scene(&shape("Extrusion { beginCap FALSE }"));
+    assert!(cut.objects()[0].shape().clone().into_solid().is_err());
+}
+
 #[test]
 fn an_extrusion_along_a_circle_is_a_torus() {
     let spine: Vec<String> = (0..=64)

@@ -52,6 +52,7 @@ impl Builder<'_> {
         values
     }
 
+    /// The caps face away from each other, as the sides face outwards: together they are closed where the cross-section is.
     fn caps(&mut self, node: Node, section: &[DVec2], soup: &mut Soup) {
         let mut corners: Vec<u32> = (0..section.len() as u32).collect();
         // A closed cross-section ends where it begins, an open one is closed by its cap.
@@ -64,10 +65,14 @@ impl Builder<'_> {
         }
         let last = (soup.vertices.len() - section.len()) as u32;
         let mut folded = 0;
-        for (flag, first) in [("beginCap", 0), ("endCap", last)] {
+        for (flag, first, is_turned) in [("beginCap", 0, true), ("endCap", last, false)] {
             if self.graph.flag(node, flag) {
                 let corners: Vec<u32> = corners.iter().map(|corner| first + corner).collect();
+                let before = soup.triangles.len();
                 folded += usize::from(Self::face(&corners, soup));
+                if is_turned {
+                    soup.triangles[before..].iter_mut().for_each(|triangle| triangle.swap(1, 2));
+                }
             }
         }
         self.warn_of_folded(node, folded);
