@@ -24,6 +24,17 @@ fn objects_are_listed_with_what_they_are() {
     assert!(run.stdout.contains("3 objects, 23 triangles, no animation\n"), "{}", run.stdout);
 }
 
+/// An edge may be one of several pairs of triangles.
+#[test]
+fn closed_is_what_can_be_solid() {
+    let corners = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\n";
+    let tetrahedra = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 5 2\nf 1 2 6\nf 2 5 6\nf 5 1 6\n";
+    let desk = Desk::with_boxes().file("two.obj", format!("{corners}{tetrahedra}"));
+    let run = desk.run("info two.obj");
+    assert_eq!(row(&run.stdout, "two"), "two mesh 8 yes 0 two.obj");
+    assert!(desk.run("check two.obj a.obj --solid two").stderr.is_empty());
+}
+
 #[test]
 fn what_is_not_there_at_time_0_is_told() {
     let flat = "#VRML V2.0 utf8\nDEF sheet Transform { children Shape { geometry Box {} } }\n\

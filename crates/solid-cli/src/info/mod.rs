@@ -1,7 +1,5 @@
 //! `solid info`: what is in the files.
 
-mod closed;
-
 use std::io::{IsTerminal, Write};
 
 use anyhow::Result;
@@ -62,15 +60,16 @@ fn file_name(scene: &Scene, file: usize) -> String {
     words::printable(&scene.files()[file].to_string_lossy())
 }
 
-/// Whether a shape bounds a volume. A soup of convex primitives may or may not; nobody asked it to.
+/// Whether a shape bounds a volume: of a mesh, whether `--solid` takes it. A soup of convex primitives may or may not; nobody asked
+/// it to.
 fn closedness(shape: &Shape) -> String {
-    match (shape.kind(), shape.vertices(), shape.triangles()) {
-        (ShapeKind::Mesh, Some(vertices), Some(triangles)) => match closed::open_edges(vertices, triangles) {
-            0 => "yes".to_owned(),
-            open => format!("no, {}", words::count(words::size(open), "open edge")),
-        },
-        (ShapeKind::Complex, ..) => "-".to_owned(),
-        _ => "solid".to_owned(),
+    match (shape.kind(), shape.clone().into_solid()) {
+        (ShapeKind::Mesh, Ok(_)) => "yes".to_owned(),
+        (_, Err(Error::OpenMesh { edges })) => {
+            format!("no, {}", words::count(words::size(edges.len()), "open edge"))
+        }
+        (_, Err(_)) => "-".to_owned(),
+        (_, Ok(_)) => "solid".to_owned(),
     }
 }
 
