@@ -11,19 +11,23 @@ pub(crate) const EARCUT_CORNERS_MAX: usize = 5_000;
 /// How far a triangle of a fan may face the wrong way and still count as rounding, relative to the polygon's area.
 const FOLD_TOLERANCE: f64 = 1e-9;
 
+/// What the rounding of each corner may add to an area vector, relative to the products of lengths that its cross products are of.
+const COVER_TOLERANCE: f64 = 8.0 * f64::EPSILON;
+
 /// How well triangles stand for their polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Cut {
     /// They cover it.
     Faithful,
-    /// They are a fan that is folded over, since the polygon has no area or too many corners for better.
+    /// They are a fan that is folded over, since the polygon has no area, crosses itself or has too many corners for better.
     Folded,
 }
 
 /// Triangulates a polygon over vertices that are there. The triangles name the polygon's own corners.
 ///
 /// Three corners or more give a fan around the first, unless a triangle of the fan would be folded over, facing against
-/// the polygon: then ears are cut, in the plane of the polygon's area vector. Fewer corners give nothing.
+/// the polygon: then ears are cut, in the plane of the polygon's area vector. Where a part is left for which there is no ear, as of a
+/// polygon that crosses itself, it is the fan after all: that keeps the edges, so that what was closed is. Fewer corners give nothing.
 pub(crate) fn triangulate(corners: &[u32], vertices: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Cut {
     let polygon = (corners.len() > 3).then(|| Polygon::new(corners, vertices));
     let Some(polygon) = polygon.filter(Polygon::is_fan_folded) else {
@@ -31,7 +35,7 @@ pub(crate) fn triangulate(corners: &[u32], vertices: &[DVec3], triangles: &mut V
         return Cut::Faithful;
     };
     let ears = if corners.len() <= EARCUT_CORNERS_MAX { polygon.ears() } else { Vec::new() };
-    if ears.is_empty() {
+    if !polygon.is_covered_by(&ears) {
         triangles.extend(fan(corners));
         return Cut::Folded;
     }
@@ -41,7 +45,8 @@ pub(crate) fn triangulate(corners: &[u32], vertices: &[DVec3], triangles: &mut V
 
 /// What to tell the user of polygons, where there were some, that were cut no better than folded.
 pub(crate) fn folded_warning(count: usize) -> Option<String> {
-    let which = format!("without an area, or concave with more than {EARCUT_CORNERS_MAX} corners,");
+    let which =
+        format!("without an area, crossing itself, or concave with more than {EARCUT_CORNERS_MAX} corners,");
     match count {
         0 => None,
         1 => Some(format!("1 polygon {which} is a fan that is folded over")),
@@ -83,7 +88,23 @@ impl Polygon<'_> {
 
     /// Twice the areas of the triangles of the fan, along their normals.
     fn fan_areas(&self) -> impl Iterator<Item = DVec3> {
-        fan(self.corners).map(|[_, b, c]| self.at(b).cross(self.at(c)))
+        fan(self.corners).map(|triangle| self.area(triangle))
+    }
+
+    /// Twice the area of a triangle, along its normal.
+    fn area(&self, triangle: [u32; 3]) -> DVec3 {
+        let [a, b, c] = triangle.map(|corner| self.at(corner));
+        (b - a).cross(c - a)
+    }
+
+    /// Whether triangles are all of the polygon: its area vector is the sum of theirs, as both are that of the edges around.
+    fn is_covered_by(&self, triangles: &[[u32; 3]]) -> bool {
+        let normal: DVec3 = self.fan_areas().sum();
+        let covered: DVec3 = triangles.iter().map(|&triangle| self.area(triangle)).sum();
+        let products: f64 =
+            fan(self.corners).map(|[_, b, c]| self.at(b).length() * self.at(c).length()).sum();
+        let limit = COVER_TOLERANCE * self.corners.len() as f64 * products;
+        !triangles.is_empty() && (normal - covered).length() <= limit
     }
 
     /// Whether a triangle of the fan faces against the polygon.
@@ -154,6 +175,18 @@ mod tests {
         assert!(!triangulated(&bow).is_empty());
     }
 
+    /// Of a bow tie there is an ear, but none for the rest.
+    #[test]
+    fn polygons_that_cross_themselves_keep_their_edges() {
+        let bow = [(0.0, 0.0), (4.0, 3.0), (4.0, 0.0), (0.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
+        for turn in 0..4 {
+            let corners = [0, 1, 2, 3].map(|corner| (corner + turn) % 4);
+            let mut triangles = Vec::new();
+            assert_eq!(triangulate(&corners, &bow, &mut triangles), Cut::Folded);
+            assert_eq!(triangles, fan(&corners).collect::<Vec<_>>());
+        }
+    }
+
     /// The worst that ears are cut of: corners at random, which cross each other everywhere.
     #[test]
     fn large_tangles_end() {
@@ -164,9 +197,10 @@ mod tests {
         };
         let tangle: Vec<DVec3> =
             (0..=EARCUT_CORNERS_MAX).map(|_| DVec3::new(random(), random(), 0.0)).collect();
-        assert!(!triangulated(&tangle[1..]).is_empty());
-        let (corners, mut triangles) = ((0..=EARCUT_CORNERS_MAX as u32).collect::<Vec<_>>(), Vec::new());
-        assert_eq!(triangulate(&corners, &tangle, &mut triangles), Cut::Folded);
-        assert_eq!(triangles.len(), EARCUT_CORNERS_MAX - 1);
+        for count in [EARCUT_CORNERS_MAX, EARCUT_CORNERS_MAX + 1] {
+            let (corners, mut triangles) = ((0..count as u32).collect::<Vec<_>>(), Vec::new());
+            assert_eq!(triangulate(&corners, &tangle, &mut triangles), Cut::Folded);
+            assert_eq!(triangles.len(), count - 2);
+        }
     }
 }

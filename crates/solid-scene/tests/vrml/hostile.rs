@@ -157,7 +157,7 @@ fn star(corners: usize, radii: [f64; 2]) -> Scene {
 /// Of a convex face of any number of corners a fan is right; of a concave one ears are, of which no more are cut than take little time.
 #[test]
 fn only_a_concave_face_of_too_many_corners_is_a_fan_with_a_warning() {
-    let warning = "IndexedFaceSet: 1 polygon without an area, or concave with more than 5000 corners, is a fan \
+    let warning = "IndexedFaceSet: 1 polygon without an area, crossing itself, or concave with more than 5000 corners, is a fan \
                    that is folded over";
     for (corners, radii, expected) in
         [(8_000, [1.0, 1.0], None), (4_000, [1.0, 0.5], None), (8_000, [1.0, 0.5], Some(warning))]
@@ -177,7 +177,7 @@ fn faces_that_are_folded_over_are_counted() {
         "Shape {{ geometry IndexedFaceSet {{ {points} coordIndex [ {corners} -1 {corners} -1 1 2 3 0 ] }} }}"
     ));
     assert_eq!(scene.objects()[0].shape().primitive_count(), 2 * 9_998 + 2);
-    let warning = "IndexedFaceSet: 2 polygons without an area, or concave with more than 5000 corners, are fans \
+    let warning = "IndexedFaceSet: 2 polygons without an area, crossing itself, or concave with more than 5000 corners, are fans \
                    that are folded over";
     assert_eq!(warnings(&scene), [warning]);
 }
