@@ -5,6 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use percent_encoding::percent_decode_str;
 
 /// Base64 with or without the `=` at its end.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -24,9 +25,9 @@ pub(super) enum Source {
 
 /// Reads a URI; the error says what is wrong with it.
 pub(super) fn resolve(uri: &str) -> Result<Source, String> {
-    match uri.strip_prefix("data:") {
-        Some(data) => data_bytes(data).map(Source::Bytes),
-        None => relative_path(uri).map(Source::File),
+    match uri.split_once(':') {
+        Some((scheme, data)) if scheme.eq_ignore_ascii_case("data") => data_bytes(data).map(Source::Bytes),
+        _ => relative_path(uri).map(Source::File),
     }
 }
 
@@ -40,28 +41,14 @@ fn data_bytes(data: &str) -> Result<Vec<u8>, String> {
 
 /// A path that stays in the folder it starts from.
 fn relative_path(uri: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(percent_decoded(uri)?);
+    let decoded = percent_decode_str(uri).decode_utf8().map_err(|_| "has a URI that is not UTF-8")?;
+    let path = Path::new(&*decoded);
     let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
     let scheme = uri.split('/').next().is_some_and(|first| first.contains(':'));
     if scheme || path.as_os_str().is_empty() || !path.components().all(inside) {
         return Err(format!("is at `{}`; expected a path in the file's folder", crate::text::quoted(uri)));
     }
     Ok(Path::new("").join(path))
-}
-
-fn percent_decoded(uri: &str) -> Result<String, String> {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let Some((&byte, after)) = rest.split_first() {
-        rest = after;
-        let escape = if byte == b'%' { after.split_at_checked(2) } else { None };
-        let code = escape.and_then(|(hex, _)| u8::from_str_radix(std::str::from_utf8(hex).ok()?, 16).ok());
-        bytes.push(code.unwrap_or(byte));
-        if let (Some(_), Some((_, after))) = (code, escape) {
-            rest = after;
-        }
-    }
-    String::from_utf8(bytes).map_err(|_| "has a URI that is not UTF-8".to_owned())
 }
 
 #[cfg(test)]
@@ -72,7 +59,7 @@ mod tests {
     fn data_is_decoded() {
         let bytes = Ok(Source::Bytes(vec![0, 1, 2, 3]));
         assert_eq!(resolve("data:application/octet-stream;base64,AAECAw=="), bytes);
-        assert_eq!(resolve("data:;base64,AAECAw"), bytes);
+        assert_eq!(resolve("DATA:;base64,AAECAw"), bytes);
         assert!(resolve("data:;base64,A!EC").unwrap_err().starts_with("has bad base64: "));
         assert!(resolve("data:text/plain,hello").unwrap_err().contains("not base64"));
         assert!(resolve("data:").unwrap_err().contains("comma"));

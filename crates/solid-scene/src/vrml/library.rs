@@ -4,6 +4,8 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use percent_encoding::percent_decode_str;
+
 use super::document::Document;
 use super::text;
 use crate::error::SceneError;
@@ -96,37 +98,18 @@ impl Library {
     }
 }
 
-/// The relative path that a URL is, with its percent escapes decoded; `None` for other URLs and absolute paths.
+/// The relative path that a URL is, with its percent escapes decoded; `None` for other URLs and absolute paths, and where the escapes do not make UTF-8 or
+/// hide a NUL.
 fn relative(url: &str) -> Option<Target> {
     let (path, fragment) = match url.split_once('#') {
         Some((path, fragment)) => (path, Some(fragment.to_owned())),
         None => (url, None),
     };
     let has_scheme = path.split('/').next().is_some_and(|first| first.contains(':'));
-    let file = PathBuf::from(unescape(path)?);
+    let decoded = percent_decode_str(path).decode_utf8().ok().filter(|path| !path.contains('\0'))?;
+    let file = PathBuf::from(&*decoded);
     let is_relative = file.is_relative() && !path.is_empty() && !has_scheme && !path.starts_with('\\');
     is_relative.then_some(Target { file, fragment })
-}
-
-/// Decodes percent escapes; `None` when they do not make UTF-8 or hide a NUL.
-fn unescape(path: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(path.len());
-    let mut rest = path.as_bytes();
-    while let Some((&first, after)) = rest.split_first() {
-        let escape = (first == b'%').then(|| after.get(..2)).flatten();
-        let code = escape.and_then(|hex| std::str::from_utf8(hex).ok());
-        match code.and_then(|hex| u8::from_str_radix(hex, 16).ok()) {
-            Some(byte) => {
-                bytes.push(byte);
-                rest = &after[2..];
-            }
-            None => {
-                bytes.push(first);
-                rest = after;
-            }
-        }
-    }
-    String::from_utf8(bytes).ok().filter(|path| !path.contains('\0'))
 }
 
 #[cfg(test)]
@@ -147,5 +130,6 @@ mod tests {
         assert_eq!(relative("a%00"), None);
         assert_eq!(relative("#Viewpoint"), None);
         assert_eq!(relative("100%"), target("100%", None));
+        assert_eq!(relative("%+5"), target("%+5", None));
     }
 }

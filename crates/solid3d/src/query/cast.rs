@@ -15,7 +15,7 @@ pub struct ShapeCast {
     pub time: f64,
     /// Where they meet, at that time. Space: world.
     pub point: DVec3,
-    /// The common normal of the surfaces there, a unit vector pointing from `b` to `a`; `None` when they intersect at the start.
+    /// The common normal of the surfaces there, a unit vector pointing from `b` to `a`; `None` when they intersect or touch at the start.
     /// Space: world.
     pub normal: Option<DVec3>,
 }
