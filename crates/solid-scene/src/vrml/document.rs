@@ -7,7 +7,7 @@ use vrml97::fields::{FieldValue, access};
 use vrml97::scene::{FieldLoc, FieldRef, NodeKind, ProtoRef, ROOT, Scene};
 
 use super::scan::{Mark, scan};
-use super::wide;
+use super::{vectors, wide};
 use crate::error::SceneError;
 use crate::text::{quoted, with_words_cut};
 
@@ -87,8 +87,8 @@ impl Document {
             SceneError::new(file, Some(error.line), message)
         })?;
         let warnings = std::mem::take(&mut scene.warnings);
-        let warnings =
-            warnings.iter().map(|warning| with_words_cut(&warning_in_our_words(warning))).collect();
+        let of_parser = warnings.iter().map(|warning| with_words_cut(&warning_in_our_words(warning)));
+        let warnings = of_parser.chain(vectors::uneven(&scanned.text)).collect();
         let marks = if scanned.nodes.len() == scene.nodes.len() { scanned.nodes } else { Vec::new() };
         let connected = connections(&scene);
         Ok((Document { file: file.to_owned(), scene, written, marks, connected }, warnings))

@@ -25,6 +25,7 @@ mod sensor;
 mod signal;
 mod text;
 mod transform;
+mod vectors;
 mod walk;
 mod wide;
 

@@ -198,3 +198,15 @@ fn an_extrusion_along_a_circle_is_a_torus() {
     assert!(max.distance(DVec3::new(6.0, 1.0, 6.0)) < 1e-5, "{max}");
     assert!(min.distance(DVec3::new(-6.0, -1.0, -6.0)) < 1e-5, "{min}");
 }
+
+/// The parser leaves out the last of three and a third points.
+#[test]
+fn missing_numbers_are_told() {
+    let scene = scene(
+        "Shape { geometry IndexedFaceSet { coordIndex [ 0 1 2 ] coord Coordinate { point [ 0 0, 1 0 0, 0 1 0, 1 1 ] } } }",
+    );
+    assert_eq!(
+        warnings(&scene),
+        ["line 2: point has 10 numbers; expected 3 for each value, what is over is left out"]
+    );
+}

@@ -24,11 +24,11 @@ pub(super) fn told(patches: &[Patch], led: impl IntoIterator<Item = Two>) -> Vec
 /// three vertices tell theirs and connect nothing. Bodies are `None`. Cost: O(n) where a pair told none.
 pub(super) fn untold(soups: [Option<&Complex>; 2], pairs: &[Two], told: &[Two]) -> Vec<Vec<Two>> {
     let mut rest = told.iter().peekable();
-    let mut has_told = |pair: &Two| {
+    let has_told = |pair: &Two| {
         while rest.next_if(|told| *told < pair).is_some() {}
         rest.peek() == Some(&pair)
     };
-    let have_told: Vec<bool> = pairs.iter().map(&mut has_told).collect();
+    let have_told: Vec<bool> = pairs.iter().map(has_told).collect();
     if have_told.iter().all(|told| *told) {
         return Vec::new();
     }
