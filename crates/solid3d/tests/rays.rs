@@ -179,6 +179,50 @@ fn no_hit_is_at_a_negative_zero() {
     assert!(at_once > 1000, "{at_once}");
 }
 
+/// Scaling by a power of two changes no bit, also far beyond the sizes at which a placement is plain.
+#[test]
+fn a_power_of_two_changes_no_hit() {
+    let seed = 97;
+    println!("seed {seed}");
+    let rng = &mut seeded(seed);
+    let mut met = 0_usize;
+    let cases = 2_000;
+    for case in 0..cases {
+        let shape = some_shape(rng, case);
+        // Turned and scaled alike, as balls and hulls have a closed form of their own, or anything.
+        let at = if case % 8 < 4 {
+            let turn = DQuat::from_axis_angle(direction(rng), rng.random_range(0.0..6.0));
+            let scale = DVec3::splat(rng.random_range(0.1..10.0));
+            DAffine3::from_scale_rotation_translation(scale, turn, in_cube(rng))
+        } else {
+            placement(rng, 3.0)
+        };
+        let ray = some_ray(rng, &shape, &at);
+        let hits = |scale: f64| {
+            let placed = DAffine3 { matrix3: at.matrix3 * scale, translation: at.translation * scale };
+            let ray = Ray::new(ray.origin * scale, ray.direction * scale);
+            let mut hits = query::cast_ray_all(&shape, &placed, &ray, &PASSES).unwrap();
+            assert_eq!(
+                query::cast_ray(&shape, &placed, &ray, &PASSES).unwrap().as_ref(),
+                hits.first(),
+                "case {case}"
+            );
+            hits.iter_mut().for_each(|hit| hit.point /= scale);
+            hits
+        };
+        let expected = hits(1.0);
+        met += usize::from(!expected.is_empty());
+        for power in [-240, -120, -40, 1, 40, 120, 240] {
+            assert_eq!(
+                hits(2f64.powi(power)),
+                expected,
+                "case {case} times 2^{power}: {shape:?} at {at}, {ray:?}"
+            );
+        }
+    }
+    assert_rate("scaled", met, cases as usize);
+}
+
 /// Where the ray of local space meets the shape, that of the world meets it, at the same `t`.
 #[test]
 fn a_placement_takes_hits_along() {

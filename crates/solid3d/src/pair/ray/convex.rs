@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::simd::dispatch;
 use solid_convex::similarity::plain_square;
-use solid_convex::{Chord, Line, Support, gjk};
+use solid_convex::{Chord, Line, Support, gjk, unit_scale};
 
 use super::super::closed_form::{to_body, to_world};
 use super::super::reach::{image_reach, world_bounds};
@@ -24,18 +24,20 @@ struct Similar<'a> {
     at: &'a DAffine3,
     /// The square of the scale.
     square: f64,
+    /// The power of two by which the linear part of the placement was multiplied.
+    unit: f64,
 }
 
 impl<'a> Similar<'a> {
     /// `None` for what is not a rotation with a uniform scale of a plain size: of a good placement then.
     #[inline(always)]
     fn new<S: Simd>(simd: S, at: &'a DAffine3) -> Option<Self> {
-        Some(Similar { at, square: plain_square(simd, at)? })
+        Some(Similar { at, square: plain_square(simd, at)?, unit: 1.0 })
     }
 
     #[inline(always)]
     fn chord(&self, shape: &Shape, ray: &Ray) -> Option<Option<Chord>> {
-        let inverse = 1.0 / self.square;
+        let inverse = self.unit / self.square;
         let to_local = |v: DVec3| to_body(&self.at.matrix3, v) * inverse;
         chord(shape, to_local(ray.origin - self.at.translation), to_local(ray.direction))
     }
@@ -91,7 +93,11 @@ pub(crate) fn first_hit(
 /// All hits that are wanted on a convex shape.
 pub(super) fn hits(placed: Placed, shape: &dyn Support, hits: &mut Hits) {
     let (at, ray) = (placed.placement, hits.ray);
-    let told = if let Some(similar) = dispatch!(simd => Similar::new(simd, at)) {
+    // Of any size: scaling by a power of two changes no bit.
+    let unit = unit_scale(at.matrix3.x_axis.abs().max_element());
+    let of_plain_size = DAffine3 { matrix3: at.matrix3 * unit, translation: at.translation };
+    let told = if let Some(similar) = dispatch!(simd => Similar::new(simd, &of_plain_size)) {
+        let similar = Similar { unit, ..similar };
         chord_hits(similar.chord(placed.shape, ray), hits, |local| similar.normal(local, ray.direction))
     } else {
         let to_local = inverse_linear(&at.matrix3);
