@@ -126,7 +126,7 @@ impl Encounter<'_> {
             Some(meeting) if must => Some(meeting.touching()),
             Some(meeting) => meeting.within(pair.margin),
             None => {
-                let hull = self.complex.primitive_hull(side.body.primitive);
+                let hull = self.stars.complex.primitive_hull(side.body.primitive);
                 let [a, b] = self.in_order::<&dyn Support>(&hull, self.other.support);
                 pair.meeting(a, b, must)
             }

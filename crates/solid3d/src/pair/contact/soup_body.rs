@@ -23,7 +23,6 @@ use crate::shape::{Body, Complex};
 /// A soup and a body, of which primitives that meet it are looked at one after the other.
 pub(super) struct Encounter<'a> {
     pub pair: &'a Pair<'a>,
-    pub complex: &'a Complex,
     pub stars: &'a Stars<'a>,
     pub body: face::Placed<'a>,
     pub other: Other<'a>,
@@ -71,7 +70,6 @@ pub(super) fn soup_body(
     };
     let encounter = Encounter {
         pair,
-        complex,
         stars: &Stars::new(complex, map_soup, found.len()),
         other: Other { primitive: 0, support: *support, map: map_body, corners, radius },
         closed_forms: OnceCell::new(),
@@ -198,7 +196,7 @@ impl Encounter<'_> {
     }
 
     pub fn with_side<R>(&self, primitive: u32, ask: impl FnOnce(&Side) -> R) -> R {
-        let body = Body::of_primitive(self.complex, primitive);
+        let body = Body::of_primitive(self.stars.complex, primitive);
         let corners = self.stars.corners(primitive);
         let placed = face::Placed::of_primitive(&body, primitive, self.stars.map, &corners);
         ask(&Side::new(self.stars, placed, self.other))
@@ -239,7 +237,7 @@ impl Encounter<'_> {
     }
 
     fn soups(&self) -> [Option<&Complex>; 2] {
-        self.in_order(Some(self.complex), None)
+        self.in_order(Some(self.stars.complex), None)
     }
 
     /// What is of the first shape, then what is of the second.

@@ -55,7 +55,7 @@ impl Encounter<'_> {
     fn has_left(&self, primitive: u32, way: DVec3) -> bool {
         let mut moved = self.other.map.affine;
         moved.translation += way;
-        let hull = self.complex.primitive_hull(primitive);
+        let hull = self.stars.complex.primitive_hull(primitive);
         let found = gjk::intersection(self.other.support, &moved, &hull, &self.stars.map.affine);
         matches!(found, gjk::Outcome::Separated { .. })
     }
