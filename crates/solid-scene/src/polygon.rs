@@ -73,13 +73,16 @@ struct Polygon<'a> {
     vertices: &'a [DVec3],
     /// A power of two that brings it to a size of about one, where squares of areas neither overflow nor vanish.
     scale: f64,
+    /// Twice its area, along its normal.
+    normal: DVec3,
 }
 
 impl Polygon<'_> {
     fn new<'a>(corners: &'a [u32], vertices: &'a [DVec3]) -> Polygon<'a> {
-        let unscaled = Polygon { corners, vertices, scale: 1.0 };
+        let unscaled = Polygon { corners, vertices, scale: 1.0, normal: DVec3::ZERO };
         let size = corners.iter().map(|&i| unscaled.at(i).abs().max_element()).fold(0.0, f64::max);
-        Polygon { scale: unit_scale(size), ..unscaled }
+        let scaled = Polygon { scale: unit_scale(size), ..unscaled };
+        Polygon { normal: scaled.fan_areas().sum(), ..scaled }
     }
 
     fn at(&self, vertex: u32) -> DVec3 {
@@ -99,24 +102,22 @@ impl Polygon<'_> {
 
     /// Whether triangles are all of the polygon: its area vector is the sum of theirs, as both are that of the edges around.
     fn is_covered_by(&self, triangles: &[[u32; 3]]) -> bool {
-        let normal: DVec3 = self.fan_areas().sum();
         let covered: DVec3 = triangles.iter().map(|&triangle| self.area(triangle)).sum();
         let products: f64 =
             fan(self.corners).map(|[_, b, c]| self.at(b).length() * self.at(c).length()).sum();
         let limit = COVER_TOLERANCE * self.corners.len() as f64 * products;
-        !triangles.is_empty() && (normal - covered).length() <= limit
+        !triangles.is_empty() && (self.normal - covered).length() <= limit
     }
 
     /// Whether a triangle of the fan faces against the polygon.
     fn is_fan_folded(&self) -> bool {
-        let normal: DVec3 = self.fan_areas().sum();
-        let limit = -FOLD_TOLERANCE * normal.length_squared();
-        self.fan_areas().any(|area| area.dot(normal) < limit)
+        let limit = -FOLD_TOLERANCE * self.normal.length_squared();
+        self.fan_areas().any(|area| area.dot(self.normal) < limit)
     }
 
     /// The ears; none where the polygon has no area to speak of.
     fn ears(&self) -> Vec<[u32; 3]> {
-        let Some(normal) = self.fan_areas().sum::<DVec3>().try_normalize() else { return Vec::new() };
+        let Some(normal) = self.normal.try_normalize() else { return Vec::new() };
         let (u, v) = normal.any_orthonormal_pair();
         let plane = self.corners.iter().map(|&corner| self.at(corner)).map(|p| [p.dot(u), p.dot(v)]);
         let mut ears: Vec<u32> = Vec::new();
