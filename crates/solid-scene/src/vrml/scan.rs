@@ -182,21 +182,13 @@ impl<'a> Scanner<'a> {
     }
 
     fn string(&mut self) -> Result<(), SceneError> {
-        let bytes = self.text.as_bytes();
-        let mut end = self.at + 1;
-        while let Some(&byte) = bytes.get(end) {
-            match byte {
-                b'"' => {
-                    self.line += bytes[self.at..end].iter().filter(|&&byte| byte == b'\n').count();
-                    self.copy(end + 1);
-                    self.expect = Expect::Anything;
-                    return Ok(());
-                }
-                b'\\' => end += 2,
-                _ => end += 1,
-            }
-        }
-        self.fail("the string that begins here has no end; expected '\"'")
+        let Some(string) = string(&self.text[self.at..]) else {
+            return self.fail("the string that begins here has no end; expected '\"'");
+        };
+        self.line += string.matches('\n').count();
+        self.copy(self.at + string.len());
+        self.expect = Expect::Anything;
+        Ok(())
     }
 
     fn open(&mut self, byte: u8) -> Result<(), SceneError> {
@@ -272,14 +264,12 @@ impl<'a> Scanner<'a> {
     }
 
     fn word(&mut self) -> Result<(), SceneError> {
-        let rest = &self.text[self.at..];
-        let end = rest.bytes().position(|byte| !is_word(byte)).unwrap_or(rest.len());
-        let word = &rest[..end];
+        let word = word(&self.text[self.at..]);
         if word.starts_with(|c: char| c.is_ascii_digit() || c == '+' || c == '-') {
             return self.number(word);
         }
         self.name(word)?;
-        self.copy(self.at + end);
+        self.copy(self.at + word.len());
         Ok(())
     }
 
@@ -422,6 +412,20 @@ impl<'a> Scanner<'a> {
     fn fail<T>(&self, message: impl Into<String>) -> Result<T, SceneError> {
         Err(SceneError::new(self.file, Some(self.line), message))
     }
+}
+
+/// The string that begins here, with its quotes; `None` where it has no end.
+pub(super) fn string(text: &str) -> Option<&str> {
+    let (bytes, mut end) = (text.as_bytes(), 1);
+    while *bytes.get(end)? != b'"' {
+        end += if bytes[end] == b'\\' { 2 } else { 1 };
+    }
+    Some(&text[..=end])
+}
+
+/// The name, or number up to its point, that begins here.
+pub(super) fn word(text: &str) -> &str {
+    &text[..text.bytes().position(|byte| !is_word(byte)).unwrap_or(text.len())]
 }
 
 /// Whether a byte can be inside a name or a number without its point; all of any character outside of ASCII can.

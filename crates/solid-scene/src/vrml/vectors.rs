@@ -2,7 +2,7 @@
 //!
 //! The parser leaves an incomplete last vector out without a word, though any number may be the missing one: what follows that is shifted.
 
-use super::scan::is_word;
+use super::scan::{is_word, string, word};
 use crate::text::counted;
 
 /// Warnings of lists of coordinates whose numbers do not come out even, in a text as the scan hands it on. Cost: O(n).
@@ -13,7 +13,7 @@ pub(super) fn uneven(text: &str) -> Vec<String> {
     while let Some(&byte) = text.as_bytes().get(at) {
         let rest = &text[at..];
         at += match byte {
-            b'"' => string(rest),
+            b'"' => string(rest).unwrap_or(rest).len(),
             b'[' => {
                 let each = nodes.last().and_then(|node| numbers_each(node, name));
                 if let Some(warning) = each.and_then(|each| missing(&rest[1..], each)) {
@@ -32,25 +32,13 @@ pub(super) fn uneven(text: &str) -> Vec<String> {
                 1
             }
             _ if is_word(byte) => {
-                let end = rest.bytes().position(|byte| !is_word(byte)).unwrap_or(rest.len());
-                name = &rest[..end];
-                end
+                name = word(rest);
+                name.len()
             }
             _ => 1,
         };
     }
     warnings
-}
-
-/// How many bytes a string has that begins here, with its quotes.
-fn string(text: &str) -> usize {
-    let mut is_escaped = false;
-    let end = text.bytes().skip(1).position(|byte| {
-        let ends = byte == b'"' && !is_escaped;
-        is_escaped = byte == b'\\' && !is_escaped;
-        ends
-    });
-    end.map_or(text.len(), |end| end + 2)
 }
 
 /// How many numbers each value takes, of the fields of a node that say where things are.
