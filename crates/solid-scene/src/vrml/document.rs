@@ -71,12 +71,13 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// Parses a file's text, where so many nodes were written in files before; also what the parser passed over.
+    /// Parses a file's text, where so many nodes were written in files before, and warns of what is passed over.
     pub fn parse(
         file: &Path,
         text: &str,
         nodes_before: usize,
-    ) -> Result<(Document, Vec<String>), SceneError> {
+        mut warn: impl FnMut(String),
+    ) -> Result<Document, SceneError> {
         let scanned = scan(file, text, nodes_before)?;
         let written = scanned.nodes.len();
         let parse = |text: &str| vrml97::Parser::new(text, "").parse();
@@ -86,12 +87,13 @@ impl Document {
                 .unwrap_or_else(|| with_words_cut(&in_our_words(&error.message)));
             SceneError::new(file, Some(error.line), message)
         })?;
-        let warnings = std::mem::take(&mut scene.warnings);
-        let of_parser = warnings.iter().map(|warning| with_words_cut(&warning_in_our_words(warning)));
-        let warnings = of_parser.chain(vectors::uneven(&scanned.text)).collect();
+        for warning in std::mem::take(&mut scene.warnings) {
+            warn(with_words_cut(&warning_in_our_words(&warning)));
+        }
+        vectors::uneven(&scanned.text, warn);
         let marks = if scanned.nodes.len() == scene.nodes.len() { scanned.nodes } else { Vec::new() };
         let connected = connections(&scene);
-        Ok((Document { file: file.to_owned(), scene, written, marks, connected }, warnings))
+        Ok(Document { file: file.to_owned(), scene, written, marks, connected })
     }
 
     /// The file.
@@ -260,8 +262,7 @@ mod tests {
     use super::*;
 
     fn parse(body: &str) -> Result<Document, SceneError> {
-        let parsed = Document::parse(Path::new("a.wrl"), &format!("#VRML V2.0 utf8\n{body}"), 0);
-        parsed.map(|(document, _)| document)
+        Document::parse(Path::new("a.wrl"), &format!("#VRML V2.0 utf8\n{body}"), 0, |_| {})
     }
 
     #[test]

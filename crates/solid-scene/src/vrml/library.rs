@@ -58,15 +58,12 @@ impl Library {
             return Ok(document.clone());
         }
         let nodes_before = self.documents.values().map(|document| document.written).sum();
-        let (document, passed_over) = Document::parse(file, &text::read(file)?, nodes_before)?;
-        for warning in passed_over {
-            // Whoever shows a warning shows the scene's file with it, which is the first.
-            match self.documents.is_empty() {
-                true => warnings.add(warning),
-                false => warnings.add(format!("{}: {warning}", file.display())),
-            }
-        }
-        let document = Rc::new(document);
+        // Whoever shows a warning shows the scene's file with it, which is the first.
+        let warn = |warning: String| match self.documents.is_empty() {
+            true => warnings.add(warning),
+            false => warnings.add(format!("{}: {warning}", file.display())),
+        };
+        let document = Rc::new(Document::parse(file, &text::read(file)?, nodes_before, warn)?);
         self.documents.insert(key.to_owned(), document.clone());
         Ok(document)
     }

@@ -5,9 +5,9 @@
 use super::scan::{is_word, string, word};
 use crate::text::counted;
 
-/// Warnings of lists of coordinates whose numbers do not come out even, in a text as the scan hands it on. Cost: O(n).
-pub(super) fn uneven(text: &str) -> Vec<String> {
-    let (mut warnings, mut nodes, mut name) = (Vec::new(), Vec::<&str>::new(), "");
+/// Warns of lists of coordinates whose numbers do not come out even, in a text as the scan hands it on. Cost: O(n).
+pub(super) fn uneven(text: &str, mut warn: impl FnMut(String)) {
+    let (mut nodes, mut name) = (Vec::<&str>::new(), "");
     let header = text.find(['\r', '\n']).unwrap_or(text.len());
     let (mut at, mut line, mut counted_to) = (header, 1, 0);
     while let Some(&byte) = text.as_bytes().get(at) {
@@ -19,7 +19,7 @@ pub(super) fn uneven(text: &str) -> Vec<String> {
                 if let Some(warning) = each.and_then(|each| missing(&rest[1..], each)) {
                     line += text[counted_to..at].matches('\n').count();
                     counted_to = at;
-                    warnings.push(format!("line {line}: {name} has {warning}"));
+                    warn(format!("line {line}: {name} has {warning}"));
                 }
                 1
             }
@@ -38,7 +38,6 @@ pub(super) fn uneven(text: &str) -> Vec<String> {
             _ => 1,
         };
     }
-    warnings
 }
 
 /// How many numbers each value takes, of the fields of a node that say where things are.
@@ -70,6 +69,12 @@ fn missing(list: &str, each: usize) -> Option<String> {
 mod tests {
     use super::*;
 
+    fn warnings(text: &str) -> Vec<String> {
+        let mut warnings = Vec::new();
+        uneven(text, |warning| warnings.push(warning));
+        warnings
+    }
+
     #[test]
     fn lists_with_missing_numbers_are_told() {
         let text = "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet {\ncoord DEF C Coordinate { point [ 0 0, 1 0 0, 0 1 0 ] } } }
@@ -78,7 +83,7 @@ mod tests {
             "line 3: point has 8 numbers; expected 3 for each value, what is over is left out",
             "line 4: spine has 4 numbers; expected 3 for each value, what is over is left out",
         ];
-        assert_eq!(uneven(text), expected);
+        assert_eq!(warnings(text), expected);
     }
 
     /// The parser takes `1-2` and `1.5.3` for two numbers; what is no list of plain ones is left to it.
@@ -87,7 +92,7 @@ mod tests {
         for list in
             ["[ 0 0 0 1-2.5 3 ]", "[ 1.5.3 0 ]", "[ 0x1 0 ]", "[ 0 0 0 ]", "[ nan ]", "[", "0 0", "IS p"]
         {
-            assert!(uneven(&format!("#\nCoordinate {{ point {list}")).is_empty(), "{list}");
+            assert!(warnings(&format!("#\nCoordinate {{ point {list}")).is_empty(), "{list}");
         }
     }
 }
