@@ -1,0 +1,143 @@
+//! The faces of what is flat: boxes, hulls, and the primitives of complex shapes.
+
+use glam::DVec3;
+use smallvec::smallvec;
+use solid_convex::Cuboid;
+
+use super::super::map::unit;
+use super::{Corner, Corners, Face, Placed, is_aligned, is_level};
+use crate::shape::Hulled;
+
+impl Placed<'_> {
+    pub(super) fn side_of_box(&self, cuboid: &Cuboid, direction: DVec3, local: DVec3) -> Face {
+        let half = 0.5 * cuboid.size();
+        let signs = DVec3::ONE.copysign(local);
+        let (axis, normal, cosine) = match self.map.stretch() {
+            // The sides of a cube are turned as its axes are.
+            Some(stretch) => {
+                let axis = local.abs().max_position();
+                let normal = self.map.linear().col(axis) * (signs[axis] / stretch);
+                (axis, normal, local[axis].abs() / stretch)
+            }
+            None => {
+                let rows = self.map.inverse().transpose();
+                let normals = [0, 1, 2].map(|axis| unit(rows.col(axis) * signs[axis]));
+                let cosine = |axis: &usize| normals[*axis].dot(direction);
+                let best_but = |axis: usize| {
+                    let others = (0..3).filter(|&other| other != axis);
+                    others.max_by(|x, y| cosine(x).total_cmp(&cosine(y))).expect("a box has three axes")
+                };
+                let mut axis = best_but(3);
+                // As of a hull: the edge that ends on this side may lie across the direction.
+                if !is_aligned(cosine(&axis))
+                    && is_level(self.map.linear().col(axis) * -signs[axis], direction)
+                {
+                    axis = best_but(axis);
+                }
+                (axis, normals[axis], cosine(&axis))
+            }
+        };
+        let sign = signs[axis];
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let way = |k: usize| self.map.linear().col(k) * half[k];
+        let (center, along_i, along_j) = (self.map.affine.translation + way(axis) * sign, way(i), way(j));
+        let corner = |i_is_up: bool, j_is_up: bool| {
+            let signed = |way: DVec3, is_up: bool| if is_up { way } else { -way };
+            Corner {
+                point: center + signed(along_i, i_is_up) + signed(along_j, j_is_up),
+                vertex: u32::from(sign > 0.0) << axis | u32::from(i_is_up) << i | u32::from(j_is_up) << j,
+            }
+        };
+        let corners =
+            smallvec![corner(true, true), corner(false, true), corner(false, false), corner(true, false)];
+        Face { corners, normal, number: 2 * axis as u32 + u32::from(sign < 0.0), cosine }
+    }
+
+    pub(super) fn facet(&self, hull: &Hulled, names: Option<&[u32]>, direction: DVec3, local: DVec3) -> Face {
+        let (points, facets) = (hull.points(), hull.facets());
+        let named = |i: u32| names.map_or(i, |names| names[i as usize]);
+        let corner = |&i: &u32| self.corner(points[i as usize], named(i));
+        let Some(number) = self.best_facet(hull, direction, hull.polytope().support_index(local)) else {
+            return Face::slight(facets.extreme().iter().map(corner).collect(), direction);
+        };
+        let facet = facets.get(number);
+        let normal = self.map.normal(facet.normal);
+        let corners = facet.corners.iter().map(corner).collect();
+        Face { corners, normal, number, cosine: normal.dot(direction) }
+    }
+
+    /// The facet of a hull that faces a direction best, of those at the furthest point; if an edge there lies across the direction, of the two beside
+    /// it, as another one that ends there may face it better.
+    fn best_facet(&self, hull: &Hulled, direction: DVec3, furthest: usize) -> Option<u32> {
+        let facets = hull.facets();
+        let cosine = |facet: u32| self.map.normal(facets.get(facet).normal).dot(direction);
+        let better = |x: &u32, y: &u32| cosine(*x).total_cmp(&cosine(*y)).then(y.cmp(x));
+        let there = facets.at(furthest).iter().copied();
+        let Some(best) = there.clone().max_by(better) else {
+            // The furthest point was flattened out of an edge.
+            return (0..facets.len()).max_by(better);
+        };
+        if is_aligned(cosine(best)) {
+            return Some(best);
+        }
+        let way = |end: u32| self.map.linear() * (hull.points()[end as usize] - hull.points()[furthest]);
+        let ends = there.clone().map(|facet| facets.get(facet).after(furthest as u32));
+        let level = ends.map(|end| (end, way(end))).filter(|&(_, way)| is_level(way, direction));
+        let edge = level.max_by(|(_, x), (_, y)| x.dot(direction).total_cmp(&y.dot(direction)));
+        let has_edge = |&facet: &u32| edge.is_none_or(|(end, _)| facets.get(facet).corners.contains(&end));
+        there.filter(has_edge).max_by(better)
+    }
+
+    /// Both sides of a triangle are its face. One without area is a segment.
+    pub(super) fn simplex(&self, vertices: &[u32], direction: DVec3) -> Face {
+        let corner = |i: usize| Corner { point: self.corners[i], vertex: vertices[i] };
+        if let Some(normal) = self.plane {
+            let corners = smallvec![corner(0), corner(1), corner(2)];
+            let cosine = normal.dot(direction);
+            let number = u32::from(cosine < 0.0);
+            return Face { corners, normal: normal * cosine.signum(), number, cosine: cosine.abs() };
+        }
+        let mut corners: Corners = (0..vertices.len()).map(corner).collect();
+        if let [p, q, r] = corners[..] {
+            let length = |pair: &[Corner; 2]| pair[0].point.distance_squared(pair[1].point);
+            let longest = [[p, q], [q, r], [p, r]].into_iter().max_by(|x, y| length(x).total_cmp(&length(y)));
+            corners = longest.expect("a triangle has edges")[..].into();
+        }
+        corners.dedup_by(|x, y| x.point == y.point);
+        Face::slight(corners, direction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DAffine3, DMat3, DQuat};
+    use rand::Rng;
+    use solid_oracle::generate::{direction, in_cube, seeded};
+
+    use super::super::super::map::Map;
+    use super::*;
+    use crate::shape::Shape;
+
+    /// Law: where a box stays one, its sides are those that the inverse tells.
+    #[test]
+    fn sides_of_a_box_that_stays_one() {
+        let mut rng = seeded(176);
+        let shape = Shape::cuboid([1.2, 1.0, 0.8]).unwrap();
+        let body = shape.body().unwrap();
+        for case in 0..3_000 {
+            let turn = DMat3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 3.0));
+            let mirror = DVec3::new([1.0, -1.0][case % 2], 1.0, 1.0) * rng.random_range(0.01..1.0);
+            let at =
+                DAffine3 { matrix3: turn * DMat3::from_diagonal(mirror), translation: in_cube(&mut rng) };
+            let (quick, slow) = (Map::new(at), Map::of_any_shape(at));
+            assert!(quick.stretch().is_some());
+            let toward = direction(&mut rng);
+            let [x, y] = [&quick, &slow].map(|map| Placed::new(&body, map).face(toward));
+            assert_eq!(x.number, y.number, "{at}, {toward}");
+            assert!((x.normal - y.normal).length() < 1e-14 && (x.cosine - y.cosine).abs() < 1e-14, "{at}");
+            for (p, q) in x.corners.iter().zip(&y.corners) {
+                assert!(p.vertex == q.vertex && (p.point - q.point).length() < 1e-14, "{at}, {toward}");
+            }
+        }
+    }
+}
