@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::super::complex_convex::{is_confirmed, nearest_to, point_at};
 use super::super::triangle_triangle::Triangle;
-use super::Meeting;
 use super::face::ALIGNED_SINE;
+use super::meeting::Meeting;
 use super::ring::slack;
 
 /// A centre nearer to the triangle than this, in the unit of the pair, has a way to it with few digits.

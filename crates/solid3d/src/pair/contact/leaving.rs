@@ -3,9 +3,9 @@
 use glam::DVec3;
 use solid_convex::Support;
 
-use super::Meeting;
 use super::difference::Polytope;
 use super::inside::Inside;
+use super::meeting::Meeting;
 use super::side::Side;
 use super::soup_body::Encounter;
 

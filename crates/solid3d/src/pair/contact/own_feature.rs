@@ -3,9 +3,10 @@
 use glam::{DAffine3, DVec2, DVec3};
 use solid_convex::{Capsule, Cuboid};
 
+use super::Feature;
+use super::bodies::touched;
 use super::face::{ALIGNED_SINE, Placed, RIM, SIDE_COSINE, is_aligned};
 use super::map::Map;
-use super::{Feature, touched};
 use crate::shape::Body;
 
 /// The line on the side of a cylinder or a cone.

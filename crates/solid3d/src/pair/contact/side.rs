@@ -12,9 +12,10 @@ use smallvec::SmallVec;
 use super::ball::{is_beside, way, way_along};
 use super::difference::{self, Polytope};
 use super::inside::Inside;
+use super::meeting::Meeting;
 use super::other::Other;
 use super::stars::{LEVEL, SAME_NORMAL, Shortest, Stars, is_parallel};
-use super::{Meeting, face, through};
+use super::{face, through};
 
 /// A triangle whose normal has a greater cosine than this with that of another tells on which side of that it is.
 const SIDE_COSINE: f64 = 0.2;

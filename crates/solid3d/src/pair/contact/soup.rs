@@ -4,105 +4,27 @@
 //! is corrected as [`side`](super::side) says.
 
 use std::cell::LazyCell;
-use std::ops::ControlFlow;
 
-use fearless_simd::Simd;
-use glam::{DAffine3, DVec3};
-use solid_convex::Closest;
-use solid_convex::simd::level;
+use glam::DVec3;
 
-use super::super::approach::is_solid;
-use super::super::frame::Frame;
-use super::super::row::{CONFIRMED, Near, Row, Rows, distances, exceed, verdict};
-use super::super::triangle_triangle::Triangle;
-use super::super::{Scratch, depth, table, triangle_triangle};
+use super::super::Scratch;
 use super::ball::Way;
 use super::difference::{self, Polytope};
+use super::meeting::{Meeting, deepest};
+use super::near_pairs::near_pairs;
 use super::other::Other;
 use super::places::{told, untold};
 use super::side::{Corrected, Side};
 use super::stars::Stars;
-use super::{Meeting, Pair, Patch, SAME_DEPTH, Touch, deepest, face, leave_across};
+use super::whole::{nearest, whole};
+use super::{Pair, Patch, SAME_DEPTH, Touch, face};
 use crate::shape::{Body, Complex};
-use crate::tree::{LeafPairs, bits, pairs_on};
-
-/// The most pairs of primitives whose contacts are told, at up to a kilobyte each. Of more, as where one of many triangles lies in the place of another, or the
-/// margin is as large as both, the deepest point alone is.
-const PAIRS_MAX: usize = 1 << 20;
-
-/// Looks for pairs of primitives that meet; with a margin, those whose boxes are as near.
-struct NearPairs<'s> {
-    soups: [&'s Complex; 2],
-    maps: &'s [DAffine3; 2],
-    margin: f64,
-    rows: &'s mut [Rows; 2],
-    primitive_tests: &'s mut u64,
-    /// With whether they are known to meet.
-    found: Vec<([u32; 2], bool)>,
-}
-
-impl LeafPairs<()> for NearPairs<'_> {
-    #[inline(always)]
-    fn visit<S: Simd>(&mut self, simd: S, leaf_a: &[u32], leaf_b: &[u32]) -> ControlFlow<()> {
-        let [rows_a, rows_b] = &mut *self.rows;
-        let in_a = rows_a.place(simd, self.soups[0], leaf_a, &self.maps[0]);
-        let in_b = rows_b.place(simd, self.soups[1], leaf_b, &self.maps[1]);
-        for i in bits(in_a.overlapping(simd, &in_b.union().inflated(self.margin))) {
-            let bounds = in_a.bounds(i);
-            let near = in_b.overlapping(simd, &bounds.inflated(self.margin));
-            *self.primitive_tests += u64::from(near.count_ones());
-            let triangles = if in_a.triangles() >> i & 1 == 1 { near & in_b.triangles() } else { 0 };
-            let sure = verdict(simd, (in_a, i), in_b, triangles);
-            let apart = if self.margin == 0.0 {
-                sure.apart
-            } else {
-                beyond(simd, self.margin, &in_a.triangle(i), in_b, triangles & !sure.meet)
-            };
-            for j in bits(near & !apart) {
-                // Of triangles it is decided exactly, as everywhere.
-                let known = triangles >> j & 1 == 1;
-                let certain = (sure.meet | sure.apart) >> j & 1 == 1;
-                let meet = if certain {
-                    sure.meet >> j & 1 == 1
-                } else {
-                    known && triangle_triangle::intersect(&in_a.triangle(i), &in_b.triangle(j))
-                };
-                if meet || !known || self.margin > 0.0 {
-                    self.found.push(([in_a.primitive(i), in_b.primitive(j)], meet));
-                }
-            }
-        }
-        if self.found.len() > PAIRS_MAX { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-}
-
-/// Of triangles in some lanes, those that are further from a triangle than a margin, certainly.
-#[inline(always)]
-fn beyond<S: Simd>(simd: S, margin: f64, x: &Triangle, row: &Row, lanes: u32) -> u32 {
-    if lanes == 0 {
-        return 0;
-    }
-    let Near { least, .. } = distances(simd, x, row, lanes);
-    exceed(simd, &least, margin * (1.0 + CONFIRMED) + CONFIRMED) & lanes
-}
 
 /// The contacts of two soups.
 pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scratch) -> Vec<Patch> {
-    let placing = pair.placing();
-    let mut relative = placing.relative();
-    let (margin, [in_a, in_b]) = pair.margins(&placing);
-    relative.slack_in_a += in_a;
-    relative.slack_in_b += in_b;
-    let Scratch { traversal, rows, primitive_tests, .. } = scratch;
-    rows.iter_mut().for_each(Rows::clear);
-    let (soups, maps) = ([a, b], &placing.common);
-    let mut near = NearPairs { soups, maps, margin, rows, primitive_tests, found: Vec::new() };
-    let walk = pairs_on(level(), a.tree(), b.tree(), &relative, &|| None, traversal, &mut near);
-    let mut found = near.found;
-    if walk.is_break() {
+    let Some(found) = near_pairs(pair, [a, b], scratch) else {
         return whole(pair, scratch).or_else(|| nearest(pair, scratch)).into_iter().collect();
-    }
-    found.sort_unstable();
+    };
     let stars = [&Stars::new(a, &pair.maps[0], found.len()), &Stars::new(b, &pair.maps[1], found.len())];
     let soups = Soups { pair, stars };
     let mut patches: Vec<Patch> =
@@ -255,69 +177,4 @@ fn touches(pair: &Pair, [of_a, of_b]: [&Side; 2], meeting: &Meeting) -> Option<(
 fn way_of(corners: [&[DVec3]; 2]) -> Option<Way> {
     let [&[p, q, r], &[x, y, z]] = corners else { return None };
     difference::way(&Polytope::triangle([p, q, r]), &Polytope::triangle([x, y, z]))
-}
-
-/// The deepest point of two shapes as wholes: of what is wholly inside a solid, or touches by so little that no pair of primitives
-/// told. What is wholly inside meets no primitive.
-pub(super) fn whole(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
-    let shapes = [pair.a, pair.b];
-    let deepest = depth::of_deepest(shapes, |_| true, scratch);
-    // A solid is as deep as its hull.
-    let (primitives, found) = match deepest {
-        Some(deepest) if !shapes.iter().any(is_solid) => deepest,
-        _ => {
-            let primitives = deepest.map(|(primitives, _)| primitives).unwrap_or_default();
-            (primitives, table::penetration(pair.a, pair.b, scratch)?)
-        }
-    };
-    Some(pair.patch_of_both(primitives, pair.placed(found.points), found.direction, found.depth))
-}
-
-/// The closest points of two shapes as wholes that are apart, within the margin.
-fn nearest(pair: &Pair, scratch: &mut Scratch) -> Option<Patch> {
-    let margin = pair.margin / pair.frame.scale;
-    let Closest { distance, points } = table::closest_within(pair.a, pair.b, margin, scratch)?;
-    let [on_a, on_b] = pair.placed(points);
-    Some(pair.patch_of_both([0, 0], [on_a, on_b], (on_a - on_b).try_normalize()?, -distance))
-}
-
-impl Pair<'_> {
-    /// One contact of two shapes as wholes, of a depth in the world.
-    fn patch_of_both(
-        &self,
-        primitives: [u32; 2],
-        [on_a, on_b]: [DVec3; 2],
-        normal: DVec3,
-        depth: f64,
-    ) -> Patch {
-        let (depth, features) = (depth * self.frame.scale, [super::Feature::Face(0); 2]);
-        let touch = Touch { on_a, on_b, depth, primitives, features };
-        Patch { normal, touches: vec![touch], is_inward: false }
-    }
-
-    /// The margin in a frame, and in the local spaces of the two.
-    pub(super) fn margins(&self, placing: &Frame) -> (f64, [f64; 2]) {
-        let margin = self.margin / self.frame.scale * placing.scale;
-        (margin, placing.stretch().map(|stretch| margin / stretch.least))
-    }
-
-    /// The contacts along a normal, given from `b` to `a`, that may not be that of the deepest point.
-    pub(super) fn across(&self, a: &face::Placed, b: &face::Placed, normal: DVec3) -> Vec<Touch> {
-        let mut face_a = a.face(-normal);
-        let mut face_b = b.face(normal);
-        leave_across(&mut face_a, &mut face_b, normal);
-        self.clipped(a, &face_a, b, &face_b, normal)
-    }
-
-    /// The contacts over a triangle along its own normal, given from `b` to `a`; `of_a` says whose it is.
-    pub(super) fn over(&self, a: &face::Placed, b: &face::Placed, normal: DVec3, of_a: bool) -> Vec<Touch> {
-        let mut face_a = a.face(-normal);
-        let mut face_b = b.face(normal);
-        let other = if of_a { &mut face_b } else { &mut face_a };
-        if !other.is_faced() {
-            let along = if of_a { normal } else { -normal };
-            other.slim(along);
-        }
-        self.clipped(a, &face_a, b, &face_b, normal)
-    }
 }

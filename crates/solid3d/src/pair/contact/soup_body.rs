@@ -12,12 +12,13 @@ use super::cover::Cover;
 use super::difference::Polytope;
 use super::inside::Inside;
 use super::leaving::{Leaving, WayOut};
+use super::meeting::{Meeting, deepest};
 use super::other::Other;
 use super::overhang::Overhang;
 use super::places::{told, untold};
 use super::side::Side;
 use super::stars::Stars;
-use super::{Feature, Meeting, Pair, Part, Patch, SAME_DEPTH, Touch, deepest, face, ridge};
+use super::{Feature, Pair, Part, Patch, SAME_DEPTH, Touch, face, ridge};
 use crate::shape::{Body, Complex};
 
 /// A soup and a body, of which primitives that meet it are looked at one after the other.

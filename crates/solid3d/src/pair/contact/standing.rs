@@ -6,7 +6,7 @@
 use glam::DVec3;
 use solid_convex::gjk;
 
-use super::DEPTH_ERROR;
+use super::bodies::DEPTH_ERROR;
 use super::leaving::{Leaving, WayOut};
 use super::other::highest;
 use super::soup_body::Encounter;
