@@ -1,10 +1,12 @@
 //! Placements that turn and scale alike in all directions: known nearly, by two numbers, or closely, of two at once, by wide instructions.
 
+use std::ops::RangeInclusive;
+
 use fearless_simd::{Simd, f64x2, f64x4, mask64x4, prelude::*};
 use glam::{DAffine3, DVec3};
 
 use crate::MAGNITUDE_MAX;
-use crate::size::PLAIN_SQUARES;
+use crate::size::{PLAIN_SQUARES, REGULAR_SQUARES};
 
 /// How far the scalar products of a placement's rows, or columns, relative to their squared length, may be from those of
 /// perpendicular ones of equal length. Products of a dozen rotations in f64 are within it. By Gershgorin's circles what it lets through
@@ -62,14 +64,25 @@ fn dot<S: Simd>(u: [f64x2<S>; 3], v: [f64x2<S>; 3]) -> f64x2<S> {
 /// The squares of the scales of two placements that are similarities of plain sizes, and so good placements; `None` unless both are.
 #[inline(always)]
 pub fn plain_squares<S: Simd>(simd: S, [a, b]: [&DAffine3; 2]) -> Option<[f64; 2]> {
-    let ((of_a, a_is_good), (of_b, b_is_good)) = (look(simd, a), look(simd, b));
+    squares_in(simd, [a, b], &PLAIN_SQUARES)
+}
+
+/// The same of any size but next to the limits: squares of scales lose no digits, but products of a few of them may.
+#[inline(always)]
+pub fn regular_squares<S: Simd>(simd: S, at: [&DAffine3; 2]) -> Option<[f64; 2]> {
+    squares_in(simd, at, &REGULAR_SQUARES)
+}
+
+#[inline(always)]
+fn squares_in<S: Simd>(simd: S, [a, b]: [&DAffine3; 2], range: &RangeInclusive<f64>) -> Option<[f64; 2]> {
+    let ((of_a, a_is_good), (of_b, b_is_good)) = (look(simd, a, range), look(simd, b, range));
     all_is_good(a_is_good & b_is_good).then_some([of_a, of_b])
 }
 
 /// The square of the scale of one placement, as [`plain_squares`].
 #[inline(always)]
 pub fn plain_square<S: Simd>(simd: S, at: &DAffine3) -> Option<f64> {
-    let (square, is_good) = look(simd, at);
+    let (square, is_good) = look(simd, at, &PLAIN_SQUARES);
     all_is_good(is_good).then_some(square)
 }
 
@@ -85,7 +98,11 @@ fn all_is_good<S: Simd>(is_good: mask64x4<S>) -> bool {
 /// A similarity times its transpose is its squared scale: that takes the sums of products of columns, without any across a vector. The placement
 /// is read as it lies, column by column, with the next after each. One mask for all, since single comparisons are slow to join.
 #[inline(always)]
-fn look<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) -> (f64, mask64x4<S>) {
+fn look<S: Simd>(
+    simd: S,
+    DAffine3 { matrix3, translation }: &DAffine3,
+    range: &RangeInclusive<f64>,
+) -> (f64, mask64x4<S>) {
     let columns: &[f64; 9] = matrix3.as_ref();
     let at = |start: usize| f64x4::from_slice(simd, &columns[start..start + 4]);
     let splat = |value: f64| f64x4::splat(simd, value);
@@ -104,8 +121,8 @@ fn look<S: Simd>(simd: S, DAffine3 { matrix3, translation }: &DAffine3) -> (f64,
         & (next.abs().simd_le(skew_max) | beyond(0b1100))
         & (outer.abs().simd_le(skew_max) | beyond(0b1110))
         & f64x4::simd_from(simd, [x, y, z, z]).abs().simd_le(splat(MAGNITUDE_MAX))
-        & of_all.simd_ge(splat(*PLAIN_SQUARES.start()))
-        & of_all.simd_le(splat(*PLAIN_SQUARES.end()));
+        & of_all.simd_ge(splat(*range.start()))
+        & of_all.simd_le(splat(*range.end()));
     (square, good)
 }
 

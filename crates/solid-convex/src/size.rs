@@ -17,6 +17,9 @@ pub(crate) const PLAIN: RangeInclusive<f64> = 1e-200..=1e200;
 /// Squares of scales that are plain: no product of a few of them overflows or loses digits.
 pub(crate) const PLAIN_SQUARES: RangeInclusive<f64> = 1e-60..=1e60;
 
+/// Squares of scales that are within the limits of placements, and lose no digits.
+pub(crate) const REGULAR_SQUARES: RangeInclusive<f64> = 1e-199..=1e199;
+
 /// A size that no shape can have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeError {
@@ -47,7 +50,7 @@ pub(crate) fn positive(argument: &'static str, value: f64) -> Result<f64, SizeEr
 /// The power of two that takes `size` to [1, 2), and 1 for size 0: multiplying by it loses nothing.
 ///
 /// Whatever is scaled by it first can be computed with neither overflow nor underflow, and with the same digits in any
-/// unit of length. `size` must be at least 0 and finite; below 2^-1000 it counts as that.
+/// unit of length. `size` must be at least 0 and below 2^1023; below 2^-1000 it counts as that.
 ///
 /// ```
 /// assert_eq!(solid_convex::unit_scale(1000.0), 1.0 / 512.0);

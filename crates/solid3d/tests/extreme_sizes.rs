@@ -351,3 +351,57 @@ fn squares_of_a_cube() -> Shape {
     }
     Shape::mesh(corners, triangles).unwrap()
 }
+
+/// Law: sizes that are a power of two larger, the shapes' own with the way between them, change no bit of an answer.
+#[test]
+fn a_power_of_two_in_the_shapes_own_sizes_changes_no_bit() {
+    let mut rng = seeded(20_281);
+    let (mut hits, mut cases) = (0, 0);
+    for i in 0..1_200 {
+        let sizes = [[0; 3]; 2].map(|sizes| sizes.map(|_| rng.random_range(0.3..=1.5)));
+        let points =
+            [[0; 9]; 2].map(|points| points.map(|_| rng.random_range(0.3..1.2) * direction(&mut rng)));
+        let shape = |kind: usize, k: usize, factor: f64| {
+            let [x, y, z] = sizes[k].map(|size| size * factor);
+            match kind {
+                0 => Shape::sphere(x),
+                1 => Shape::cuboid([x, y, z]),
+                2 => Shape::cone(x, y),
+                3 => Shape::cylinder(x, y),
+                4 => Shape::capsule(x, y),
+                _ => Shape::convex_hull(&points[k].map(|point| point * factor)),
+            }
+            .unwrap()
+        };
+        let at =
+            [0; 2].map(|_| DAffine3 { translation: 1.2 * direction(&mut rng), ..placement(&mut rng, 1.0) });
+        let answers = |factor: f64| {
+            let [a, b] = [shape(i % 6, 0, factor), shape(i / 6 % 6, 1, factor)];
+            let [at_a, at_b] = at.map(|at| DAffine3 { translation: at.translation * factor, ..at });
+            let point = query::common_point(&a, &at_a, &b, &at_b).unwrap();
+            let near = query::distance(&a, &at_a, &b, &at_b).unwrap();
+            let deep = query::penetration(&a, &at_a, &b, &at_b).unwrap();
+            let contacts = query::contacts(&a, &at_a, &b, &at_b, &ContactOptions::default()).unwrap();
+            let told = |point: &query::ContactPoint| {
+                let points = [point.point_on_a / factor, point.point_on_b / factor];
+                (points, point.depth / factor)
+            };
+            (
+                query::separating_axis(&a, &at_a, &b, &at_b).unwrap(),
+                point.map(|point| point / factor),
+                (near.distance / factor, near.point_on_a / factor, near.point_on_b / factor),
+                deep.map(|deep| {
+                    ([deep.depth, deep.depth_min, deep.depth_max].map(|x| x / factor), deep.normal)
+                }),
+                contacts.iter().flat_map(|region| region.points.iter().map(told)).collect::<Vec<_>>(),
+            )
+        };
+        let reference = answers(1.0);
+        hits += usize::from(reference.1.is_some());
+        cases += 1;
+        for power in [-300, -110, 110, 300] {
+            assert_eq!(answers(2f64.powi(power)), reference, "case {i}, 2^{power}");
+        }
+    }
+    assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases} hit");
+}

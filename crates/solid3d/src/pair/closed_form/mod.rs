@@ -168,6 +168,27 @@ pub(super) fn by_depth_of_ball<T>(
     })
 }
 
+/// The same of any sizes, of a body and a ball mirrored. The placements must have been checked.
+pub(super) fn depth_of_ball(a: Placed, b: Placed) -> Option<DepthOfBall> {
+    if is_apart_from_hull(a, b) {
+        return None;
+    }
+    of_ball(a, b, |pair| Some(DepthOfBall { found: pair.penetration()?, own_normal: pair.own_normal() }))
+}
+
+/// How deep a ball and a body are in each other.
+pub(super) struct DepthOfBall {
+    pub found: Penetration,
+    /// The outward normal of the body in its own directions where that is nearest.
+    pub own_normal: DVec3,
+}
+
+impl Mirror for DepthOfBall {
+    fn mirrored(self) -> Self {
+        DepthOfBall { found: self.found.mirrored(), ..self }
+    }
+}
+
 /// Whether a ball and a hull clearly are apart: then no search is worth it that would find how far.
 fn is_apart_from_hull(a: Placed, b: Placed) -> bool {
     let of_hull = a.shape.polytope().is_some() | b.shape.polytope().is_some();
@@ -290,6 +311,12 @@ impl Lengths for Relation {
 impl Lengths for Closest {
     fn divided(self, by: f64) -> Self {
         Closest { distance: self.distance / by, ..self }
+    }
+}
+
+impl Lengths for DepthOfBall {
+    fn divided(self, by: f64) -> Self {
+        DepthOfBall { found: self.found.divided(by), ..self }
     }
 }
 

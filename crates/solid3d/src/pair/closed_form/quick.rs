@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use fearless_simd::Simd;
 use glam::{DAffine3, DVec3};
 use solid_convex::gjk::Glance;
-use solid_convex::similarity::{STRETCH_ERROR, plain_squares, rough_squares};
+use solid_convex::similarity::{STRETCH_ERROR, regular_squares, rough_squares};
 use solid_convex::{Closest, Penetration, Witness};
 
 use super::GAP_MIN;
@@ -21,9 +21,9 @@ const PLAIN_SIZES: RangeInclusive<f64> = 1e-30..=1e30;
 /// The least square of a size, of which the same holds. None is too large where squares are compared alone: what overflows is the greater.
 const SQUARE_MIN: f64 = 1e-60;
 
-/// The squares of scales relative to that of the size of the data, where closest points are found: then they are plain also in a unit near that size,
-/// which gives the same bits.
-const PLAIN_PARTS: RangeInclusive<f64> = 1e-58..=1e58;
+/// The squares of scales relative to that of the size of the data, where closest points are found: then they are regular also in a unit near that size,
+/// which gives the same bits. They are far from 1 where shapes are that large, or that small, in their own spaces.
+const REGULAR_PARTS: RangeInclusive<f64> = 1e-197..=1e197;
 
 /// The least gap or overlap that is decided where lengths are off by as much as a rough look lets them be: of both shapes, twice, for the box that is
 /// mapped there and back; more is as good, since few pairs are nearer.
@@ -103,7 +103,7 @@ pub(super) struct View<'a> {
 impl<'a> View<'a> {
     #[inline(always)]
     pub fn of<S: Simd>(simd: S, at: [&'a DAffine3; 2]) -> Option<Self> {
-        Some(View::with_squares(at, plain_squares(simd, at)?))
+        Some(View::with_squares(at, regular_squares(simd, at)?))
     }
 
     #[inline(always)]
@@ -193,9 +193,9 @@ impl<'a> View<'a> {
     pub fn margin(&self, reach: [f64; 2]) -> Option<f64> {
         let size = self.both(reach) + self.offset.abs().element_sum();
         let unit = size * size;
-        let is_plain =
-            |square: f64| (unit * PLAIN_PARTS.start() <= square) & (square <= unit * PLAIN_PARTS.end());
-        (PLAIN_SIZES.contains(&size) && is_plain(self.squares[0]) & is_plain(self.squares[1]))
+        let is_regular =
+            |square: f64| (unit * REGULAR_PARTS.start() <= square) & (square <= unit * REGULAR_PARTS.end());
+        (PLAIN_SIZES.contains(&size) && is_regular(self.squares[0]) & is_regular(self.squares[1]))
             .then_some(GAP_MIN * size)
     }
 

@@ -5,6 +5,7 @@ use glam::DVec3;
 use smallvec::smallvec;
 use solid_convex::Penetration;
 
+use super::super::closed_form::DepthOfBall;
 use super::super::{Mirror, Placed, closed_form};
 use super::clip::PARALLEL_SINE;
 use super::own_feature::own_feature;
@@ -48,10 +49,17 @@ fn of_ball_and_body(a: Placed, b: Placed) -> Option<Manifold> {
 /// The contact of a ball and a convex body that are in each other, or of two capsules that are; `None` for other shapes,
 /// and where the general way has to say.
 pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
-    if !(a.shape.is_ball() || b.shape.is_ball() || closed_form::are_round(a, b)) {
+    if closed_form::are_round(a, b) {
+        return contact_of(a, b, &closed_form::penetration(a, b)?);
+    }
+    if !(a.shape.is_ball() || b.shape.is_ball()) {
         return None;
     }
-    contact_of(a, b, &closed_form::penetration(a, b)?)
+    let (in_order, DepthOfBall { found, own_normal }) =
+        (closed_form::ball_is_first(a, b)?, closed_form::depth_of_ball(a, b)?);
+    let (body, ball) = (if in_order { b } else { a }, Feature::Vertex(0));
+    let of_body = own_feature(&body.shape.body()?, own_normal);
+    Some(manifold(a, b, &found, if in_order { [ball, of_body] } else { [of_body, ball] }))
 }
 
 /// The same, by how deep they are in each other.
