@@ -407,3 +407,16 @@ fn a_bound_saves_work() {
     assert_eq!(far.2, 0, "no primitive is tested that is too far");
     assert!(3 * far.1 < near.1, "{far:?} {near:?}");
 }
+
+/// Law: a box that was grown for a pair shrinks when the clearance of all is set, once an object of the pair is gone.
+#[test]
+fn no_box_is_grown_for_an_object_that_is_gone() {
+    let (mut world, ball) = (World::new(), Shape::sphere(1.0).unwrap());
+    let [a, gone, _] =
+        [0.0, 9.0, 40.0].map(|x| world.add(&ball, DAffine3::from_translation(DVec3::X * x)).unwrap());
+    world.set_pair_clearance(a, gone, 100.0).unwrap();
+    world.remove(gone).unwrap();
+    world.set_clearance(0.5).unwrap();
+    assert!(world.test().is_empty());
+    assert_eq!(world.statistics().candidates, 0);
+}

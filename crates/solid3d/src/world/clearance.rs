@@ -108,8 +108,10 @@ impl World {
         self.clearances.greatest.clear();
         let pairs = std::mem::take(&mut self.clearances.pairs);
         for (&(a, b), &clearance) in &pairs {
-            for id in [a, b].into_iter().filter(|&id| self.objects.contains_key(id)) {
-                self.clearances.raise(id, clearance);
+            // Some may be of objects that were removed since.
+            if self.objects.contains_key(a) && self.objects.contains_key(b) {
+                self.clearances.raise(a, clearance);
+                self.clearances.raise(b, clearance);
             }
         }
         self.clearances.pairs = pairs;
