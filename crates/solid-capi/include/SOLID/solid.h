@@ -151,7 +151,7 @@ void dtResetPairResponse(DtObjectRef object1, DtObjectRef object2);
  * created first. Pairs come by object1, then by object2: objects of complex shapes first, then by creation.
  *
  * coll_data. Simple response: NULL.
- * Witnessed: point1 and point2 are the same point of the world; normal is zero.
+ * Witnessed: point1 and point2 are a common point, each local to its object; normal is zero.
  * Smart: point1 and point2 are the closest points in the previous frame, local to the placements of that frame; normal is
  * the world position of point1 less that of point2, so it points away from object2. The previous frame is what was at the
  * last dtProceed; for an object created since, what was at the first dtTest or dtTestObjects after its creation. When they
