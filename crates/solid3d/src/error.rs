@@ -200,7 +200,7 @@ pub enum Error {
     /// A placement flattens space.
     #[error(
         "{argument} is singular: its axes are {}, {}, {}; each needs a direction of its own, out of the plane of the \
-         others, and a length of at least {MAGNITUDE_MIN:e}",
+         others, and a coordinate of at least {MAGNITUDE_MIN:e} in magnitude",
         coordinates(x),
         coordinates(y),
         coordinates(z)

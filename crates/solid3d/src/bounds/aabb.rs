@@ -4,8 +4,8 @@ use glam::{DAffine3, DVec3};
 
 /// An axis-aligned box, closed: boxes that touch overlap.
 ///
-/// An empty box has `min` above `max` in some coordinate; [`Aabb::EMPTY`] is the neutral element of
-/// [`union`](Aabb::union).
+/// An empty box has `min` above `max` in some coordinate. [`Aabb::EMPTY`] is the neutral element of [`union`](Aabb::union), overlaps nothing, and has
+/// no centre; of other empty boxes nothing is promised.
 ///
 /// ```
 /// use solid3d::{Aabb, glam::DVec3};

@@ -55,10 +55,10 @@ fn at_length(shape: &Shape, placement: &DAffine3, point: DVec3) -> Result<Closes
     Ok(ClosestPoint { point: if distance == 0.0 { point } else { point_on_a }, distance })
 }
 
-/// How often a mesh winds around a point: the generalised winding number. Of a closed mesh that is not solid it is a whole number,
-/// 1 inside when its triangles show their front outside; of a mesh with holes, overlaps or faces that are turned the wrong way
-/// it is near 1 well inside and near 0 well outside, so that above 0.5 is a good guess for inside. On the surface it jumps, and is
-/// some value between.
+/// How often a mesh winds around a point: the generalised winding number. Of a closed mesh, solid or not, it is a whole number up to the
+/// error, 1 inside when its triangles show their front outside, -1 when they show their back; of a mesh with holes, overlaps or faces that
+/// are turned the wrong way it is near 1 well inside and near 0 well outside, so that above 0.5 is a good guess for inside. On the surface
+/// it jumps, and is some value between.
 ///
 /// The sum of the solid angles of all triangles over that of a sphere (Jacobson, Kavan and Sorkine-Hornung, *Robust
 /// Inside-Outside Segmentation using Generalized Winding Numbers*, 2013), each by the formula of Van Oosterom and Strackee, 1983. A

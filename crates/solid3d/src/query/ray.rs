@@ -17,8 +17,8 @@ use crate::shape::Shape;
 /// - The error of the point is some 1e-14 of the size of the data (the shape's extent and the distance of the ray's
 ///   origin); for convex hulls of more than 384 faces, and next to edges of others, it is up to [`CAST_ERROR`](solid_convex::gjk::CAST_ERROR) of the
 ///   shape's extent more, never late.
-///   A ray that ends at a triangle, or passes by its outer edge, closer than by that error may miss it; so may one that starts at a triangle of a
-///   solid mesh and goes out. One that goes in does not: it hits there, or starts inside.
+///   A ray that touches a triangle or a convex shape with an end, or passes by an outer edge, closer than by that error may miss it; so may one that
+///   starts at a triangle of a solid mesh and goes out. One that goes in does not: it hits there, or starts inside.
 ///
 /// A ray with a coordinate that is not finite or beyond 1e100, without a direction, or with a `max` that is negative or not a number
 /// is an [`Error`](crate::Error). Cost: a constant for convex shapes, about log n for meshes.

@@ -264,7 +264,7 @@ impl Shape {
         size_of::<Shape>() + owned
     }
 
-    /// The vertices of a convex hull (those on its surface), a mesh or a complex shape; `None` for the other kinds.
+    /// The vertices of a convex hull (its corners alone), a mesh or a complex shape; `None` for the other kinds.
     pub fn vertices(&self) -> Option<&[DVec3]> {
         match &self.geometry {
             Geometry::Polytope(polytope) => Some(polytope.points()),
@@ -285,7 +285,10 @@ impl Shape {
     /// refitting has let its cost (by the surface-area heuristic) grow by more than 30 % since it was built.
     ///
     /// Clones made before keep the old positions. A solid stays closed; see [`into_solid`](Shape::into_solid). Cost: O(n), and
-    /// O(n log n) when the tree is rebuilt. On an error nothing has changed.
+    /// O(n log n) when the tree is rebuilt.
+    ///
+    /// Errors, on which nothing has changed: another number of positions than of vertices, one that is not finite or too large, a shape of
+    /// another kind, a solid that would be torn.
     ///
     /// ```
     /// use solid3d::{Shape, glam::DVec3};

@@ -33,7 +33,7 @@ impl AddAssign for Counters {
 /// Room that most queries do with, taken at once: growing to it took a query of a fresh scratch a tenth of its time.
 pub(super) const STACK_USUAL: usize = 128;
 
-/// The scratch memory of queries. Keep one per thread: from the second query on, nothing is allocated.
+/// The scratch memory of queries. Keep one per thread: a query like one before allocates nothing.
 ///
 /// ```
 /// use solid3d::tree::{Counters, Traversal};

@@ -20,8 +20,8 @@ pub enum EventKind {
     Began,
     /// It collides, and did when the last frame ended.
     Persists,
-    /// It does not collide, and did when the last frame ended. Objects that were removed since collide no more, and neither do
-    /// pairs whose response is to [ignore](super::Response::Ignore) them now.
+    /// It does not collide, and did when the last frame ended. Objects that were removed since collide no more, and from the next test on
+    /// neither do pairs whose response is to [ignore](super::Response::Ignore) them now.
     Ended,
 }
 
@@ -58,7 +58,7 @@ impl World {
     }
 
     /// The collisions that the last test found, as [`test`](World::test) returned them, without those of objects removed since;
-    /// nothing is copied.
+    /// nothing is copied. Of [`test_with`](World::test_with), those that were left when it ended: what `respond` moved may have parted some.
     ///
     /// ```
     /// use solid3d::{Shape, World, glam::DAffine3};

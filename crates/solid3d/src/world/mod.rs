@@ -164,6 +164,8 @@ impl World {
     }
 
     /// Adds an object: an instance of a shape at a place. Its previous frame is this one until the next [`proceed`](World::proceed).
+    ///
+    /// Errors: a placement that is not finite, too large, or singular; more objects than there are numbers for.
     pub fn add(&mut self, shape: &Shape, placement: DAffine3) -> Result<ObjectId> {
         self.add_ranked(shape, placement, 0)
     }
@@ -199,7 +201,7 @@ impl World {
         Ok(id)
     }
 
-    /// Removes an object, with the responses set for it and for its pairs.
+    /// Removes an object, with the responses and clearances set for it and for its pairs.
     pub fn remove(&mut self, id: ObjectId) -> Result<()> {
         let object = self.objects.remove(id).ok_or(Error::UnknownObject { argument: "object", id })?;
         self.forget_responses(id, object.pair_responses);
@@ -273,7 +275,7 @@ impl World {
     /// Deforms an object whose shape is a mesh or a complex shape: gives its vertices new positions, in local space. Other
     /// objects of the same shape stay as they are. Smart response still sees the old positions in the previous frame.
     ///
-    /// Cost: that of [`Shape::deform`].
+    /// Cost and errors: those of [`Shape::deform`].
     pub fn deform(&mut self, id: ObjectId, positions: &[DVec3]) -> Result<()> {
         let object = self.object_mut(id)?;
         let was_displaced = object.displaced;
@@ -293,7 +295,8 @@ impl World {
         self.findings.proceed();
     }
 
-    /// Ends the frame for one object alone: it is then as if it had just been added, as it is.
+    /// Ends the frame for one object alone: its previous frame is then as it is now. [Events](World::events) are still told against the last
+    /// [`proceed`](World::proceed).
     pub fn proceed_object(&mut self, id: ObjectId) -> Result<()> {
         self.object(id)?;
         // It stays in `displaced` for a while, where a second entry or none to do is harmless.

@@ -2,8 +2,8 @@
 
 use std::ops::AddAssign;
 
-/// The work that the tests of a world did, since it was made. The same calls give the same counts, whatever the machine and the
-/// number of threads.
+/// The work that the tests of a world, and its searches for what is [near](super::World::near), did since it was made. The same calls give
+/// the same counts, whatever the machine and the number of threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
     /// Pairs whose boxes overlap and whose response is not to ignore them.

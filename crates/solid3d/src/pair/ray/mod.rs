@@ -28,7 +28,7 @@ use solid_convex::MAGNITUDE_MIN;
 pub struct Ray {
     /// Where it starts.
     pub origin: DVec3,
-    /// Where it goes, of any length but zero: the unit of `t`.
+    /// Where it goes: the unit of `t`. Of any length, but with a coordinate of at least 1e-100 in magnitude.
     pub direction: DVec3,
     /// The greatest `t`: at least 0, perhaps infinite.
     pub max: f64,
