@@ -386,6 +386,21 @@ fn far_from_local_origins_the_time_is_the_same() {
     assert_rate("pairs", hits, cases);
 }
 
+/// Law: nor do they change the normal, which is sought where the hulls are all but in touch.
+#[test]
+fn far_from_local_origins_the_normal_is_the_same() {
+    let far = DVec3::new(1e6, -7e5, 3e5);
+    let corners: Vec<DVec3> = common::cube(0.5).vertices.iter().map(|&corner| corner + far).collect();
+    let (hull, back) = (Shape::convex_hull(&corners).unwrap(), DAffine3::from_translation(-far));
+    let turned = DAffine3::from_rotation_z(0.3) * DAffine3::from_rotation_x(0.5);
+    for turn in [DAffine3::IDENTITY, turned] {
+        let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 0.1, 0.2)) * turn * back;
+        let found = query::time_of_impact(&hull, &at(-3.0), &at(1.0), &hull, &back, &back, &OPTIONS).unwrap();
+        let normal = found.unwrap().normal.unwrap();
+        assert!((normal + DVec3::X).length() < 1e-6, "{turn}: {normal}");
+    }
+}
+
 /// What starts nearly in touch and leaves, or slides, does not meet.
 #[test]
 fn what_leaves_does_not_meet_at_the_start() {
@@ -397,6 +412,80 @@ fn what_leaves_does_not_meet_at_the_start() {
         for (to, meets) in [(at(2.0, 0.0), false), (at(1.0 + gap, 1.5), false), (at(0.5, 0.0), true)] {
             let found = query::time_of_impact(&block, &start, &to, &block, &here, &here, &OPTIONS).unwrap();
             assert_eq!(found.is_some(), meets, "{gap} {to:?} {found:?}");
+        }
+    }
+}
+
+/// A unit cube as a body, as a hull and as a mesh, whose surface alone is met.
+fn cubes() -> [Shape; 3] {
+    let mesh = common::cube(0.5).shape();
+    let corners: Vec<DVec3> = mesh.vertices().unwrap().to_vec();
+    [Shape::cuboid([1.0; 3]).unwrap(), Shape::convex_hull(&corners).unwrap(), mesh]
+}
+
+/// Law: the normal leads from the second shape to the first, of whatever class they are.
+#[test]
+fn the_normal_leads_from_the_second_to_the_first() {
+    let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 0.1, -0.2));
+    let [here, from, to] = [0.0, -3.0, 1.0].map(at);
+    for moving in cubes() {
+        for still in cubes() {
+            let forth = query::time_of_impact(&moving, &from, &to, &still, &here, &here, &OPTIONS).unwrap();
+            let back = query::time_of_impact(&still, &here, &here, &moving, &from, &to, &OPTIONS).unwrap();
+            for (found, normal) in [(forth, DVec3::NEG_X), (back, DVec3::X)] {
+                let Impact { time, normal: found, .. } = found.unwrap();
+                assert!((time - 0.5).abs() < 1e-7, "{} {}: {time}", moving.kind(), still.kind());
+                assert!(
+                    (found.unwrap() - normal).length() < 1e-6,
+                    "{} {}: {found:?}",
+                    moving.kind(),
+                    still.kind()
+                );
+            }
+        }
+    }
+}
+
+/// Small triangles, one beside the other along z, as far from that axis as their tips, which lead away from it.
+fn comb(tip: f64, root: f64, unit: f64) -> Shape {
+    let corners = (0..40).flat_map(|i| {
+        let z = 0.1 * f64::from(i - 20);
+        [DVec3::new(tip, 0.0, z), DVec3::new(root, 0.0, z - 0.01), DVec3::new(root, 0.0, z + 0.01)]
+    });
+    let triangles: Vec<[u32; 3]> = (0..40).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Shape::mesh(corners.map(|corner| corner * unit).collect::<Vec<_>>(), triangles).unwrap()
+}
+
+/// What turns goes along an arc, which boxes that follow its chord do not reach: also of a mesh whose own unit of length is another, and of
+/// one that grows on the way.
+#[test]
+fn what_only_an_arc_reaches_is_met() {
+    const HALF_ANGLE: f64 = 0.095;
+    for unit in [1.0, 1024.0, 1.0 / 1024.0] {
+        for growth in [1.0, 3.0] {
+            let at = |angle: f64, size: f64| {
+                DAffine3::from_rotation_z(angle) * DAffine3::from_scale(DVec3::splat(size / unit))
+            };
+            let (from, to) = (at(-HALF_ANGLE, 1.0), at(HALF_ANGLE, growth));
+            // Half way the tips are there.
+            let reach = 0.5 * (1.0 + growth);
+            let (turning, wall) = (comb(1.0, 0.99, unit), comb(0.9995 * reach, 2.0 * reach, 1.0));
+            let corners: Vec<DVec3> = wall.vertices().unwrap()[60..63].to_vec();
+            let here = DAffine3::IDENTITY;
+            for still in [
+                &wall,
+                &Shape::mesh(corners.clone(), [[0, 1, 2]]).unwrap(),
+                &Shape::convex_hull(&corners).unwrap(),
+            ] {
+                let forth =
+                    query::time_of_impact(&turning, &from, &to, still, &here, &here, &OPTIONS).unwrap();
+                let back =
+                    query::time_of_impact(still, &here, &here, &turning, &from, &to, &OPTIONS).unwrap();
+                for found in [forth, back] {
+                    let time = found.unwrap_or_else(|| panic!("{unit} {growth} {}", still.kind())).time;
+                    assert!((time - 0.5).abs() < 0.01, "{unit} {growth} {}: {time}", still.kind());
+                }
+            }
         }
     }
 }
