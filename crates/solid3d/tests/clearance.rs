@@ -338,6 +338,58 @@ fn near_is_what_distance_says_of_every_pair() {
     assert_rate("near pairs", hits, cases);
 }
 
+/// The clearance of a pair holds while others do by default, and no longer than it is set.
+#[test]
+fn the_clearance_of_a_pair_outlives_the_default() {
+    let (mut world, ball) = (World::new(), Shape::sphere(1.0).unwrap());
+    let [a, b] = [0.0, 2.75].map(|x| world.add(&ball, DAffine3::from_translation(DVec3::X * x)).unwrap());
+    world.set_pair_clearance(a, b, 1.0).unwrap();
+    for default in [0.0, 0.5, 0.125, 2.0, 0.25] {
+        world.set_clearance(default).unwrap();
+        assert_eq!(world.near().len(), 1, "{default}");
+    }
+    world.reset_pair_clearance(a, b).unwrap();
+    assert!(world.near().is_empty());
+    world.set_clearance(2.0).unwrap();
+    assert_eq!(world.near().len(), 1);
+}
+
+/// Law: what touches is near at any clearance, and no distance is a negative zero.
+#[test]
+fn what_touches_is_near_without_a_clearance() {
+    let (mut world, block) = (World::new(), Shape::cuboid([1.0; 3]).unwrap());
+    for x in [0.0, 1.0, 2.5] {
+        world.add(&block, DAffine3::from_translation(DVec3::X * x)).unwrap();
+    }
+    for clearance in [0.0, 1e-300, 0.25] {
+        world.set_clearance(clearance).unwrap();
+        let near = world.near();
+        assert_eq!(
+            (near.len(), near[0].distance.to_bits(), near[0].normal),
+            (1, 0, DVec3::NEG_X),
+            "{clearance}"
+        );
+    }
+}
+
+/// Law: far from the origin of the world, or apart by next to nothing, normals are as exact as elsewhere.
+#[test]
+fn normals_are_exact_wherever_and_however_near() {
+    let point = Shape::convex_hull(&[DVec3::ZERO]).unwrap();
+    let way = DVec3::new(0.6, 0.0, 0.8);
+    for (gap, origin) in [(1.0, DVec3::ZERO), (1e-200, DVec3::ZERO), (1e-6, DVec3::splat(1e8))] {
+        let mut world = World::new();
+        world.set_clearance(2.0 * gap).unwrap();
+        world.add(&point, DAffine3::from_translation(origin)).unwrap();
+        // As seen from the first in its own space.
+        let other = Shape::convex_hull(&[way * gap]).unwrap();
+        world.add(&other, DAffine3::from_translation(origin)).unwrap();
+        let near = world.near();
+        assert_eq!(near.len(), 1, "{gap}");
+        assert!((near[0].normal + way).length() < 1e-12, "{gap}: {}", near[0].normal);
+    }
+}
+
 /// Law: what is at rest is looked at once.
 #[test]
 fn near_costs_what_changed() {
