@@ -324,6 +324,30 @@ fn of_hulls_met_at_the_same_t_the_first_is_told() {
     assert!(hits > cases / 3);
 }
 
+/// Law: of objects in one place the first is told, also where another was moved since the last test, and is looked at before it; what is exactly as far away as
+/// asked for is told.
+#[test]
+fn of_objects_in_one_place_the_first_is_told() {
+    let ball = Shape::sphere(1.0).unwrap();
+    let [here, there] = [0.0, 4.0].map(|x| DAffine3::from_translation(DVec3::X * x));
+    for moved in [None, Some(0), Some(1)] {
+        let mut world = World::new();
+        let objects = [(); 2].map(|()| world.add(&ball, there).unwrap());
+        world.refresh();
+        if let Some(moved) = moved {
+            world.set_placement(objects[moved], here).unwrap();
+            world.set_placement(objects[moved], there).unwrap();
+        }
+        let cast = world.cast_shape(&ball, &here, DVec3::X * 5.0, |_| true).unwrap().unwrap();
+        let ray = Ray::new(DVec3::ZERO, DVec3::X);
+        let hit = world.cast_ray(&ray, &RayOptions::default(), |_| true).unwrap().unwrap();
+        let point = world.closest_point(DVec3::ZERO, 3.0, |_| true).unwrap().unwrap();
+        let object = world.closest_object(&ball, &here, 2.0, |_| true).unwrap().unwrap();
+        let told = [cast.object, hit.object, point.object, object.object];
+        assert_eq!(told, [objects[0]; 4], "{moved:?}");
+    }
+}
+
 /// Law: what a world tells of a ray is what the query tells, to the bit, signs of zeros too.
 #[test]
 fn a_world_and_a_query_tell_the_same_bits() {
