@@ -11,7 +11,7 @@ use solid3d::query;
 use solid3d::{Aabb, Shape, glam};
 
 use super::{SEED, contacts};
-use crate::common::{Soup, convex_of_kind, torus};
+use crate::common::{Soup, convex_of_kind, random_mesh, sheet, torus};
 
 /// A primitive of each of two shapes; 0 of a body.
 type Two = [u32; 2];
@@ -87,4 +87,40 @@ fn every_place_has_a_contact() {
     }
     println!("{several} places, of two and more");
     assert!(several > 600, "{several} places");
+}
+
+/// Law: so there is of two meshes, of which one is rough ground.
+#[test]
+fn every_place_of_a_mesh_on_rough_ground_has_a_contact() {
+    let mut rng = seeded(SEED + 1);
+    let (here, mut several) = (DAffine3::IDENTITY, 0);
+    for case in 0..2_000 {
+        let squares = [3, 6, 12][case % 3];
+        let ground = sheet(squares, squares, [false, false], |u, v| {
+            DVec3::new(4.0 * v - 2.0, rng.random_range(-0.1..0.1), 4.0 * u - 2.0)
+        });
+        let (count, ring) = (rng.random_range(1..12), torus(10, 6, 0.4));
+        let other = if case % 2 == 0 { random_mesh(&mut rng, count) } else { ring };
+        let turned = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..TAU));
+        let placed = DAffine3::from_translation(in_cube(&mut rng)) * turned;
+        let (shapes, of_each) = ([&ground, &other].map(Soup::shape), [&ground, &other].map(Soup::triangles));
+        let (surfaces, mut met): (Surfaces, _) = ([&of_each[0], &of_each[1]], Vec::new());
+        let each = |i, j| {
+            met.push([i, j]);
+            ControlFlow::Continue(())
+        };
+        query::intersecting_primitives(&shapes[0], &here, &shapes[1], &placed, each).unwrap();
+        let found = contacts(&shapes[0], &here, &shapes[1], &placed);
+        let told: Vec<Two> =
+            found.iter().flat_map(|region| region.points.iter().map(|point| point.primitives)).collect();
+        let mut places = 0;
+        while !met.is_empty() {
+            let place = connected(surfaces, &mut met);
+            assert!(told.iter().any(|pair| place.contains(pair)), "case {case}: {place:?} in {told:?}");
+            places += 1;
+        }
+        several += if places > 1 { places } else { 0 };
+    }
+    println!("{several} places, of two and more");
+    assert!(several > 300, "{several} places");
 }

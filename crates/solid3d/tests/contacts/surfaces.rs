@@ -4,12 +4,14 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 use glam::{DAffine3, DVec3};
 use rand::Rng;
-use solid_oracle::generate::{Pair, Regime, direction, in_cube, random_pair, seeded};
-use solid3d::query;
+use solid_oracle::generate::{Pair, Regime, direction, in_cube, log_uniform, random_pair, seeded};
+use solid3d::query::{self, Manifold};
 use solid3d::{Shape, glam};
 
 use super::{SEED, assert_flat, assert_laws, contacts, cube, cube_mesh, deepest, floor, only, within};
-use crate::common::{self, at, placement, random_complex, random_mesh, sheet, size_of};
+use crate::common::{
+    self, at, convex_of_kind, placement, random_complex, random_mesh, sheet, size_of, torus,
+};
 
 /// The ridge of a roof of small triangles has the normals that the edge of a wedge has, and faces their own.
 #[test]
@@ -304,4 +306,43 @@ fn of_a_million_pairs_one_contact_is_told() {
     let near = query::contacts(&fin, &away, &wall, &here, &within(0.5)).unwrap();
     assert!((near[0].points[0].depth + 0.4).abs() < 1e-12 && (near[0].normal - DVec3::Z).length() < 1e-9);
     assert_eq!((near.len(), near[0].points.len()), (1, 1));
+}
+
+/// Law: normals lead out of a solid that is not convex, or all lead into it, as where something is in its wall alone.
+#[test]
+fn normals_lead_out_of_a_solid() {
+    let mut rng = seeded(SEED + 9);
+    let ring = torus(12, 8, 0.4);
+    let (solid, here, mut told) = (ring.shape().into_solid().unwrap(), DAffine3::IDENTITY, [0; 2]);
+    // The tube is around a circle.
+    let outward: Vec<DVec3> = ring
+        .triangles()
+        .into_iter()
+        .map(|triangle| {
+            let [p, q, r] = triangle.map(|i| ring.vertices[i as usize]);
+            let middle = (p + q + r) / 3.0;
+            let normal = (q - p).cross(r - p).normalize();
+            normal * normal.dot(middle - middle.with_y(0.0).normalize() / 1.4).signum()
+        })
+        .collect();
+    for case in 0..3_000 {
+        let sizes = [(); 3].map(|()| log_uniform(&mut rng, 0.01, 1.5));
+        let other = match case % 7 {
+            6 => ring.shape(),
+            kind => convex_of_kind(&mut rng, kind, sizes, sizes[0]),
+        };
+        let turned = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..6.0));
+        let placed = DAffine3::from_translation(in_cube(&mut rng)) * turned;
+        let found = contacts(&solid, &here, &other, &placed);
+        let leads_in = |region: &Manifold| {
+            region
+                .points
+                .iter()
+                .any(|point| -region.normal.dot(outward[point.primitives[0] as usize]) < -0.01)
+        };
+        let inward = found.iter().filter(|region| leads_in(region)).count();
+        assert!(inward == 0 || inward == found.len(), "case {case}: {inward} of {found:#?}");
+        told[usize::from(inward > 0)] += usize::from(!found.is_empty());
+    }
+    assert!(told[0] > 1_000, "{told:?}");
 }
