@@ -212,10 +212,9 @@ impl Candidates {
         (self.slots.values(), &mut self.nearness)
     }
 
-    /// The candidates that are near, in any order.
+    /// The candidates that are near, in any order, once those that were [not known](Self::take_unknown) were looked at.
     pub fn near(&self) -> impl Iterator<Item = &Near> {
-        let holds = |value: &Option<Candidate>| value.is_some_and(|candidate| candidate.nearness_holds);
-        let known = self.slots.values().iter().zip(&self.nearness).filter(move |(value, _)| holds(value));
+        let known = self.slots.values().iter().zip(&self.nearness).filter(|(value, _)| value.is_some());
         known.filter_map(|(_, nearness)| match nearness {
             Nearness::Near(near) => Some(near),
             Nearness::Far => None,

@@ -26,7 +26,7 @@ pub(super) struct Clearances {
     pairs: HashMap<(ObjectId, ObjectId), f64>,
     /// How many pairs there may be before those of objects that are gone are dropped: twice as many as were left then.
     sweep_at: usize,
-    /// Of objects whose boxes are grown for more than the default: the greatest clearance that was set for a pair with it.
+    /// Of objects whose boxes are grown for more than the default: the greatest clearance that was set for a pair with it, which is more.
     greatest: SecondaryMap<ObjectId, f64>,
 }
 
@@ -41,7 +41,7 @@ impl Clearances {
 
     /// What the box of an object is grown for.
     fn of_box(&self, id: ObjectId) -> f64 {
-        self.greatest.get(id).map_or(self.default, |greatest| greatest.max(self.default))
+        self.greatest.get(id).copied().unwrap_or(self.default)
     }
 
     /// Grows boxes so that each overlaps that of another object wherever the two are nearer than their clearance.
