@@ -89,7 +89,7 @@ impl Facet {
             (true, false) | (false, true) => ([a, c, c], 2),
             (false, false) => (corners, 3),
         };
-        let collinear = count < 3 || sites.dropped_axis(corners).is_none();
+        let collinear = sites.dropped_axis(corners).is_none();
         Facet { corners, count, collinear, bounds: Aabb::of_points(*triangle) }
     }
 
