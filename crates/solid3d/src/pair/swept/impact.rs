@@ -282,8 +282,9 @@ impl Earliest {
         (self.span.to - self.from) / self.duration * END
     }
 
+    /// Takes one that was looked for in what is left of the span, and is the earlier therefore.
     fn offer(&mut self, arrival: Option<Arrival>) {
-        if let Some(arrival) = arrival.filter(|arrival| arrival.time <= self.span.to) {
+        if let Some(arrival) = arrival {
             self.span.to = arrival.time;
             self.arrival = Some(arrival);
         }
