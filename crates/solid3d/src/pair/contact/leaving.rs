@@ -102,7 +102,6 @@ impl Encounter<'_> {
     /// The way, by how the two lie to each other.
     fn way_by(&self, side: &Side, meeting: Meeting) -> Option<WayOut> {
         Some(match side.kept(meeting.normal * self.sign(), meeting.tilt) {
-            Some(out) if side.is_cut_short(out, self.found) => WayOut::Own(-out),
             Some(out) => WayOut::Shortest { out, meeting: Meeting { normal: out * self.sign(), ..meeting } },
             None => WayOut::Open(side.own()?),
         })

@@ -166,28 +166,6 @@ impl<'a> Side<'a> {
         self.body.plane.is_some_and(|normal| is_parallel(normal, out))
     }
 
-    /// Whether a normal is that of the triangle, and leads to the side on which the way out is longer. It seems shorter of this triangle alone, where only
-    /// a sliver of the other is over it: the rest is over the next, which lies in the same plane and is among those that the other has `met`. Of a solid
-    /// the side is known.
-    pub fn is_cut_short(&self, out: DVec3, met: &[u32]) -> bool {
-        let Some(normal) = self.body.plane.filter(|&normal| is_parallel(normal, out)) else { return false };
-        if self.stars.orientation != 0.0 {
-            return false;
-        }
-        let [depth, opposite] = self.other.depths(self.body.corners, out);
-        if depth <= opposite {
-            return false;
-        }
-        let goes_on = |beside: u32| {
-            met.binary_search(&beside).is_ok() && self.stars.is_level(beside, normal, &self.other)
-        };
-        let vertices = self.stars.welded(self.body.primitive);
-        (0..vertices.len()).any(|i| {
-            let edge = [vertices[i], vertices[(i + 1) % vertices.len()]];
-            self.stars.across(&edge, self.body.primitive).any(goes_on)
-        })
-    }
-
     /// Whether it is a triangle that rises little along a face with a normal.
     pub fn is_gentle(&self, out: DVec3) -> bool {
         self.body.plane.is_some_and(|normal| normal.dot(out).abs() >= GENTLE_COSINE)
