@@ -384,7 +384,7 @@ fn a_power_of_two_in_the_shapes_own_sizes_changes_no_bit() {
             let contacts = query::contacts(&a, &at_a, &b, &at_b, &ContactOptions::default()).unwrap();
             let told = |point: &query::ContactPoint| {
                 let points = [point.point_on_a / factor, point.point_on_b / factor];
-                (points, point.depth / factor)
+                (points, point.depth / factor, point.features)
             };
             (
                 query::separating_axis(&a, &at_a, &b, &at_b).unwrap(),

@@ -36,7 +36,7 @@ fn of_ball_and_body(a: Placed, b: Placed) -> Option<Manifold> {
         body,
         #[inline(always)]
         |found, out| {
-            let of_body = own_feature(&body.shape.body()?, out);
+            let of_body = own_feature(body.shape, out)?;
             Some(if in_order {
                 manifold(a, b, found, [Feature::Vertex(0), of_body])
             } else {
@@ -58,7 +58,7 @@ pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
     let (in_order, DepthOfBall { found, own_normal }) =
         (closed_form::ball_is_first(a, b)?, closed_form::depth_of_ball(a, b)?);
     let (body, ball) = (if in_order { b } else { a }, Feature::Vertex(0));
-    let of_body = own_feature(&body.shape.body()?, own_normal);
+    let of_body = own_feature(body.shape, own_normal)?;
     Some(manifold(a, b, &found, if in_order { [ball, of_body] } else { [of_body, ball] }))
 }
 
@@ -97,7 +97,7 @@ fn feature(of: Placed, facing: DVec3) -> Option<Feature> {
         return Some(Feature::Vertex(0));
     }
     let facing = direction(of.placement.matrix3.mul_transpose_vec3(facing))?;
-    Some(own_feature(&of.shape.body()?, facing))
+    own_feature(of.shape, facing)
 }
 
 #[cfg(test)]

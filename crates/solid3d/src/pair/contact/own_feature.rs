@@ -1,29 +1,35 @@
 //! What of a body touches a plane, told in the body's own space, where that takes no corners: a placement that is a similarity changes no angle.
 
 use glam::{DAffine3, DVec2, DVec3};
-use solid_convex::{Capsule, Cuboid};
+use solid_convex::{Capsule, Cuboid, unit_scale};
 
+use super::super::reach::reach;
 use super::Feature;
 use super::bodies::touched;
 use super::face::{ALIGNED_SINE, Placed, RIM, SIDE_COSINE, is_aligned};
 use super::map::Map;
-use crate::shape::Body;
+use crate::shape::{Body, Shape};
 
 /// The line on the side of a cylinder or a cone.
 const SIDE: Feature = Feature::Edge(2 * RIM, 2 * RIM + 1);
 
-/// What of a body touches a plane across an outward unit vector.
-pub(super) fn own_feature(body: &Body, out: DVec3) -> Feature {
-    let lower = u32::from(out.y < 0.0);
-    match body {
+/// What of a convex shape touches a plane across an outward unit vector.
+pub(super) fn own_feature(shape: &Shape, out: DVec3) -> Option<Feature> {
+    let (body, lower) = (shape.body()?, u32::from(out.y < 0.0));
+    Some(match &body {
         Body::Cuboid(cuboid) => of_box(cuboid, out),
         Body::Capsule(capsule) => of_capsule(capsule, out),
         Body::Cylinder(_) if is_aligned(out.y.abs()) => Feature::Face(lower),
         Body::Cylinder(_) if out.y.abs() <= ALIGNED_SINE => SIDE,
         Body::Cone(_) if is_aligned(-out.y) => Feature::Face(1),
         Body::Cone(cone) if is_level(out, DVec2::new(cone.radius(), -cone.height())) => SIDE,
-        _ => touched(&Placed::new(body, &Map::new(DAffine3::IDENTITY)), out),
-    }
+        _ => touched(&Placed::new(&body, &unit_map(shape)), out),
+    })
+}
+
+/// To a unit of length near the size of a shape, in which corners of a rim are told apart.
+fn unit_map(shape: &Shape) -> Map {
+    Map::new(DAffine3::from_scale(DVec3::splat(unit_scale(reach(shape).max_element()))))
 }
 
 fn of_box(cuboid: &Cuboid, out: DVec3) -> Feature {
@@ -71,13 +77,13 @@ mod tests {
     fn it_is_what_the_corners_tell() {
         let mut rng = seeded(175);
         for shape in bodies(&mut rng).iter().filter(|shape| shape.kind() != ShapeKind::ConvexHull) {
-            let (body, own) = (shape.body().unwrap(), Map::new(DAffine3::IDENTITY));
+            let (body, own) = (shape.body().unwrap(), unit_map(shape));
             let mut kinds = [0; 3];
             for case in 0..3_000 {
                 let tilt = |k: usize| [1.0, 0.02, 0.002][case / 4_usize.pow(k as u32) % 3];
                 let tilts = DVec3::new(tilt(1), tilt(2), tilt(3));
                 let Some(out) = (in_cube(&mut rng) * tilts).try_normalize() else { continue };
-                let feature = own_feature(&body, out);
+                let feature = own_feature(shape, out).unwrap();
                 assert_eq!(feature, touched(&Placed::new(&body, &own), out), "{shape:?}, {out}");
                 let kind = match feature {
                     Feature::Vertex(_) => 0,
