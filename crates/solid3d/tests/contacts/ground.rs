@@ -328,7 +328,7 @@ fn a_flat_ground_is_the_sum_of_its_triangles() {
     assert!(whole > cases / 10 && holed > cases / 10, "{whole} {holed}");
 }
 
-/// Two flat grounds of one plane are two regions, each of which ends at the gap between them.
+/// Two flat grounds of one plane are two regions, each of which ends at the gap between them: also where the body is deeper than triangles are wide.
 #[test]
 fn a_gap_parts_a_flat_ground() {
     let half = |side: f64| {
@@ -343,12 +343,14 @@ fn a_gap_parts_a_flat_ground() {
     let moved = right.triangles().unwrap().iter().map(|triangle| triangle.map(|i| i + count));
     let triangles: Vec<_> = left.triangles().unwrap().iter().copied().chain(moved).collect();
     let ground = Shape::mesh(vertices, triangles).unwrap();
-    let found = contacts(&cube(), &at(0.0, 0.49, 0.0), &ground, &DAffine3::IDENTITY);
-    assert_eq!(found.len(), 2);
-    for manifold in &found {
-        assert_flat(manifold, DVec3::Y, 0.01, 4);
-        let near = manifold.points.iter().filter(|point| (point.point_on_a.x.abs() - 0.1).abs() < 1e-9);
-        assert_eq!(near.count(), 2, "{manifold:#?}");
+    for depth in [0.01, 0.2] {
+        let found = contacts(&cube(), &at(0.0, 0.5 - depth, 0.0), &ground, &DAffine3::IDENTITY);
+        assert_eq!(found.len(), 2);
+        for manifold in &found {
+            assert_flat(manifold, DVec3::Y, depth, 4);
+            let near = manifold.points.iter().filter(|point| (point.point_on_a.x.abs() - 0.1).abs() < 1e-9);
+            assert_eq!(near.count(), 2, "{manifold:#?}");
+        }
     }
 }
 
