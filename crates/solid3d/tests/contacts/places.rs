@@ -34,6 +34,28 @@ fn connected(surfaces: Surfaces, pairs: &mut Vec<Two>) -> Vec<Two> {
     found
 }
 
+/// In how many places two shapes meet, if in several; fails where one has no contact, nor has what is connected with it and `near`.
+fn several_places(shapes: [(&Shape, &DAffine3); 2], surfaces: Surfaces, near: &[Two], case: u32) -> usize {
+    let ([(a, at_a), (b, at_b)], mut met) = (shapes, Vec::new());
+    let each = |i, j| {
+        met.push([i, j]);
+        ControlFlow::Continue(())
+    };
+    query::intersecting_primitives(a, at_a, b, at_b, each).unwrap();
+    let found = contacts(a, at_a, b, at_b);
+    let told: Vec<Two> =
+        found.iter().flat_map(|region| region.points.iter().map(|point| point.primitives)).collect();
+    let mut places = 0;
+    while !met.is_empty() {
+        let mut around = connected(surfaces, &mut met);
+        around.extend(near);
+        let place = connected(surfaces, &mut around);
+        assert!(told.iter().any(|pair| place.contains(pair)), "case {case}: {place:?} in {told:?}");
+        places += 1;
+    }
+    if places > 1 { places } else { 0 }
+}
+
 /// A body of any kind or a ring, thin or flat, with its triangles.
 fn spear(rng: &mut StdRng, case: u32) -> (Shape, Vec<[u32; 3]>) {
     let sizes = [(); 3].map(|()| log_uniform(rng, 1e-3, 2.0));
@@ -58,12 +80,6 @@ fn every_place_has_a_contact() {
         let (spear, of_spear) = spear(&mut rng, case);
         let turned = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..TAU));
         let placed = DAffine3::from_translation(in_cube(&mut rng)) * turned;
-        let (surfaces, mut met): (Surfaces, _) = ([&triangles, &of_spear], Vec::new());
-        let each = |i, j| {
-            met.push([i, j]);
-            ControlFlow::Continue(())
-        };
-        query::intersecting_primitives(&wall, &here, &spear, &placed, each).unwrap();
         // The way out may lead across an edge that a body is only near.
         let around = query::bounds(&spear, &placed).unwrap();
         let is_near = |triangle: [u32; 3]| {
@@ -71,19 +87,7 @@ fn every_place_has_a_contact() {
         };
         let near = (0..).zip(&triangles).filter(|&(_, &triangle)| of_spear.len() == 1 && is_near(triangle));
         let near: Vec<Two> = near.map(|(i, _)| [i, 0]).collect();
-        let told: Vec<Two> = contacts(&wall, &here, &spear, &placed)
-            .iter()
-            .flat_map(|region| region.points.iter().map(|point| point.primitives))
-            .collect();
-        let mut places = 0;
-        while !met.is_empty() {
-            let mut around = connected(surfaces, &mut met);
-            around.extend(&near);
-            let place = connected(surfaces, &mut around);
-            assert!(told.iter().any(|pair| place.contains(pair)), "case {case}: {place:?} in {told:?}");
-            places += 1;
-        }
-        several += if places > 1 { places } else { 0 };
+        several += several_places([(&wall, &here), (&spear, &placed)], [&triangles, &of_spear], &near, case);
     }
     println!("{several} places, of two and more");
     assert!(several > 600, "{several} places");
@@ -95,7 +99,7 @@ fn every_place_of_a_mesh_on_rough_ground_has_a_contact() {
     let mut rng = seeded(SEED + 1);
     let (here, mut several) = (DAffine3::IDENTITY, 0);
     for case in 0..2_000 {
-        let squares = [3, 6, 12][case % 3];
+        let squares = [3, 6, 12][case as usize % 3];
         let ground = sheet(squares, squares, [false, false], |u, v| {
             DVec3::new(4.0 * v - 2.0, rng.random_range(-0.1..0.1), 4.0 * u - 2.0)
         });
@@ -104,22 +108,9 @@ fn every_place_of_a_mesh_on_rough_ground_has_a_contact() {
         let turned = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..TAU));
         let placed = DAffine3::from_translation(in_cube(&mut rng)) * turned;
         let (shapes, of_each) = ([&ground, &other].map(Soup::shape), [&ground, &other].map(Soup::triangles));
-        let (surfaces, mut met): (Surfaces, _) = ([&of_each[0], &of_each[1]], Vec::new());
-        let each = |i, j| {
-            met.push([i, j]);
-            ControlFlow::Continue(())
-        };
-        query::intersecting_primitives(&shapes[0], &here, &shapes[1], &placed, each).unwrap();
-        let found = contacts(&shapes[0], &here, &shapes[1], &placed);
-        let told: Vec<Two> =
-            found.iter().flat_map(|region| region.points.iter().map(|point| point.primitives)).collect();
-        let mut places = 0;
-        while !met.is_empty() {
-            let place = connected(surfaces, &mut met);
-            assert!(told.iter().any(|pair| place.contains(pair)), "case {case}: {place:?} in {told:?}");
-            places += 1;
-        }
-        several += if places > 1 { places } else { 0 };
+        let (placed, surfaces) =
+            ([(&shapes[0], &here), (&shapes[1], &placed)], [&of_each[0][..], &of_each[1]]);
+        several += several_places(placed, surfaces, &[], case);
     }
     println!("{several} places, of two and more");
     assert!(several > 300, "{several} places");
