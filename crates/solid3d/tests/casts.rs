@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{direction, in_cube, placement, random_mesh, some_shape, torus};
+use common::{are_convex, direction, in_cube, overlap_along, placement, random_mesh, some_shape, torus};
 use glam::{DAffine3, DVec3};
 use rand::Rng;
 use solid_oracle::generate::seeded;
@@ -21,7 +21,8 @@ fn moved(at: &DAffine3, motion: DVec3, t: f64) -> DAffine3 {
 /// Steps along the way, of which none may find what a cast did not.
 const STEPS: u32 = 40;
 
-/// At the time of a cast the shapes are as near as makes no difference, before it they are apart, and without one they never meet.
+/// At the time of a cast the shapes are as near as makes no difference, before it they are apart, and without one they never meet. Convex ones are then on
+/// either side of a plane across the normal.
 #[test]
 fn a_cast_is_when_shapes_first_meet() {
     let seed = 101;
@@ -77,6 +78,8 @@ fn a_cast_is_when_shapes_first_meet() {
             assert!((normal.length() - 1.0).abs() < 1e-12);
             let approach = normal.dot(motion_a - motion_b) / (motion_a - motion_b).length();
             assert!(approach < 1e-6, "{}: they part along the normal, {approach}", context());
+            let overlap = overlap_along(normal, &a, &at_a, &b, &at_b) / size;
+            assert!(!are_convex(&a, &b) || overlap < 1e-6, "{}: {overlap} along the normal", context());
         }
         // Only the relative motion counts, and who is which does not.
         let swapped =

@@ -4,7 +4,7 @@
 
 use std::collections::HashSet;
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::Convex;
@@ -12,7 +12,7 @@ use solid_oracle::generate::{
     Pair, PlacementKind, Regime, random_pair, random_placement, random_shape, seeded,
 };
 pub use solid_oracle::generate::{direction, in_cube, log_uniform};
-use solid3d::{Aabb, ComplexShapeBuilder, Shape, glam, query};
+use solid3d::{Aabb, ComplexShapeBuilder, Shape, ShapeKind, glam, query};
 
 /// A union of hulls of vertices, as the oracle sees it.
 #[derive(Clone, Debug)]
@@ -301,6 +301,18 @@ pub fn size_of(a: &Shape, pa: &DAffine3, b: &Shape, pb: &DAffine3) -> f64 {
         bounds.min.abs().max(bounds.max.abs()).max_element()
     };
     extent(a, pa) + extent(b, pb) + (pa.translation - pb.translation).abs().max_element()
+}
+
+/// Whether two shapes are of convex kinds.
+pub fn are_convex(a: &Shape, b: &Shape) -> bool {
+    [a, b].iter().all(|shape| !matches!(shape.kind(), ShapeKind::Mesh | ShapeKind::Complex))
+}
+
+/// How far two shapes, as wholes, are in each other along a normal from the second to the first.
+pub fn overlap_along(normal: DVec3, a: &Shape, pa: &DAffine3, b: &Shape, pb: &DAffine3) -> f64 {
+    let turn = DAffine3::from_quat(DQuat::from_rotation_arc(normal, DVec3::X));
+    let bounds = |shape: &Shape, at: &DAffine3| query::bounds(shape, &(turn * *at)).unwrap();
+    bounds(b, pb).max.x - bounds(a, pa).min.x
 }
 
 /// The library's shape for one of the oracle's.
