@@ -30,13 +30,14 @@ pub(super) struct Region {
 
 /// Puts patches together whose primitives are connected on both sides, and whose normals are that of the deepest of them. In the order
 /// of their first primitives. Cost: follows the patches at one vertex, times how many normals they have.
-pub(super) fn regions(a: &Part, b: &Part, patches: Vec<Patch>) -> Vec<Region> {
+pub(super) fn regions(a: &Part, b: &Part, mut patches: Vec<Patch>) -> Vec<Region> {
     if patches.len() == 1 {
         return patches
             .into_iter()
             .map(|patch| Region { normal: patch.normal, points: patch.touches })
             .collect();
     }
+    patches.sort_by_key(|patch| patch.touches[0].primitives); // stable
     let deepest = |patch: &Patch| patch.touches.iter().map(|touch| touch.depth).fold(f64::MIN, f64::max);
     let depths: Vec<f64> = patches.iter().map(deepest).collect();
     let mut seeds: Vec<usize> = (0..patches.len()).collect();

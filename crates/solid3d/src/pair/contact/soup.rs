@@ -32,10 +32,7 @@ pub(super) fn soup_soup(pair: &Pair, a: &Complex, b: &Complex, scratch: &mut Scr
     let met: Vec<[u32; 2]> =
         found.iter().filter(|(_, must)| *must).map(|(primitives, _)| *primitives).collect();
     let places = untold([Some(a), Some(b)], &met, &told(&patches, []));
-    if !places.is_empty() {
-        patches.extend(places.iter().filter_map(|place| soups.deepest(place)));
-        patches.sort_by_key(|patch| patch.touches[0].primitives); // stable
-    }
+    patches.extend(places.iter().filter_map(|place| soups.deepest(place)));
     patches
 }
 

@@ -91,7 +91,6 @@ pub(super) fn soup_body(
         let mut near = encounter.pairs(&near);
         near.retain(|pair| told.binary_search(pair).is_err());
         patches.extend(encounter.patches_of_places(&places, &near));
-        patches.sort_by_key(|patch| patch.touches[0].primitives); // stable
     }
     patches
 }
@@ -111,9 +110,6 @@ impl Encounter<'_> {
                 patches.push(patch);
                 led.push(first);
             }
-        }
-        if !led.is_empty() {
-            patches.sort_by_key(|patch| patch.touches[0].primitives); // stable
         }
         (patches, led)
     }
