@@ -1,12 +1,11 @@
 //! What a world keeps of its objects from frame to frame, and of one pair while it looks at the next.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod common;
+
+use common::at;
 use glam::{DAffine3, DVec3};
 use solid3d::{Contact, ObjectId, Response, Shape, World, WorldOptions, glam};
-
-fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(DVec3::new(x, y, z))
-}
 
 /// A square of four corners, of two triangles that meet along one diagonal or the other.
 fn square(other_diagonal: bool) -> Shape {

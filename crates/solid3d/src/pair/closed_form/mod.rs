@@ -123,8 +123,7 @@ pub(super) fn ball_intersects(a: Placed, b: Placed) -> Option<bool> {
 pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
     let of_rounds = || quickly_penetration(a, b).or_else(|| in_unit(a, b, quickly_penetration));
     let found = if are_round(a, b) { of_rounds() } else { None };
-    let of_body = || if is_apart_from_hull(a, b) { None } else { of_ball(a, b, |pair| pair.penetration()) };
-    found.or_else(of_body)
+    found.or_else(|| Some(depth_of_ball(a, b)?.found))
 }
 
 /// What [`penetration`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.

@@ -35,13 +35,12 @@ fn of_ball_and_body(a: Placed, b: Placed) -> Option<Manifold> {
         ball,
         body,
         #[inline(always)]
-        |found, out| {
-            let of_body = own_feature(body.shape, out)?;
-            Some(if in_order {
-                manifold(a, b, found, [Feature::Vertex(0), of_body])
+        |found, own_normal| {
+            if in_order {
+                contact_of_ball(a, b, true, found, own_normal)
             } else {
-                manifold(a, b, &found.mirrored(), [of_body, Feature::Vertex(0)])
-            })
+                contact_of_ball(a, b, false, &found.mirrored(), own_normal)
+            }
         },
     )
 }
@@ -57,12 +56,24 @@ pub(super) fn contact(a: Placed, b: Placed) -> Option<Manifold> {
     }
     let (in_order, DepthOfBall { found, own_normal }) =
         (closed_form::ball_is_first(a, b)?, closed_form::depth_of_ball(a, b)?);
-    let (body, ball) = (if in_order { b } else { a }, Feature::Vertex(0));
-    let of_body = own_feature(body.shape, own_normal)?;
-    Some(manifold(a, b, &found, if in_order { [ball, of_body] } else { [of_body, ball] }))
+    contact_of_ball(a, b, in_order, &found, own_normal)
 }
 
-/// The same, by how deep they are in each other.
+/// The same of a ball and another body, by how deep they are in each other, and the outward normal of the body in its own directions there.
+#[inline(always)]
+fn contact_of_ball(
+    a: Placed,
+    b: Placed,
+    in_order: bool,
+    found: &Penetration,
+    own_normal: DVec3,
+) -> Option<Manifold> {
+    let (body, ball) = (if in_order { b } else { a }, Feature::Vertex(0));
+    let of_body = own_feature(body.shape, own_normal)?;
+    Some(manifold(a, b, found, if in_order { [ball, of_body] } else { [of_body, ball] }))
+}
+
+/// That of two balls or capsules, by how deep they are in each other.
 #[inline(always)]
 fn contact_of(a: Placed, b: Placed, found: &Penetration) -> Option<Manifold> {
     let normal = found.direction;
