@@ -31,8 +31,8 @@ impl Pair<'_> {
         if a.is_ball() || b.is_ball() {
             return vec![deepest([touched(a, -normal), touched(b, normal)])];
         }
-        let mut face_a = a.face(-normal);
-        let mut face_b = b.face(normal);
+        let mut face_a = a.face_beside(-normal, b);
+        let mut face_b = b.face_beside(normal, a);
         leave_across(&mut face_a, &mut face_b, normal);
         let mut touches = self.clipped(a, &face_a, b, &face_b, normal);
         let error = SAME_DEPTH + DEPTH_ERROR * depth.abs();
@@ -99,16 +99,16 @@ impl Pair<'_> {
 
     /// The contacts along a normal, given from `b` to `a`, that may not be that of the deepest point.
     pub(super) fn across(&self, a: &face::Placed, b: &face::Placed, normal: DVec3) -> Vec<Touch> {
-        let mut face_a = a.face(-normal);
-        let mut face_b = b.face(normal);
+        let mut face_a = a.face_beside(-normal, b);
+        let mut face_b = b.face_beside(normal, a);
         leave_across(&mut face_a, &mut face_b, normal);
         self.clipped(a, &face_a, b, &face_b, normal)
     }
 
     /// The contacts over a triangle along its own normal, given from `b` to `a`; `of_a` says whose it is.
     pub(super) fn over(&self, a: &face::Placed, b: &face::Placed, normal: DVec3, of_a: bool) -> Vec<Touch> {
-        let mut face_a = a.face(-normal);
-        let mut face_b = b.face(normal);
+        let mut face_a = a.face_beside(-normal, b);
+        let mut face_b = b.face_beside(normal, a);
         let other = if of_a { &mut face_b } else { &mut face_a };
         if !other.is_faced() {
             let along = if of_a { normal } else { -normal };

@@ -17,6 +17,8 @@ const FEW: usize = 8;
 /// A face of a body that is over a flat surface, with all of its corners.
 pub(super) struct Cover {
     pub face: Face,
+    /// Where it is seen counter-clockwise.
+    axis: DVec3,
     edges: Edges,
     /// The primitives under its corners; ascending.
     under_corners: Vec<u32>,
@@ -49,21 +51,20 @@ impl Encounter<'_> {
             return None;
         }
         let under_corners = self.under_corners(&face, leaving, out)?;
-        let corners: SmallVec<[DVec3; 4]> = face.corners.iter().map(|corner| corner.point).collect();
-        Some(Cover { face, edges: edges(&corners, out), under_corners })
+        let (axis, edges) = edges(&points(&face), out);
+        Some(Cover { face, axis, edges, under_corners })
     }
 
     /// The primitives under the corners of a face; `None` where one has none under it.
     fn under_corners(&self, face: &Face, leaving: &[Leaving], out: DVec3) -> Option<Vec<u32>> {
-        let mut is_over = vec![false; face.corners.len()];
+        let (points, mut is_over) = (points(face), vec![false; face.corners.len()]);
+        let (axis, _) = edges(&points, out);
         let mut holds_any = |&primitive: &u32| {
-            let edges = edges(&self.stars.corners(primitive), out);
-            let mut any = false;
-            for (corner, is_over) in face.corners.iter().zip(&mut is_over) {
-                let holds = have_inside(&edges, corner.point);
-                (any, *is_over) = (any | holds, *is_over | holds);
-            }
-            any
+            let triangle = self.stars.corners(primitive);
+            let (_, edges) = edges(&triangle, out);
+            let near = face::part(points.len(), |i| points[i], axis, &triangle, 0);
+            let over = near.into_iter().filter(|&i| edges.iter().all(|edge| edge.has_inside(points[i])));
+            over.map(|i| is_over[i] = true).count() > 0
         };
         let primitives = leaving.iter().map(|leaving| leaving.primitive);
         let under_corners = primitives.filter(&mut holds_any).collect();
@@ -75,20 +76,31 @@ impl Cover {
     /// The first corner of a triangle that is under the face, where no corner of the face is over the triangle.
     pub fn over(&self, primitive: u32, corners: &[DVec3]) -> Option<usize> {
         let is_inner = self.under_corners.binary_search(&primitive).is_err();
-        let is_under = |corner: &DVec3| have_inside(&self.edges, *corner);
-        is_inner.then(|| corners.iter().position(is_under)).flatten()
+        let Cover { axis, edges, .. } = self;
+        let under = || {
+            let near = face::part(edges.len(), |i| edges[i].from, *axis, corners, 0);
+            corners.iter().position(|&corner| near.iter().all(|&i| edges[i].has_inside(corner)))
+        };
+        is_inner.then(under).flatten()
     }
 }
 
-/// Whether no edge of a polygon has a point on its outer side. A corner on an edge may be rounded off both triangles there: then nothing covers.
-fn have_inside(edges: &[Edge], point: DVec3) -> bool {
-    edges.iter().all(|Edge { from, inward }| inward.dot(point - from) >= 0.0)
+impl Edge {
+    /// Whether it does not have a point on its outer side. A corner on an edge may be rounded off both triangles there: then nothing covers.
+    fn has_inside(&self, point: DVec3) -> bool {
+        self.inward.dot(point - self.from) >= 0.0
+    }
 }
 
-/// The edges of a convex polygon, whichever way around it goes.
-fn edges(corners: &[DVec3], normal: DVec3) -> Edges {
+/// The corners of a face.
+fn points(face: &Face) -> SmallVec<[DVec3; 4]> {
+    face.corners.iter().map(|corner| corner.point).collect()
+}
+
+/// The edges of a convex polygon, whichever way around it goes; and the normal, or its opposite, against which that is counter-clockwise.
+fn edges(corners: &[DVec3], normal: DVec3) -> (DVec3, Edges) {
     let ends = || corners.iter().zip(corners.iter().cycle().skip(1));
     let area: f64 = ends().map(|(p, q)| normal.dot((p - corners[0]).cross(q - corners[0]))).sum();
     let turned = normal * area.signum();
-    ends().map(|(&from, to)| Edge { from, inward: turned.cross(to - from) }).collect()
+    (turned, ends().map(|(&from, to)| Edge { from, inward: turned.cross(to - from) }).collect())
 }

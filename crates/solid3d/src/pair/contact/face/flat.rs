@@ -1,11 +1,11 @@
 //! The faces of what is flat: boxes, hulls, and the primitives of complex shapes.
 
 use glam::DVec3;
-use smallvec::smallvec;
+use smallvec::{SmallVec, smallvec};
 use solid_convex::Cuboid;
 
 use super::super::map::unit;
-use super::{Corner, Corners, Face, Placed, is_aligned, is_level};
+use super::{Corner, Corners, FACING_COSINE, Face, Placed, is_aligned, is_level, part};
 use crate::shape::Hulled;
 
 impl Placed<'_> {
@@ -53,39 +53,60 @@ impl Placed<'_> {
         Face { corners, normal, number: 2 * axis as u32 + u32::from(sign < 0.0), cosine }
     }
 
-    pub(super) fn facet(&self, hull: &Hulled, names: Option<&[u32]>, direction: DVec3, local: DVec3) -> Face {
+    pub(super) fn facet(
+        &self,
+        hull: &Hulled,
+        names: Option<&[u32]>,
+        direction: DVec3,
+        local: DVec3,
+        reach: &[DVec3],
+    ) -> Face {
         let (points, facets) = (hull.points(), hull.facets());
         let named = |i: u32| names.map_or(i, |names| names[i as usize]);
         let corner = |&i: &u32| self.corner(points[i as usize], named(i));
-        let Some(number) = self.best_facet(hull, direction, hull.polytope().support_index(local)) else {
+        let furthest = hull.polytope().support_index(local);
+        let Some(number) = self.best_facet(hull, direction, furthest) else {
             return Face::slight(facets.extreme().iter().map(corner).collect(), direction);
         };
         let facet = facets.get(number);
         let normal = self.map.normal(facet.normal);
-        let corners = facet.corners.iter().map(corner).collect();
-        Face { corners, normal, number, cosine: normal.dot(direction) }
+        let cosine = normal.dot(direction);
+        let whole = facet.corners.iter();
+        let corners = match whole.clone().position(|&i| i as usize == furthest) {
+            Some(kept) if reach.len() == 3 && cosine >= FACING_COSINE => {
+                let place = |i: usize| self.map.point(points[facet.corners[i] as usize]);
+                let axis = direction * self.map.linear().determinant().signum();
+                let left = part(facet.corners.len(), place, axis, reach, kept);
+                left.iter().map(|&i| corner(&facet.corners[i])).collect()
+            }
+            _ => whole.map(corner).collect(),
+        };
+        Face { corners, normal, number, cosine }
     }
 
     /// The facet of a hull that faces a direction best, of those at the furthest point; if an edge there lies across the direction, of the two beside
     /// it, as another one that ends there may face it better.
     fn best_facet(&self, hull: &Hulled, direction: DVec3, furthest: usize) -> Option<u32> {
         let facets = hull.facets();
-        let cosine = |facet: u32| self.map.normal(facets.get(facet).normal).dot(direction);
-        let better = |x: &u32, y: &u32| cosine(*x).total_cmp(&cosine(*y)).then(y.cmp(x));
-        let there = facets.at(furthest).iter().copied();
-        let Some(best) = there.clone().max_by(better) else {
+        let seen = |facet: u32| (self.map.normal(facets.get(facet).normal).dot(direction), facet);
+        let better = |x: &(f64, u32), y: &(f64, u32)| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1));
+        let there: SmallVec<[_; 8]> = facets.at(furthest).iter().map(|&facet| seen(facet)).collect();
+        let Some(&(cosine, best)) = there.iter().max_by(|x, y| better(x, y)) else {
             // The furthest point was flattened out of an edge.
-            return (0..facets.len()).max_by(better);
+            return (0..facets.len()).map(seen).max_by(better).map(|(_, facet)| facet);
         };
-        if is_aligned(cosine(best)) {
+        if is_aligned(cosine) {
             return Some(best);
         }
         let way = |end: u32| self.map.linear() * (hull.points()[end as usize] - hull.points()[furthest]);
-        let ends = there.clone().map(|facet| facets.get(facet).after(furthest as u32));
+        let ends = there.iter().map(|&(_, facet)| facets.get(facet).after(furthest as u32));
         let level = ends.map(|end| (end, way(end))).filter(|&(_, way)| is_level(way, direction));
-        let edge = level.max_by(|(_, x), (_, y)| x.dot(direction).total_cmp(&y.dot(direction)));
-        let has_edge = |&facet: &u32| edge.is_none_or(|(end, _)| facets.get(facet).corners.contains(&end));
-        there.filter(has_edge).max_by(better)
+        let Some((end, _)) = level.max_by(|(_, x), (_, y)| x.dot(direction).total_cmp(&y.dot(direction)))
+        else {
+            return Some(best);
+        };
+        let has_edge = |(_, facet): &(f64, u32)| facets.get(*facet).corners.contains(&end);
+        there.into_iter().filter(has_edge).max_by(better).map(|(_, facet)| facet)
     }
 
     /// Both sides of a triangle are its face. One without area is a segment.

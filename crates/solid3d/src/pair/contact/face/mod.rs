@@ -2,6 +2,7 @@
 
 mod flat;
 mod normal;
+mod part;
 mod placed;
 mod round;
 
@@ -10,6 +11,7 @@ use smallvec::SmallVec;
 
 use super::Feature;
 pub(super) use normal::triangle_normal;
+pub(super) use part::part;
 pub(super) use placed::Placed;
 pub(super) use round::{RIM, SIDE_COSINE};
 

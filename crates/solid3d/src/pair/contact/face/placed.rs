@@ -54,6 +54,15 @@ impl<'a> Placed<'a> {
 
     /// The face that faces a direction best, of those at the furthest point along it. Space of the direction: common.
     pub fn face(&self, direction: DVec3) -> Face {
+        self.face_within(direction, &[])
+    }
+
+    /// The same, beside another body: of a face of many sides what a triangle may reach, if that is one, and what is furthest along the direction.
+    pub fn face_beside(&self, direction: DVec3, other: &Placed) -> Face {
+        self.face_within(direction, other.corners)
+    }
+
+    fn face_within(&self, direction: DVec3, reach: &[DVec3]) -> Face {
         let local = self.map.linear().transpose() * direction;
         match self.body {
             Body::Sphere(sphere) => self.ball(sphere, direction, local),
@@ -61,7 +70,7 @@ impl<'a> Placed<'a> {
             Body::Cone(cone) => self.cone(cone, direction, local),
             Body::Cylinder(cylinder) => self.cylinder(cylinder, direction, local),
             Body::Capsule(capsule) => self.capsule(capsule, direction, local),
-            Body::Hull { hull, names } => self.facet(hull, *names, direction, local),
+            Body::Hull { hull, names } => self.facet(hull, *names, direction, local, reach),
             Body::Simplex(vertices) => self.simplex(vertices, direction),
         }
     }
