@@ -8,7 +8,9 @@
 
 mod common;
 
-use common::{convex_of_kind, direction, log_uniform, torus};
+use common::{
+    Soup, convex_of_kind, cube, direction, grid, log_uniform, random_complex, random_mesh, sheet, torus,
+};
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -404,4 +406,80 @@ fn a_power_of_two_in_the_shapes_own_sizes_changes_no_bit() {
         }
     }
     assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases} hit");
+}
+
+/// Law: the same of meshes and of complex shapes.
+#[test]
+fn a_power_of_two_in_the_sizes_of_meshes_changes_no_bit() {
+    let mut rng = seeded(20_282);
+    let (mut hits, mut cases) = (0, 0);
+    for i in 0..600 {
+        let soup = |rng: &mut StdRng| match rng.random_range(0..7) {
+            0 | 1 => torus(9, 7, 0.4),
+            2 => sheet(6, 6, [false, false], |u, v| DVec3::new(2.0 * u - 1.0, 0.0, 2.0 * v - 1.0)),
+            3 => grid(rng, 5, 5),
+            4 => random_mesh(rng, 30),
+            5 => random_complex(rng, 12),
+            _ => cube(0.7),
+        };
+        let (ours, theirs, solid) = (soup(&mut rng), soup(&mut rng), i % 2 == 0);
+        let sizes = [0; 3].map(|_| rng.random_range(0.3..=1.5));
+        let mesh = |soup: &Soup, factor: f64| {
+            let shape = soup.clone().scaled(factor).shape();
+            if solid { shape.clone().into_solid().unwrap_or(shape) } else { shape }
+        };
+        let other = |factor: f64| {
+            let [x, y, z] = sizes.map(|size| size * factor);
+            match i % 6 {
+                0 => Shape::sphere(x),
+                1 => Shape::cuboid([x, y, z]),
+                2 => Shape::cone(x, y),
+                3 => Shape::capsule(x, y),
+                _ => Ok(mesh(&theirs, factor)),
+            }
+            .unwrap()
+        };
+        let turned = i % 3 > 0;
+        let at = [0; 2].map(|_| DAffine3 {
+            translation: rng.random_range(0.5..1.6) * direction(&mut rng),
+            ..if turned { placement(&mut rng, 1.0) } else { DAffine3::IDENTITY }
+        });
+        let (motion, target) = (2.0 * direction(&mut rng), 0.8 * direction(&mut rng));
+        let answers = |factor: f64| {
+            let (a, b) = (mesh(&ours, factor), other(factor));
+            let [at_a, at_b] = at.map(|at| DAffine3 { translation: at.translation * factor, ..at });
+            let point = query::common_point(&a, &at_a, &b, &at_b).unwrap();
+            let near = query::distance(&a, &at_a, &b, &at_b).unwrap();
+            let deep = query::penetration(&a, &at_a, &b, &at_b).unwrap();
+            let options = ContactOptions { margin: 0.01 * factor, ..ContactOptions::default() };
+            let contacts = query::contacts(&a, &at_a, &b, &at_b, &options).unwrap();
+            let told = |point: &query::ContactPoint| {
+                let points = [point.point_on_a / factor, point.point_on_b / factor];
+                (points, point.depth / factor, point.primitives, point.features)
+            };
+            let ray = Ray::new((at_a.translation - motion * factor) * 2.0, motion * factor);
+            let hit = query::cast_ray(&a, &at_a, &ray, &RayOptions::default()).unwrap();
+            let side = query::signed_distance(&a, &at_a, target * factor).unwrap();
+            let impact = query::cast_shape(&a, &at_a, motion * factor, &b, &at_b, DVec3::ZERO).unwrap();
+            (
+                query::separating_axis(&a, &at_a, &b, &at_b).unwrap(),
+                point.map(|point| point / factor),
+                (near.distance / factor, near.point_on_a / factor, near.point_on_b / factor),
+                deep.map(|deep| {
+                    ([deep.depth, deep.depth_min, deep.depth_max].map(|x| x / factor), deep.normal)
+                }),
+                contacts.iter().flat_map(|region| region.points.iter().map(told)).collect::<Vec<_>>(),
+                hit.map(|hit| (hit.t, hit.point / factor, hit.surface)),
+                (side.distance / factor, side.point / factor, side.normal),
+                impact.map(|impact| (impact.time, impact.normal)),
+            )
+        };
+        let reference = answers(1.0);
+        hits += usize::from(reference.1.is_some());
+        cases += 1;
+        for power in [-300, -110, 110, 300] {
+            assert_eq!(answers(2f64.powi(power)), reference, "case {i}, 2^{power}");
+        }
+    }
+    assert!((30..=80).contains(&(100 * hits / cases)), "{hits} of {cases} hit");
 }

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use foldhash::fast::RandomState;
 use glam::DVec3;
 use smallvec::SmallVec;
+use solid_convex::unit_scale;
 
 use super::enclosed::Enclosed;
 use super::incidence::Incidence;
@@ -115,6 +116,9 @@ impl Topology {
             after.push(next);
             before.push(last);
             let arms = [next, last].map(|corner| vertices[corner as usize] - here);
+            // In a unit near to their length: squares of areas are numbers.
+            let scale = unit_scale(arms[0].abs().max(arms[1].abs()).max_element());
+            let arms = arms.map(|arm| arm * scale);
             let across = arms[0].cross(arms[1]).normalize_or_zero();
             let normal = *plane.get_or_insert(across);
             let rises = |arm: &DVec3| normal.dot(*arm).abs() > FLATNESS * arm.length();
