@@ -441,3 +441,27 @@ fn what_is_inside_is_itself_the_closest() {
         assert_eq!((found.distance, found.point), (0.0, point), "{stretch:e}");
     }
 }
+
+/// Law: next to a face, also nearer than what rounding leaves of the way there, the normal is that of the face: of a surface on the side of the
+/// point, of a solid outward.
+#[test]
+fn next_to_a_face_the_normal_is_that_of_the_face() {
+    let mut rng = seeded(SEED + 40);
+    let soup = torus(9, 7, 0.4);
+    let [surface, solid] = [soup.shape(), soup.shape().into_solid().unwrap()];
+    for case in 0..2_000 {
+        let at = DAffine3::from_axis_angle(direction(&mut rng), rng.random_range(0.0..6.0));
+        let at = DAffine3 { translation: in_cube(&mut rng), ..at };
+        let triangle = soup.triangles()[rng.random_range(0..soup.primitives.len())];
+        let [p, q, r] = triangle.map(|i| at.transform_point3(soup.vertices[i as usize]));
+        let [u, v] = [0; 2].map(|_| rng.random_range(0.2..0.4));
+        let front = (q - p).cross(r - p).normalize();
+        let gap = log_uniform(&mut rng, 1e-13, 1e-9) * if case % 2 == 0 { 1.0 } else { -1.0 };
+        let point = p + (q - p) * u + (r - p) * v + front * gap;
+        let of_surface = of(&surface, &at, point).normal.dot(front) * gap.signum();
+        assert!(of_surface > 1.0 - 1e-8, "case {case}, {gap:e}: {of_surface}");
+        let out = if of(&solid, &at, point + front * 1e-3).distance > 0.0 { front } else { -front };
+        let of_solid = of(&solid, &at, point).normal.dot(out);
+        assert!(of_solid > 1.0 - 1e-12, "case {case}, {gap:e}: {of_solid}");
+    }
+}
