@@ -429,4 +429,90 @@ mod tests {
             }
         }
     }
+
+    /// Law: what balls tell of polytopes far off their local origins a search says too, corner to corner.
+    #[test]
+    fn corners_that_touch_far_off_are_left_to_the_search() {
+        let mut open = 0;
+        for k in 0..2_000 {
+            let DAffine3 { matrix3, translation } = placement(k);
+            let center = translation.normalize() * [1e3, 1e9, 1e11][k as usize % 3];
+            let corners = (0..6).map(|i| center + DVec3::AXES[i / 2] * if i % 2 == 0 { 1.0 } else { -1.0 });
+            let a = Polytope::new(corners.collect()).unwrap();
+            let gap = [1e-9, 1e-7, 1e-5, 1e-3][k as usize / 3 % 4] * (f64::from(k % 7) - 3.0);
+            let at_a = DAffine3 { matrix3, translation };
+            let at_b = DAffine3 { matrix3, translation: translation + matrix3 * DVec3::X * (2.0 + gap) };
+            match glance(&a, &at_a, &a, &at_b) {
+                Glance::Sure(answer) => assert_eq!(answer, intersects_closely(&a, &at_a, &a, &at_b), "{k}"),
+                _ => open += 1,
+            }
+        }
+        assert!((200..2_000).contains(&open), "{open}");
+    }
+
+    /// Law: of placements that only nearly are similarities, what is longest counts.
+    #[test]
+    fn what_is_a_little_longer_along_one_axis_reaches_as_far() {
+        let octahedron = octahedron();
+        let corners = octahedron.points().iter().map(|&p| p - DVec3::new(0.3, 0.2, -0.1)).collect();
+        let octahedron = Polytope::new(corners).unwrap();
+        let longer = DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.0 + 2e-7));
+        let at = |z: f64| DAffine3 { matrix3: longer, translation: DVec3::Z * z };
+        let reach = 3.0 * (1.0 + 2e-7);
+        let [here, touching, beyond] = [0.0, 2.0 * reach * (1.0 - 1e-9), 2.0 * reach * (1.0 + 1e-5)].map(at);
+        assert!(intersects_closely(&octahedron, &here, &octahedron, &touching));
+        assert_eq!(glance(&octahedron, &here, &octahedron, &touching), Glance::Open);
+        assert_eq!(glance(&octahedron, &here, &octahedron, &beyond), Glance::Sure(false));
+    }
+
+    /// What is flat has no ball in it: of two that face each other closely a search says whether they meet.
+    #[test]
+    fn flat_polytopes_that_face_each_other_do_not_meet_at_a_glance() {
+        let square = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y];
+        let square = Polytope::new(square.to_vec()).unwrap();
+        for gap in [0.0, 1e-15, 5e-14, 1e-13, 1e-9] {
+            let at = DAffine3::from_translation(DVec3::Z * gap);
+            assert_eq!(glance(&square, &DAffine3::IDENTITY, &square, &at), Glance::Open, "{gap:e}");
+        }
+    }
+
+    /// Where squares of lengths vanish, balls tell nothing.
+    #[test]
+    fn balls_of_lengths_whose_squares_vanish_are_left_to_the_search() {
+        let ball = Sphere::new(1e-81).unwrap();
+        let at = |x: f64| DAffine3 {
+            matrix3: DMat3::IDENTITY * 1e-81,
+            translation: DVec3::new(x, 0.0, 0.0) * 1e-162,
+        };
+        for x in [1.9, 1.99, 2.01, 2.1] {
+            assert_eq!(decide(&ball, &at(0.0), &ball, &at(x)), None, "{x}");
+            assert_eq!(intersection(&ball, &at(0.0), &ball, &at(x)).witness().is_some(), x < 2.0, "{x}");
+        }
+    }
+
+    /// Cones of any shape are around and in their balls, which touch them.
+    #[test]
+    fn cones_of_any_width_touch_their_balls() {
+        for (radius, height) in [(0.1, 3.0), (1.0, 1.0), (1.0, 2.0), (3.0, 1.0), (5.0, 0.1)] {
+            let cone = crate::Cone::new(radius, height).unwrap();
+            let Balls { inner, outer } = cone.balls().unwrap();
+            let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+            for k in 0..2_000 {
+                let (sin, cos) = (f64::from(k) * 0.001 * std::f64::consts::PI).sin_cos();
+                let direction = DVec3::new(sin, cos, 0.0);
+                let reach = |ball: Ball| (cone.support(direction) - ball.center).dot(direction);
+                (least, most) = (least.min(reach(inner)), most.max(reach(outer)));
+            }
+            assert!((1.0 - 1e-12..1.01).contains(&(least / inner.radius)), "{radius} {height}: {inner:?}");
+            assert!((0.99..1.0 + 1e-12).contains(&(most / outer.radius)), "{radius} {height}: {outer:?}");
+        }
+    }
+
+    /// A ball that is wider than a tube is not in it, however long that is.
+    #[test]
+    fn no_ball_is_in_what_is_narrower() {
+        let tube = crate::Cylinder::new(1.0, 10.0).unwrap();
+        let holds = |radius: f64| tube.contains_ball(Ball { center: DVec3::ZERO, radius });
+        assert!(holds(0.9) && !holds(1.1) && !holds(3.0) && !holds(6.0));
+    }
 }
