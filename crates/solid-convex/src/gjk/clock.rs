@@ -658,4 +658,66 @@ mod tests {
             assert_eq!(memory.still(&here, &there), None);
         }
     }
+
+    /// It is not set of placements next to singular, nor where products of lengths might overflow or vanish.
+    #[test]
+    fn it_is_set_of_plain_sizes_alone() {
+        let tell = |size: f64, scale: f64, way: f64, matrix3: DMat3| {
+            let block = Cuboid::new(DVec3::splat(size)).unwrap();
+            let here = DAffine3 { matrix3: matrix3 * scale, translation: DVec3::splat(way) };
+            let there = DAffine3 { translation: here.translation + DVec3::X * (4.0 * scale * size), ..here };
+            let mut memory = Memory::default();
+            let found = memory.intersects(&block, &here, &block, &there);
+            assert_eq!(found, intersects(&block, &here, &block, &there));
+            let still = memory.still(&here, &there);
+            assert!(still.is_none_or(|still| still == found));
+            still.is_some()
+        };
+        let square = DMat3::IDENTITY;
+        for unit in [1e-30, 1.0, 1e30] {
+            assert!(tell(1.0, unit, 0.0, square) && tell(unit, 1.0, 0.0, square), "{unit:e}");
+        }
+        for unit in [1e-80, 1e-36, 1e36, 1e80] {
+            assert!(!tell(1.0, unit, 0.0, square) && !tell(unit, 1.0, 0.0, square), "{unit:e}");
+        }
+        assert!(tell(1e34, 1.0, 1e34, square) && !tell(1e34, 1.0, 1e36, square));
+        let slanted = |z: f64| DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(1.0, 0.0, z));
+        assert!(tell(1.0, 1.0, 0.0, slanted(1e-5)) && !tell(1.0, 1.0, 0.0, slanted(1e-7)));
+    }
+
+    /// Law: what was asked of the same two in between makes no answer wrong.
+    #[test]
+    fn other_questions_in_between_leave_it_right() {
+        let (mut told, mut parted) = (0, 0);
+        for k in 0..4_000u32 {
+            let cloud = |seed: u32| {
+                let off = placement(seed + 9).translation * 3.0;
+                Polytope::new((seed..seed + 6).map(|i| placement(i).translation + off).collect()).unwrap()
+            };
+            let (a, b) = (cloud(7 * k), cloud(11 * k + 3));
+            let way = placement(k + 5).translation.normalize();
+            let at = |object: &Polytope, x: f64| DAffine3::from_translation(way * x - object.center());
+            let (at_a, at_b) = (at(&a, 0.0), at(&b, 0.05));
+            let mut memory = Memory::default();
+            if !memory.intersects(&a, &at_a, &b, &at_b) {
+                continue;
+            }
+            let away = at(&b, 0.2 + 0.2 * f64::from(k % 8));
+            if k % 2 == 0 {
+                memory.closest_points(&a, &at_a, &b, &away);
+            } else {
+                memory.quickly_closest(&a, &at_a, &b, &away);
+            }
+            for x in [0.05, 0.3, 0.6, 1.0, 1.4] {
+                let there = at(&b, x);
+                let expected = intersects(&a, &at_a, &b, &there);
+                let still = memory.still(&at_a, &there);
+                assert!(still.is_none_or(|still| still == expected), "{k}, {x}: {still:?}");
+                told += usize::from(still.is_some());
+                parted += usize::from(!expected);
+            }
+        }
+        println!("{told} told, {parted} apart");
+        assert!(parted > 1_000);
+    }
 }
