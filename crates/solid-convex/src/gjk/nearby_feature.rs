@@ -300,4 +300,49 @@ mod tests {
             "{told:?} of {asked} were told, half of which moved little"
         );
     }
+
+    /// Law: what touches for a search from nothing has no distance here either, whatever was near before.
+    #[test]
+    fn what_touches_is_at_no_distance() {
+        let block = |seed: u32| {
+            let corner =
+                |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5;
+            let turn = placement(seed).matrix3;
+            Polytope::new((0..8).map(|i| turn * corner(i)).collect()).unwrap()
+        };
+        let mut touching = 0;
+        for k in 0..2_000 {
+            let (a, turn) = (block(k), placement(k).matrix3);
+            let at = |x: f64| DAffine3::from_translation(turn * DVec3::new(x, 0.3, -0.2));
+            let here = DAffine3::IDENTITY;
+            let mut memory = Memory::default();
+            memory.closest_points(&a, &here, &a, &at(1.01));
+            let gap = [1e-15, 3e-16, -1e-16, 1e-9][k as usize % 4];
+            let expected = closest_points(&a, &here, &a, &at(1.0 + gap)).distance;
+            let found = memory.quickly_closest(&a, &here, &a, &at(1.0 + gap));
+            touching += u32::from(expected == 0.0);
+            assert!(
+                found.is_none_or(|found| (found.distance == 0.0) == (expected == 0.0)),
+                "{k}: {found:?}, {expected:e}"
+            );
+        }
+        assert!(touching > 1_000, "{touching}");
+    }
+
+    /// Of sizes whose products overflow or vanish it says nothing.
+    #[test]
+    fn it_tells_of_plain_sizes_alone() {
+        for unit in [1e-90, 1e-60, 1.0, 1e60, 1e90] {
+            let cloud = |seed: u32| {
+                Polytope::new((seed..seed + 20).map(|k| placement(k).translation * unit).collect()).unwrap()
+            };
+            let (a, b) = (cloud(1), cloud(50));
+            let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 0.1, 0.2) * unit);
+            let mut memory = Memory::default();
+            memory.closest_points(&a, &at(0.0), &b, &at(4.0));
+            let (on_a, there) = ((&a, &at(0.0)), at(4.01));
+            let found = dispatch!(levels()[1], simd => closest(simd, &mut memory, on_a, (&b, &there)));
+            assert_eq!(found.is_some(), unit == 1.0, "{unit:e}: {found:?}");
+        }
+    }
 }
