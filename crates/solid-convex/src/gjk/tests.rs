@@ -10,8 +10,8 @@ use super::descent::{End, Goal, ITERATIONS_MAX, descend, descend_robustly, desce
 use super::lean::{Search, Sure};
 use super::task;
 use super::{
-    CAST_ERROR, Closest, ClosestInWorld, Coherent, DISTANCE_TOLERANCE, Memory, Outcome, TOUCHING_ERROR, cast,
-    closest_points, intersection, intersects, quickly_closest, separates,
+    CAST_ERROR, Closest, ClosestInWorld, Coherent, DISTANCE_TOLERANCE, Glance, Memory, Outcome,
+    TOUCHING_ERROR, cast, closest_points, intersection, intersects, quickly_closest, separates,
 };
 use crate::difference::Difference;
 use crate::simd;
@@ -635,4 +635,23 @@ fn support_points_that_are_no_numbers_are_survived() {
         super::Coherent::new(&ball, &nowhere).closest_points(&here, &there);
         super::cast(&nowhere, &here, DVec3::X, &ball, &there, 1.0);
     }
+}
+
+/// Of a gap that rounding might have made a cached axis does not answer alone.
+#[test]
+fn a_cached_axis_leaves_small_gaps_to_a_search() {
+    let block = Cuboid::new(DVec3::ONE).unwrap();
+    let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 0.2, -0.3));
+    let separated = |gap: f64| separates(&DVec3::X, &block, &at(1.0 + gap), &block, &at(0.0));
+    assert!(separated(1e-6) && !separated(1e-9) && !separated(1e-13) && !separated(-1e-9));
+
+    let (corners, faces) = crate::testing::block(DVec3::ONE);
+    let block = Polytope::new(corners).unwrap().with_faces(&faces);
+    let glance = |gap: f64| {
+        let mut memory = Memory::default();
+        memory.intersects(&block, &at(1.5), &block, &at(0.0));
+        let there = at(1.0 + gap);
+        crate::simd::dispatch!(simd => memory.glance_by(simd, (&block, &there), (&block, &at(0.0))))
+    };
+    assert_eq!([1e-6, 1e-9, 1e-13].map(glance), [Glance::Sure(false), Glance::Open, Glance::Open]);
 }
