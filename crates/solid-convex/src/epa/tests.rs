@@ -572,3 +572,32 @@ fn coaxial_shapes_have_the_depth_of_their_profiles() {
     }
     assert!(count > 900, "{count} of 1,000 overlap");
 }
+
+/// Law: the bounds of two boxes that are turned against each other by next to nothing are as near to each other as those of any.
+#[test]
+fn boxes_turned_by_next_to_nothing_have_near_bounds() {
+    let mut rng = seeded(178);
+    let (mut deep, cases) = (0, 3_000);
+    for case in 0..cases {
+        let [a, b] = [(); 2].map(|()| Cuboid::new(in_cube(&mut rng).abs() + 0.2).unwrap());
+        let angle = 0.1f64.powf(rng.random_range(1.0..17.0));
+        let turn = DAffine3::from_axis_angle(in_cube(&mut rng).normalize(), angle);
+        let at_a = placement(case);
+        let at_b = at_a * DAffine3 { translation: in_cube(&mut rng) * 0.6, ..turn };
+        let Some(found) = penetration(&a, &at_a, &b, &at_b) else { continue };
+        deep += 1;
+        assert!(found.upper - found.lower <= 1e-12, "{case}, turned by {angle:e}: {found:?}");
+    }
+    assert!(3 * deep > cases, "{deep} of {cases}");
+}
+
+/// Of boxes whose middles are over each other the deepest points are the middles of the faces.
+#[test]
+fn boxes_over_each_other_meet_in_the_middle() {
+    let [small, large] = [1.0, 3.0].map(|width| Cuboid::new(DVec3::new(width, 1.0, width)).unwrap());
+    for (a, b) in [(small, small), (small, large), (large, small)] {
+        let found = penetration(&a, &at(0.0, 0.75, 0.0), &b, &at(0.0, 0.0, 0.0)).unwrap();
+        assert_eq!((found.depth, found.direction), (0.25, DVec3::Y));
+        assert_eq!([found.points.on_a, found.points.on_b], [-0.5, 0.5].map(|y| DVec3::Y * y));
+    }
+}
