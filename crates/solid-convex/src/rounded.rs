@@ -81,3 +81,25 @@ fn similarity(linear: &DMat3) -> Option<f64> {
     let off = [of_y, of_z, x.dot(y), y.dot(z), z.dot(x)];
     off.iter().all(|part| part.abs() <= SIMILARITY_ERROR * square).then(|| square.sqrt() * largest)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Sphere;
+
+    /// A ball is one under turns and scales; stretched along an axis, or sheared along another, by more than rounding, it is none.
+    #[test]
+    fn what_is_stretched_or_sheared_is_no_ball() {
+        let ball = Sphere::new(1.0).unwrap();
+        let is_round = |linear: DMat3| Core::of(&ball, &DAffine3::from_mat3(linear)).radius() > 0.0;
+        let turn = DMat3::from_rotation_x(0.3) * DMat3::from_rotation_y(1.0);
+        assert!([1e-90, 1e-9, -1.0, 1e90].iter().all(|&scale| is_round(turn * scale)));
+        for i in 0..3 {
+            let [axis, next] = [i, i + 1].map(|i| DVec3::AXES[i % 3]);
+            let stretched = DMat3::from_diagonal(DVec3::ONE + axis * 1e-13);
+            let mut sheared = DMat3::IDENTITY;
+            *sheared.col_mut(i) += next * 1e-13;
+            assert!(!is_round(turn * stretched) && !is_round(turn * sheared), "{axis}");
+        }
+    }
+}
