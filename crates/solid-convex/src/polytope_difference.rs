@@ -248,4 +248,30 @@ mod tests {
             }
         }
     }
+
+    /// A placement is plain that has axes of plain lengths, a volume and a place, along each axis.
+    #[test]
+    fn what_is_plain_is_so_along_every_axis() {
+        let plain = |at: DAffine3| {
+            let [scalar, wide] = levels().map(|level| dispatch!(level, simd => is_plain(simd, &at)));
+            assert_eq!(scalar, wide, "{at}");
+            scalar
+        };
+        for k in 0..30 {
+            let at = placement(k);
+            let of = |linear: DMat3| DAffine3 { matrix3: at.matrix3 * linear, ..at };
+            for scale in [1e-29, 1e-3, -1.0, 1e29] {
+                assert!(plain(of(DMat3::IDENTITY * scale)), "{scale:e}");
+            }
+            for axis in DVec3::AXES {
+                let scaled = |by: f64| of(DMat3::from_diagonal(DVec3::ONE + axis * (by - 1.0)));
+                assert!([1e-31, 1e31, 0.0, f64::NAN].iter().all(|&by| !plain(scaled(by))), "{axis}");
+                let moved = |by: f64| DAffine3 { translation: axis * by, ..at };
+                assert!(plain(moved(1e100)) && plain(moved(-1e100)));
+                assert!([1e101, -1e101, f64::NAN].iter().all(|&by| !plain(moved(by))), "{axis}");
+            }
+            let slanted = |z: f64| of(DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(1.0, 0.0, z)));
+            assert!(plain(slanted(1e-7)) && !plain(slanted(1e-11)));
+        }
+    }
 }
