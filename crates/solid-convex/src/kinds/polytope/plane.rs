@@ -95,4 +95,31 @@ mod tests {
             assert!(plane.error < 1e-14, "{case}: {plane:?}");
         }
     }
+
+    /// Law: the normal is as exact as it says, also of a sliver, and where the difference of two corners is no number that is exact.
+    #[test]
+    fn normals_are_as_exact_as_they_say() {
+        let mut rng = seeded(51);
+        let whole = |v: DVec3| v.to_array().map(|x| x as i128);
+        for case in 0..20_000 {
+            let size = 2f64.powi(52);
+            let (p, q) = ((in_cube(&mut rng) * size).round(), (in_cube(&mut rng) * size * 1.9).round());
+            let aside = in_cube(&mut rng) * 2f64.powi(case % 52);
+            let mut corners = [p, q, (p.lerp(q, in_cube(&mut rng).x.abs()) + aside).round()];
+            corners.rotate_left(case as usize / 52 % 3);
+            let plane = Plane::of(corners);
+            let [p, q, r] = corners.map(whole);
+            let [u, v] = [q, r].map(|to| [0, 1, 2].map(|k| to[k] - p[k]));
+            // Inward: against the side from which they run counter-clockwise.
+            let exact = [0, 1, 2].map(|k| {
+                let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+                (v[l] * u[m] - v[m] * u[l]) as f64
+            });
+            let exact = DVec3::from_array(exact);
+            if exact != DVec3::ZERO {
+                let off = plane.inward.distance(exact.normalize());
+                assert!(off <= plane.error, "{case}: {off:e}, {plane:?}");
+            }
+        }
+    }
 }
