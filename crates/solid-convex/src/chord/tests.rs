@@ -247,3 +247,60 @@ fn lines_beside_the_side_of_a_cone_miss() {
         }
     }
 }
+
+/// Law: a line comes in where it runs against the normal and goes out where it runs along it, next to an apex too, where no digits are left of that.
+#[test]
+fn normals_next_to_an_apex_face_the_line() {
+    let mut hits = 0;
+    for (radius, height) in [(2.0, 2.0), (1.0, 2.0), (3.0, 0.1), (1e-3, 1.0)] {
+        let cone = Cone::new(radius, height).unwrap();
+        for i in 0..10_000 {
+            let direction = DVec3::new(spread(i, 0.618), spread(i, 0.414), spread(i, 0.732)).normalize();
+            let aside = DVec3::new(spread(i, 0.7549), spread(i, 0.5698), spread(i, 0.3247));
+            let target = DVec3::Y * 0.5 * height + aside * 0.1f64.powi(3 + i as i32 % 18);
+            let Some(Chord { enter, leave }) =
+                cone.chord(&Line::new(target - direction * 3.0, direction).unwrap())
+            else {
+                continue;
+            };
+            hits += 1;
+            assert!(enter.normal.is_normalized() && leave.normal.is_normalized(), "{radius} {height}, {i}");
+            assert!(enter.normal.dot(direction) < 1e-8, "{radius} {height}, {i}: {enter:?}");
+            assert!(leave.normal.dot(direction) > -1e-8, "{radius} {height}, {i}: {leave:?}");
+        }
+    }
+    assert!(hits > 10_000, "{hits}");
+}
+
+/// What is next to nothing beside its length is as wide as it is.
+#[test]
+fn slim_shapes_are_met_at_their_sides() {
+    for radius in [1e-50, 1e-70, 1e-90, 1e-99] {
+        let line = Line::new(DVec3::new(-3.0 * radius, 0.0, 0.0), DVec3::X * radius).unwrap();
+        let chords = [
+            (Cylinder::new(radius, 2.0).unwrap().chord(&line), 1.0),
+            (Capsule::new(radius, 2.0).unwrap().chord(&line), 1.0),
+            (Cone::new(radius, 2.0).unwrap().chord(&line), 0.5),
+        ];
+        for (which, (chord, width)) in chords.into_iter().enumerate() {
+            let Chord { enter, leave } = chord.unwrap();
+            let off = (enter.t - (3.0 - width)).abs().max((leave.t - (3.0 + width)).abs());
+            assert!(off < 1e-12, "{which} of {radius:e}: {enter:?}, {leave:?}");
+            let turned = enter.normal.distance(DVec3::NEG_X).max(leave.normal.distance(DVec3::X));
+            assert!(turned < 1e-12, "{which} of {radius:e}: {enter:?}, {leave:?}");
+        }
+        let beside = Line::new(DVec3::new(-3.0, 0.0, 1.01) * radius, DVec3::X * radius).unwrap();
+        assert_eq!(Cylinder::new(radius, 2.0).unwrap().chord(&beside), None, "{radius:e}");
+    }
+}
+
+/// A face without a plane leaves open where a line meets the hull.
+#[test]
+fn a_face_without_a_plane_tells_nothing() {
+    let corner = Polytope::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
+    let line = Line::new(DVec3::new(0.25, 0.25, -1.0), DVec3::Z).unwrap();
+    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    assert!(corner.clone().with_faces(&faces).chord(&line).is_some());
+    let with_none = corner.with_faces(&[&faces[..3], &[[1, 1, 3]]].concat());
+    assert!(with_none.chord(&line).is_none() && with_none.face_towards(DVec3::ZERO).is_none());
+}
