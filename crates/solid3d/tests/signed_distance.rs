@@ -8,7 +8,9 @@
 
 mod common;
 
-use common::{direction, in_cube, log_uniform, placement, random_complex, random_mesh, rescaled, torus};
+use common::{
+    block, direction, in_cube, joined, log_uniform, placement, random_complex, random_mesh, rescaled, torus,
+};
 use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -463,5 +465,29 @@ fn next_to_a_face_the_normal_is_that_of_the_face() {
         let out = if of(&solid, &at, point + front * 1e-3).distance > 0.0 { front } else { -front };
         let of_solid = of(&solid, &at, point).normal.dot(out);
         assert!(of_solid > 1.0 - 1e-12, "case {case}, {gap:e}: {of_solid}");
+    }
+}
+
+/// On a face the normal leads out there, whichever way round the solid is, also where the middle of the face is in another part of it; where the
+/// place itself is, no side leads out, and the normal is the front's.
+#[test]
+fn on_a_face_that_is_partly_in_another_part_the_normal_leads_out() {
+    let parts = [block(DVec3::ZERO, DVec3::ONE), block(DVec3::new(0.9, 0.2, 0.2), DVec3::new(1.1, 0.8, 0.8))];
+    let soup = joined(parts);
+    let mut turned = soup.clone();
+    turned.primitives.iter_mut().for_each(|triangle| triangle.reverse());
+    for (soup, front) in [(soup, DVec3::X), (turned, DVec3::NEG_X)] {
+        let solid = soup.shape().into_solid().unwrap();
+        for (y, z, normal) in [
+            (0.1, 0.15, DVec3::X),
+            (0.9, 0.1, DVec3::X),
+            (0.5, 0.1, DVec3::X),
+            (0.4, 0.3, front),
+            (0.3, 0.7, front),
+        ] {
+            let point = DVec3::new(1.0, y, z);
+            let found = of(&solid, &HERE, point);
+            assert_eq!((found.distance, found.point, found.normal), (0.0, point, normal), "{y} {z}");
+        }
     }
 }

@@ -24,6 +24,9 @@ const NEAR_FACE: f64 = 1.0 / (1u64 << 26) as f64;
 /// How far beside a triangle it is tested which side of it is outside, in parts of its size; no less than rounding moves what is there.
 const BESIDE: f64 = 1e-6;
 
+/// So far to the middle of a triangle one goes from a place on its edge, to look what is beside it alone.
+const OFF_EDGE: f64 = 1.0 / 16.0;
+
 /// For a point, which is given as a convex shape.
 pub(super) fn surface_point(
     mesh: PlacedComplex,
@@ -92,7 +95,7 @@ fn close_by(
             if foot.is_inner && height.abs() > 2.0 * rounding {
                 front * (side * height.signum())
             } else {
-                outward(solid, &triangle, front, rounding, scratch)
+                outward(solid, &triangle, &foot, front, rounding, scratch)
             }
         }
         _ => away(from) * side,
@@ -104,10 +107,12 @@ fn close_by(
     }
 }
 
-/// The front of a triangle, or its opposite, whichever leads out of the solid. Positions are off by a rounding.
+/// The front of a triangle, or its opposite, whichever leads out of the solid at a place on it; where that does not tell, in the middle. Positions
+/// are off by a rounding.
 fn outward(
     solid: &PlacedSolid,
     triangle: &Triangle,
+    foot: &Foot,
     front: DVec3,
     rounding: f64,
     scratch: &mut Scratch,
@@ -115,10 +120,14 @@ fn outward(
     let [a, b, c] = *triangle;
     let size = (b - a).abs().max((c - a).abs()).max_element();
     let middle = (a + b + c) / 3.0;
+    let place = if foot.is_inner { foot.point } else { foot.point.lerp(middle, OFF_EDGE) };
     let way = (BESIDE * size).max(rounding);
-    let mut outside = |normal: DVec3| !solid.contains(middle + normal * way, scratch);
+    let mut told = |place: DVec3| {
+        let [over, under] = [front, -front].map(|normal| !solid.contains(place + normal * way, scratch));
+        (over != under).then_some(if over { front } else { -front })
+    };
     // Where both sides are inside, as where parts overlap, the front.
-    if !outside(front) && outside(-front) { -front } else { front }
+    told(place).or_else(|| told(middle)).unwrap_or(front)
 }
 
 /// The front of a triangle; `None` for one without.
