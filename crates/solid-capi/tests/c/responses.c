@@ -159,6 +159,23 @@ static void smart(void) {
     CHECK(test() == 1 && NEAR(data->normal[2], -2) && NEAR(data->point1[2], 1));
     dtDeleteObject(&a);
     dtDeleteObject(&b);
+
+    /* And so is the first dtTestObjects of any two, if it is valid. */
+    dtCreateObject(&a, ball);
+    dtCreateObject(&b, ball);
+    dtCreateObject(&c, ball);
+    place(&c, 0, 9, 0);
+    place(&b, 0, 0, 8);
+    REFUSED(dtTestObjects(&a, &a), DT_ERROR_OBJECT);
+    place(&b, 0, 0, 4);
+    record_count = 0;
+    dtTestObjects(&a, &c);
+    CHECK(record_count == 0);
+    place(&b, 0, 0, 1);
+    CHECK(test() == 1 && NEAR(data->normal[2], -2) && NEAR(data->point1[2], 1));
+    dtDeleteObject(&a);
+    dtDeleteObject(&b);
+    dtDeleteObject(&c);
 }
 
 /* All intersecting primitives count, not the first found: the nearest of the previous frame is the second triangle. */
