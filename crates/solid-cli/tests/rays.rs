@@ -106,3 +106,33 @@ fn mistakes_say_what_is_expected() {
     }
     assert!(desk.run("check --help").stdout.contains("--ray <ORIGIN> <DIRECTION>"));
 }
+
+/// What begins inside of a solid meets no surface of it there: there is no triangle and no normal to tell.
+#[test]
+fn a_ray_from_the_inside_of_a_solid_tells_no_triangle() {
+    let desk = Desk::with_boxes();
+    let json = desk.run("check a.obj --solid a --ray 0,0,0 1,0,0 --json -").json();
+    let hit = &json["frames"][0]["rays"][0];
+    assert_eq!((&hit["distance"], &hit["point"]), (&json!(0.0), &json!([0.0, 0.0, 0.0])), "{hit}");
+    assert_eq!((&hit["primitive"], &hit["normal"]), (&json!(null), &json!(null)), "{hit}");
+    let csv = desk.run("check a.obj --solid a --ray 0,0,0 1,0,0 --csv -").stdout;
+    assert!(csv.ends_with("\n0,0.0,a,,0.0,0.0,0.0,,,,0.0,,,,,,,,1,\n"), "{csv}");
+}
+
+/// With a ray there is something to find of one object, too.
+#[test]
+fn one_object_is_enough_for_a_ray() {
+    let run = |more: &str| Desk::with_boxes().run(&format!("check a.obj {more}")).stderr;
+    assert_eq!(run(RAY), "");
+    assert!(run("").starts_with("warning: there is one object alone"), "{}", run(""));
+}
+
+/// Of several rays each has its own, the nearest first.
+#[test]
+fn rays_come_one_after_the_other() {
+    let json = desk().run(&format!("{CHECK} {RAY} --ray 9,0.5,0.25 -1,0,0 --json -")).json();
+    let rays = json["frames"][0]["rays"].as_array().unwrap();
+    let met: Vec<_> = rays.iter().map(|hit| [hit["ray"].as_str(), hit["object"].as_str()]).collect();
+    let expected = [["1", "a"], ["1", "b"], ["2", "b"], ["2", "a"]];
+    assert_eq!(met, expected.map(|pair| pair.map(Some)));
+}

@@ -141,7 +141,7 @@ impl<'a> Stage<'a> {
             sightings.extend(hits.filter(|found| met.insert(found.object)).map(|found| Sighting {
                 ray: place,
                 object: self.places[&found.object],
-                primitive: found.hit.surface.map_or(0, |surface| surface.primitive),
+                primitive: found.hit.surface.map(|surface| surface.primitive),
                 distance: found.hit.t * length,
                 point: found.hit.point,
                 normal: found.hit.surface.map(|surface| surface.normal),

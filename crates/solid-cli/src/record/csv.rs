@@ -62,8 +62,8 @@ struct Known<'a> {
     depth: Option<f64>,
     points: Option<[DVec3; 2]>,
     contact_time: Option<f64>,
-    /// A ray and a primitive.
-    ray: Option<(&'a str, u32)>,
+    /// A ray and the primitive that it meets.
+    ray: Option<(&'a str, Option<u32>)>,
 }
 
 impl<W: Write> CsvRecorder<W> {
@@ -85,7 +85,9 @@ impl<W: Write> CsvRecorder<W> {
             distances.extend(of_each(known.points).as_flattened());
         }
         if self.columns.rays {
-            let ray = known.ray.map(|(ray, primitive)| [ray.to_owned(), primitive.to_string()]);
+            let word =
+                |primitive: Option<u32>| primitive.map(|primitive| primitive.to_string()).unwrap_or_default();
+            let ray = known.ray.map(|(ray, primitive)| [ray.to_owned(), word(primitive)]);
             rays.extend(ray.unwrap_or_default());
         }
         if self.columns.contact_time {

@@ -16,8 +16,8 @@
 //! `"contacts":[{"normal":[0,-1,0],"points":[{"point_a":[0,0,0],"point_b":[0,0.25,0],"depth":0.25,"primitives":[0,7],"features":[{"face":2},{"vertex":5}]}]}]`.
 //!
 //! With rays a frame also has `"rays"`, a list of
-//! `{"ray":"barrier","object":"ship","primitive":7,"distance":2.5,"point":[0,0,0],"normal":[0,1,0]}`, and the summary `ray_frames` and
-//! `ray_meetings`.
+//! `{"ray":"barrier","object":"ship","primitive":7,"distance":2.5,"point":[0,0,0],"normal":[0,1,0]}`, the last and the primitive `null` where the
+//! ray starts inside of a solid, and the summary `ray_frames` and `ray_meetings`.
 //!
 //! Of the response `curve` a collision also has `"curve":[[[0,0,0],[1,0,0]]]`: polylines of points; a closed one ends with its
 //! first point. With `--continuous` it has `"contact_time":0.25`: when the two first touch, from the previous frame on.
@@ -61,7 +61,7 @@ struct FrameEntry<'a> {
 struct SightingEntry<'a> {
     ray: &'a str,
     object: &'a str,
-    primitive: u32,
+    primitive: Option<u32>,
     distance: f64,
     point: [f64; 3],
     normal: Option<[f64; 3]>,

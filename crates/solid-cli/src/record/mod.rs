@@ -68,7 +68,8 @@ pub struct Pass {
 pub struct Sighting {
     pub ray: usize,
     pub object: usize,
-    pub primitive: u32,
+    /// That of the object which it meets; `None` where it starts inside of a solid.
+    pub primitive: Option<u32>,
     /// From the origin of the ray. World units.
     pub distance: f64,
     /// Space: world.

@@ -58,7 +58,7 @@ mod tests {
         let sighting = |ray, object, distance| Sighting {
             ray,
             object,
-            primitive: 0,
+            primitive: Some(0),
             distance,
             point: DVec3::X,
             normal: None,
