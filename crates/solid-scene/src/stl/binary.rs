@@ -26,6 +26,14 @@ pub(super) fn has_exact_length(bytes: &[u8]) -> bool {
     count(bytes).is_some_and(|count| length(count) == bytes.len() as u64)
 }
 
+/// What to tell of bytes after the last triangle that the header tells, where they are enough for another.
+pub(super) fn left_over(bytes: &[u8]) -> Option<String> {
+    let over = (bytes.len() as u64).checked_sub(length(count(bytes)?))?;
+    let triangles = counted(count(bytes)? as usize, "triangle");
+    (over >= TRIANGLE as u64)
+        .then(|| format!("the header tells {triangles}; the {over} bytes after that are passed over"))
+}
+
 /// The corners of the triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>> {
     let Some(count) = count(bytes) else {

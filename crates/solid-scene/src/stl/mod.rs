@@ -25,15 +25,19 @@ pub(crate) fn load(path: &Path) -> std::result::Result<Part, SceneError> {
 }
 
 fn parse(bytes: &[u8], stem: &str) -> Result<Part> {
-    let triangles = match is_text(bytes) {
-        true => ascii::read(bytes)?,
-        false => binary::read(bytes).map_err(|fault| zero_in_text(bytes).unwrap_or(fault))?,
+    let (triangles, warning) = match is_text(bytes) {
+        true => (ascii::read(bytes)?, None),
+        false => {
+            let triangles = binary::read(bytes).map_err(|fault| zero_in_text(bytes).unwrap_or(fault))?;
+            (triangles, binary::left_over(bytes))
+        }
     };
     let soup = welded(&triangles);
     if soup.is_empty() {
-        return Err("the file has no geometry: no facet".into());
+        let why = warning.map(|warning| format!("; {warning}")).unwrap_or_default();
+        return Err(format!("the file has no geometry: no facet{why}").into());
     }
-    Ok(still_part(vec![soup.into_object(stem, 1)?], Vec::new()))
+    Ok(still_part(vec![soup.into_object(stem, 1)?], Vec::from_iter(warning)))
 }
 
 /// What to say of a file that begins as text, but has a zero byte, where it is no binary file either.
@@ -140,7 +144,20 @@ mod tests {
     fn bytes_after_the_last_triangle_are_passed_over() {
         let mut bytes = binary(b"\0", 1, 1);
         bytes.extend(b"trailer");
-        assert_eq!(parse(&bytes, "stem").unwrap().objects[0].shape.primitive_count(), 1);
+        let part = parse(&bytes, "stem").unwrap();
+        assert_eq!((part.objects[0].shape.primitive_count(), part.warnings.len()), (1, 0));
+    }
+
+    /// Some programs do not come back to the count when they have written all triangles.
+    #[test]
+    fn triangles_that_the_header_does_not_tell_are_warned_of() {
+        let part = parse(&binary(b"solid", 1, 3), "stem").unwrap();
+        assert_eq!(part.objects[0].shape.primitive_count(), 1);
+        assert_eq!(part.warnings, ["the header tells 1 triangle; the 100 bytes after that are passed over"]);
+        let message = "the file has no geometry: no facet; the header tells 0 triangles; the 100 bytes after that are \
+                       passed over";
+        assert_eq!(refused(&binary(b"\0", 0, 2)).1, message);
+        assert_eq!(refused(&binary(b"\0", 0, 0)).1, "the file has no geometry: no facet");
     }
 
     #[test]
