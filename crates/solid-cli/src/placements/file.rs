@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::{ReaderBuilder, StringRecord};
 
 use super::fields;
 use super::row::Row;
@@ -76,8 +76,7 @@ type Mistake = (u64, String);
 fn rows(text: &str, names: &[&str]) -> std::result::Result<Vec<Row>, Mistake> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = Lines { text, at: 0, line: 1 };
-    let mut csv =
-        ReaderBuilder::new().has_headers(false).flexible(true).trim(Trim::All).from_reader(text.as_bytes());
+    let mut csv = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
     let mut records = csv.records().map(|record| match record {
         Ok(record) => Ok((lines.of(&record), record)),
         Err(error) => Err((lines.line, error.to_string())),
@@ -96,11 +95,11 @@ fn rows(text: &str, names: &[&str]) -> std::result::Result<Vec<Row>, Mistake> {
 /// The number of columns.
 fn header(record: &StringRecord) -> fields::Result<usize> {
     let count = record.len();
-    if (count == COLUMNS_MIN || count == COLUMNS.len()) && record.iter().eq(COLUMNS[..count].iter().copied())
-    {
+    let found: Vec<&str> = record.iter().map(str::trim).collect();
+    if (count == COLUMNS_MIN || count == COLUMNS.len()) && found == COLUMNS[..count] {
         return Ok(count);
     }
-    let found = record.iter().collect::<Vec<_>>().join(",");
+    let found = found.join(",");
     Err(format!("the header is {}; expected {}", quoted(&found), expected_header()))
 }
 
@@ -129,14 +128,19 @@ impl<'a> RowReader<'a> {
             let (fields, are) = (words::count(found, "field"), words::are(found));
             return Err(format!("there {are} {fields}; expected {expected}, as in the header"));
         }
-        let texts: Vec<&str> = record.iter().collect();
+        let texts: Vec<&str> = record.iter().map(str::trim).collect();
         let frame = fields::frame(texts[0])?;
-        let object = self.object(texts[1])?;
+        let object = self.object(&record[1])?;
         let placement = fields::placement(&texts[2..], &COLUMNS[2..expected])?;
         Ok(Row { frame, object, placement, line })
     }
 
-    fn object(&self, name: &str) -> fields::Result<usize> {
+    /// The object of a name as it is written, or else without the space around it.
+    fn object(&self, written: &str) -> fields::Result<usize> {
+        if let Some(&place) = self.places.get(written) {
+            return Ok(place);
+        }
+        let name = written.trim();
         let hint = || suggest::hint(name, self.names.iter().copied());
         let unknown = || format!("there is no object {}{}", quoted(name), hint());
         self.places.get(name).copied().ok_or_else(unknown)
@@ -198,6 +202,16 @@ mod tests {
         let text = "\u{feff}frame, object, tx, ty, tz, qx, qy, qz, qw, sx, sy, sz\r\n\r\n0, ship, 1, 0, 0, 0, 0, 0, 1, 2, 2, 2\r\n";
         let rows = read(text).expect("the rows are well formed");
         assert_eq!((rows[0].line, rows[0].placement.matrix3.x_axis.x), (3, 2.0));
+    }
+
+    #[test]
+    fn a_name_may_begin_and_end_with_space() {
+        let text = format!("{HEADER}0, arm ,1,0,0,0,0,0,1\n0,arm,2,0,0,0,0,0,1\n0,  arm,3,0,0,0,0,0,1\n");
+        let place = |names: &[&str]| -> Vec<usize> {
+            rows(&text, names).expect("the rows are well formed").iter().map(|row| row.object).collect()
+        };
+        assert_eq!(place(&["arm"]), [0, 0, 0]);
+        assert_eq!(place(&["arm", " arm "]), [0, 0, 1]);
     }
 
     #[test]
