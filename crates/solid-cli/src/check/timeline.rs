@@ -58,12 +58,13 @@ impl Timeline {
         self.frames
     }
 
-    /// The time of a frame, in seconds; not after the end, where an animation may begin anew.
+    /// The time of a frame, in seconds; not after the end, where an animation may begin anew: all but the last are before it by more
+    /// than rounding, as the tolerances are.
     pub fn time(&self, frame: u64) -> f64 {
         if frame + 1 == self.frames {
             return self.to;
         }
-        (self.from + frame as f64 / self.fps).min(self.to)
+        self.from + frame as f64 / self.fps
     }
 }
 
