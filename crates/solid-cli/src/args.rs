@@ -37,8 +37,9 @@ Objects:
 
 Convex pieces (--decompose PATTERN):
   In the place of the mesh are at most 32 convex pieces, found on a grid of 64 voxels along its longest side: they cover all
-  of the mesh, and more by about 1 % of its convex hull for each piece. Notches thinner than two voxels may be closed. A mesh that
-  deforms cannot be decomposed. With --solid for the same object the mesh must be closed, too.
+  of the mesh, and more by about 1 % of its convex hull for each piece. Notches thinner than two voxels may be closed, and
+  those in what is flat, since they have no volume. A mesh that deforms cannot be decomposed. With --solid for the same object the
+  mesh must be closed, too.
 
 Rules (--rules FILE.toml): what is wanted of which pair; `*` stands for any characters, `?` for one.
     default = \"witness\"             # ignore, simple, witness, smart, curve, depth or contacts
@@ -74,9 +75,9 @@ Clearance (--clearance DISTANCE):
 
 Rays (--ray ORIGIN DIRECTION, each X,Y,Z):
   What a ray meets in each frame: of every object on its way, whatever its response, the first point, the triangle, the normal on
-  the side that the ray comes from, and the distance from the origin. Where a ray starts inside of a solid there is no normal.
-  The table tells of each ray and object where they meet nearest, and when. The JSON of a frame then also has \"rays\", nearest first;
-  of CSV the rows with a ray are these, the object in column a. Rays do not change the exit status.
+  the side that the ray comes from, and the distance from the origin. Where a ray starts inside of a solid there is no triangle and no normal.
+  The table tells of each ray and object where they meet nearest, and when. The JSON of a frame then also has \"rays\", ray by ray, of
+  each the nearest first; of CSV the rows with a ray are these, the object in column a. Rays do not change the exit status.
 
 Depth (--response depth):
   How deep two objects are in each other: the shortest translation that leaves them touching. The normal says where the
@@ -125,7 +126,7 @@ pub enum Command {
     /// Plays the animation frame by frame and reports what collides
     #[command(after_help = EXIT_STATUS, after_long_help = format!("{CHECK_NOTES}\n\n{EXIT_STATUS}"))]
     Check(Box<CheckArgs>),
-    /// Says what is in the files: objects, kinds, sizes, units, animation, defects
+    /// Says what is in the files: objects, kinds, numbers of primitives, units, animation, defects
     Info(InfoArgs),
 }
 
@@ -232,7 +233,7 @@ pub enum ResponseArg {
     Simple,
     /// A common point
     Witness,
-    /// The closest points of the previous frame, and the normal between them
+    /// The normal between the closest points of the previous frame, and the middle of these
     Smart,
     /// The lines in which the surfaces meet (in JSON), and their first point
     Curve,

@@ -38,7 +38,8 @@ pub struct Decomposition {
 /// - The pieces cover the whole surface, but for 1e-11 of the size of the mesh. Their corners are vertices of it, and points at which it
 ///   was cut, which are rounded as its coordinates are.
 /// - They cover what the mesh encloses, but for gaps of less than two voxels. Cavities count as enclosed, too.
-/// - They cover more: by what [`Options::concavity`] allows, where there are pieces enough.
+/// - They cover more: by what [`Options::concavity`] allows, where there are pieces enough. That is told in volumes, of which what
+///   lies in a plane has none, so that notches of what is flat may be closed.
 /// - A mesh with holes wider than a voxel encloses nothing, and is covered as the surface that it is. A flat mesh has flat
 ///   pieces.
 ///
