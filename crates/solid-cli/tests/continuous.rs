@@ -83,3 +83,29 @@ fn what_only_seems_to_meet_is_left_out() {
     assert_eq!(run(2.0, -2.0), 1);
     assert_eq!(run(2.0, 2.0), 0);
 }
+
+#[test]
+fn what_meets_on_the_way_has_a_point_only_where_the_response_tells_one() {
+    let command = "check a.obj b.obj --placements p.csv --fps 10 --continuous --response simple --json -";
+    let json = bullet().run(command).json();
+    let collision = &json["frames"][2]["collisions"][0];
+    assert!(collision["contact_time"].is_number() && collision["point"].is_null(), "{collision}");
+}
+
+/// The first frame has no way to it, wherever the animation begins.
+#[test]
+fn nothing_is_on_its_way_to_the_first_frame() {
+    // A triangle that rises from below a ball to above it.
+    let text = "#VRML V2.0 utf8
+        DEF ball Shape { geometry Sphere { radius 0.5 } }
+        DEF sheet Shape { geometry IndexedFaceSet { coordIndex [ 0 1 2 ]
+          coord DEF points Coordinate { point [ -9 -2 -9, 9 -2 -9, 0 -2 9 ] } } }
+        DEF clock TimeSensor { cycleInterval 2 }
+        DEF path CoordinateInterpolator { key [ 0 1 ]
+          keyValue [ -9 -2 -9, 9 -2 -9, 0 -2 9, -9 2 -9, 9 2 -9, 0 2 9 ] }
+        ROUTE clock.fraction_changed TO path.set_fraction
+        ROUTE path.value_changed TO points.set_point";
+    let desk = Desk::new().file("s.wrl", text);
+    desk.run("check s.wrl --from 2 --continuous").assert_status(0);
+    desk.run("check s.wrl --fps 0.5 --continuous").assert_status(1);
+}
