@@ -266,6 +266,28 @@ mod tests {
         assert!(output.flush().is_ok());
     }
 
+    /// It is not asked again: a new reader of a named pipe would get the rest without its beginning.
+    #[test]
+    fn what_comes_after_a_reader_that_left_is_written_to_nobody() {
+        /// A pipe whose first reader leaves at once, and the second stays.
+        #[derive(Default)]
+        struct TwoReaders(Vec<Vec<u8>>);
+        impl Write for TwoReaders {
+            fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+                self.0.push(buffer.to_vec());
+                if self.0.len() == 1 { Err(ErrorKind::BrokenPipe.into()) } else { Ok(buffer.len()) }
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let mut output = Named { name: "pipe".to_owned(), inner: TwoReaders::default(), deserted: false };
+        for text in ["first", "second"] {
+            output.write_all(text.as_bytes()).expect("a reader that leaves is no error");
+        }
+        assert_eq!(output.inner.0, [b"first"]);
+    }
+
     #[test]
     fn other_errors_name_the_output() {
         let error = named(ErrorKind::StorageFull).write_all(b"text").expect_err("the disk is full");
