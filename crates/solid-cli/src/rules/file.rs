@@ -292,6 +292,20 @@ mod tests {
         assert_eq!((rules.pairs[0].b.text.as_str(), rules.pairs[0].b.place.as_str()), ("y", "rules.toml:8"));
     }
 
+    /// The option is in the place of the default, and of nothing else.
+    #[test]
+    fn what_responses_tell_is_told_by_those_that_pairs_may_have() {
+        let depths = |text: &str, option| parse(text).expect("the rules are well formed").tell_depth(option);
+        assert!(
+            depths("default = \"depth\"", None) && !depths("default = \"depth\"", Some(Response::Simple))
+        );
+        assert!(
+            !depths("default = \"simple\"", None) && depths("default = \"simple\"", Some(Response::Contacts))
+        );
+        let object = "[[object]]\nname = \"x\"\nresponse = \"depth\"";
+        assert!(depths(object, Some(Response::Simple)));
+    }
+
     #[test]
     fn mistakes_name_their_line_and_what_was_expected() {
         for (text, expected) in [

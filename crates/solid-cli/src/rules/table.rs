@@ -246,6 +246,30 @@ mod tests {
     }
 
     #[test]
+    fn the_greatest_clearance_is_told() {
+        let names = ["a", "b"];
+        let rule = |clearance: f64| format!("[[pair]]\na = \"a\"\nb = \"b\"\nclearance = {clearance}\n");
+        let greatest = |text: &str, default| {
+            let mut world = World::new();
+            let ball = Shape::sphere(1.0).expect("the radius is fine");
+            let ids = names.map(|_| world.add(&ball, DAffine3::IDENTITY).expect("the placement is fine"));
+            let rules = Rules::parse(Path::new("r.toml"), text).expect("the rules are well formed");
+            let objects = Objects { names: &names, ids: &ids, exempt: &[] };
+            set_clearances(&rules, default, &objects, &mut world).expect("the rules are few")
+        };
+        assert_eq!(greatest("", None), None);
+        for (text, default, expected) in [
+            (rule(2.0) + &rule(1.0), None, 2.0),
+            (rule(1.0) + &rule(2.0), None, 2.0),
+            (rule(1.0), Some(3.0), 3.0),
+            ("clearance = 2.0\n".to_owned() + &rule(1.0), None, 2.0),
+            ("clearance = 2.0\n".to_owned() + &rule(1.0), Some(0.5), 1.0),
+        ] {
+            assert_eq!(greatest(&text, default), Some(expected), "{text}, {default:?}");
+        }
+    }
+
+    #[test]
     fn rules_that_make_too_many_pairs_are_refused_before_they_do() {
         let names: Vec<String> = (0..3200).map(|i| i.to_string()).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -309,5 +333,7 @@ mod tests {
         };
         assert_eq!(of("ship", "ship"), ["r.toml:2: a and b are both \"ship\"; a pair needs two objects"]);
         assert_eq!(of("ship*", "ship*"), [""; 0]); // there may be others in another scene
+        let of_none = of("x", "x");
+        assert!(of_none.iter().all(|warning| warning.contains("\"x\" matches no object")), "{of_none:?}");
     }
 }
