@@ -72,3 +72,31 @@ fn name(scene: &Scene, place: usize) -> String {
     let object = &scene.objects()[place];
     format!("{}: object {}", scene.files()[object.file()].display(), quoted(object.name()))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use solid3d::glam::DVec3;
+
+    use super::*;
+
+    /// What takes a second for each mesh is done once for all that share one.
+    #[test]
+    fn what_is_shared_is_remade_once() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let [one, other] = [0, 1].map(|_| Shape::mesh(corners, faces).expect("it is a tetrahedron"));
+        let ball = Shape::sphere(1.0).expect("the radius is fine");
+        let mut shapes = [&one, &other, &one, &ball, &ball].map(Shape::clone);
+        let calls = Cell::new(0);
+        let make = |_, shape: &Shape| {
+            calls.set(calls.get() + 1);
+            Ok(shape.clone().into_solid()?)
+        };
+        remake(&mut shapes, &[2, 0, 2, 3, 4], make).expect("it is closed");
+        assert_eq!(calls.get(), 3, "of the tetrahedron, and of each ball");
+        assert_eq!(buffers(&shapes[0]), buffers(&shapes[2]));
+        assert_eq!(buffers(&shapes[1]), buffers(&other));
+    }
+}
