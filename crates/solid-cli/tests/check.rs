@@ -366,6 +366,9 @@ fn an_empty_file_among_others_is_warned_of() {
                     warning: there is one object alone, so that nothing can collide; \
                     --split makes each object and group of an OBJ file one\n";
     assert_eq!(run.assert_status(0).stderr, expected);
+    // Where it was split already there is nothing to do about it.
+    let expected = "warning: there is one object alone, so that nothing can collide\n";
+    assert_eq!(desk.run("check a.obj --split").stderr, expected);
 }
 
 #[test]

@@ -88,6 +88,8 @@ fn an_object_that_is_placed_twice_is_warned_of() {
     let warning =
         "warning: p.csv:5: object \"b\" is placed in frame 3 again, after line 2; the later row holds";
     assert_eq!(run(&csv).stderr, format!("{warning}\n"));
+    let run_of_three = run(&format!("{csv}3,b,0,0,0,0,0,0,1\n"));
+    assert_eq!(run_of_three.stderr, format!("{warning}; there is 1 more such row\n"));
     let csv = format!("{csv}0,b,9,0,0,0,0,0,1\n3,b,0,0,0,0,0,0,1\n");
     let warning = "warning: p.csv:6: object \"b\" is placed in frame 0 again, after line 3; the later row holds; \
                    there are 2 more such rows\n";
