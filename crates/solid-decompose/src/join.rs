@@ -49,3 +49,27 @@ fn best(
     };
     least(true).or_else(|| if pieces.len() > pieces_max { least(false) } else { None })
 }
+
+#[cfg(test)]
+mod tests {
+    use solid3d::glam::DVec3;
+
+    use super::*;
+    use crate::piece::Corner;
+
+    /// Three bricks side by side, the middle one raised: the hull of two adds 0.3, and that of all as much again.
+    #[test]
+    fn what_was_added_before_counts() {
+        let bricks = || {
+            let corners = |x: f64, y: f64| {
+                (0..8).map(move |i| {
+                    DVec3::new(x + f64::from(i & 1), y + f64::from(i >> 1 & 1), f64::from(i >> 2))
+                })
+            };
+            let brick = |(x, y)| corners(x, y).map(|at| Corner { at, is_cut: false }).collect();
+            [(0.0, 0.0), (1.0, 0.3), (2.0, 0.0)].map(|place| Piece::of(brick(place)).expect("it has corners"))
+        };
+        let count = |allowance| join(bricks().to_vec(), 32, allowance).len();
+        assert_eq!([0.2, 0.5, 0.7].map(count), [3, 2, 1]);
+    }
+}

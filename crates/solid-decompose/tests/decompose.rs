@@ -280,6 +280,21 @@ fn flat_and_tiny_meshes_have_pieces() {
     assert_covers_surface(&far, &parts, &mut seeded(SEED), "huge");
 }
 
+/// What would have no volume is not put between pieces all the same: they are apart.
+#[test]
+fn plates_in_one_plane_that_are_apart_stay_apart() {
+    let corners = [0.0, 5.0]
+        .map(|x| [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(dx, y)| DVec3::new(x + dx, y, 0.0)));
+    let plates = Shape::mesh(corners.concat(), [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]).unwrap();
+    let parts = decompose(&plates, &Options::default()).unwrap();
+    let ball = Shape::sphere(0.1).unwrap();
+    let at = |x: f64| {
+        let there = DAffine3::from_translation(DVec3::new(x, 0.5, 0.0));
+        query::intersects(&parts.shape, &HERE, &ball, &there).unwrap()
+    };
+    assert_eq!([0.5, 3.0, 5.5].map(at), [true, false, true]);
+}
+
 /// A triangle in the plane in which two regions meet is in both, and may be left out elsewhere all the same.
 #[test]
 fn surfaces_in_planes_of_cuts_are_covered() {
