@@ -64,6 +64,28 @@ fn an_empty_scene_is_one() {
     assert_eq!(pose(&file.parse().unwrap(), 2.0), expected);
 }
 
+/// A name that is a number, too, is a name first.
+#[test]
+fn an_animation_is_chosen_by_name_before_number() {
+    let mut file = everything();
+    file.0["animations"][0]["name"] = json!("1");
+    assert_eq!(file.parse_animation(Some("1")).unwrap().duration, 3.0);
+    file.0["animations"][0]["name"] = json!("2");
+    assert_eq!(file.parse_animation(Some("1")).unwrap().duration, 0.0);
+}
+
+/// Exporters round weights, each on its own.
+#[test]
+fn weights_count_by_their_parts_of_the_sum() {
+    let with = |weights: [f32; 4]| {
+        let mut file = everything();
+        let weights = file.floats("VEC4", 4, &weights.repeat(4));
+        set(&mut file, "/meshes/0/primitives/0/attributes/WEIGHTS_0", json!(weights));
+        pose(&file.parse().unwrap(), 2.0)
+    };
+    assert_eq!(with([0.25, 0.25, 0.0, 0.0]), with([0.5, 0.5, 0.0, 0.0]));
+}
+
 /// A skin has no effect where no vertex follows a joint, and why is said.
 #[test]
 fn a_mesh_that_follows_no_joint_is_warned_of() {
@@ -79,12 +101,44 @@ fn a_mesh_that_follows_no_joint_is_warned_of() {
 }
 
 #[test]
+fn an_animation_ends_with_its_last_key() {
+    let mut file = everything();
+    let longer = file.floats("SCALAR", 2, &[0.0, 7.0]);
+    for sampler in 0..3 {
+        let mut file = File(file.0.clone());
+        set(&mut file, &format!("/animations/0/samplers/{sampler}/input"), json!(longer));
+        assert_eq!(file.parse().unwrap().duration, 7.0, "{sampler}");
+    }
+}
+
+#[test]
+fn keys_are_finite_and_in_order() {
+    let scalars = [
+        ("input", [3.0, 1.0], "channel 2 has a key at 1 after one at 3"),
+        ("input", [1.0, f32::INFINITY], "channel 2 has a key at inf; expected a finite time"),
+        ("output", [0.0, f32::NAN], "channel 2 has the value NaN; expected finite numbers"),
+    ];
+    for (name, values, message) in scalars {
+        let mut file = everything();
+        let accessor = file.floats("SCALAR", 2, &values);
+        file.is_refused_with(&format!("/animations/0/samplers/2/{name}"), json!(accessor), message);
+    }
+    let mut file = everything();
+    let turns = file.floats("VEC4", 2, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+    let message = "channel 0: the rotation of key 1 has length 0";
+    file.is_refused_with("/animations/0/samplers/0/output", json!(turns), message);
+}
+
+#[test]
 fn skins_and_animations_are_checked() {
     let changes = [
         ("/skins/0/joints/1", json!(9), "skin 0: node 9 is named, but there are 4"),
         ("/skins/0/joints", json!([1]), "a vertex follows joint 1, but there is 1"),
         ("/skins/0/joints", json!([0, 1, 2]), "skin 0 has 3 joints, but 2 inverseBindMatrices"),
         ("/nodes/3/skin", json!(2), "skin 2 is named, but there is 1"),
+        ("/accessors/1/count", json!(3), "target 0 has 3 elements; expected 4, one for each vertex"),
+        ("/accessors/2/count", json!(3), "JOINTS has 3 elements; expected 4, one for each vertex"),
+        ("/accessors/3/count", json!(3), "WEIGHTS has 3 elements; expected 4, one for each vertex"),
         ("/animations/0/channels/0/sampler", json!(3), "animation `all`, channel 0: sampler 3 is named"),
         ("/animations/0/channels/0/target/node", json!(4), "animation `all`, channel 0: node 4 is named"),
         (

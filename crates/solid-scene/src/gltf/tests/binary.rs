@@ -18,6 +18,24 @@ fn binary_files_are_read() {
     assert_eq!(pose(&part, 1.5), pose(&text, 1.5));
 }
 
+/// The binary part is the first buffer and no other.
+#[test]
+fn only_the_first_buffer_may_be_the_binary_part() {
+    let mut file = everything();
+    let next = file.add("buffers", json!({"byteLength": 1}));
+    let refused =
+        |bytes: &[u8]| parse(bytes, Path::new(""), None).map(|_| ()).unwrap_err().message().to_owned();
+    assert_eq!(refused(&binary(&file)), format!("buffer {next} has no URI"));
+    // Where the first has a URI the part is nobody's.
+    let mut bytes = file.0.to_string().into_bytes();
+    bytes.resize(bytes.len().next_multiple_of(4), b' ');
+    let chunks =
+        [&(bytes.len() as u32).to_le_bytes()[..], b"JSON", &bytes, &4u32.to_le_bytes(), b"BIN\0abcd"]
+            .concat();
+    let bytes = [&b"glTF\x02\0\0\0"[..], &(chunks.len() as u32 + 12).to_le_bytes(), &chunks].concat();
+    assert_eq!(refused(&bytes), format!("buffer {next} has no URI"));
+}
+
 #[test]
 fn a_binary_file_that_was_cut_off_says_so() {
     let bytes = binary(&everything());

@@ -23,6 +23,7 @@ use crate::pose::ObjectPose;
 
 const BYTE: u32 = 5120;
 const UNSIGNED_BYTE: u32 = 5121;
+const SHORT: u32 = 5122;
 const UNSIGNED_SHORT: u32 = 5123;
 const FLOAT: u32 = 5126;
 
@@ -274,6 +275,29 @@ fn quantized_positions_are_read() {
     file.add("nodes", json!({"mesh": mesh}));
     let part = file.parse().unwrap();
     assert_eq!(part.objects[0].shape.vertices().unwrap(), [DVec3::new(1.0, 0.0, -1.0), DVec3::Y, DVec3::Z]);
+}
+
+/// The greatest of a type is 1, and what is below less that is no less than -1 (glTF 2.0, section 3.6.2.2).
+#[test]
+fn normalized_integers_of_any_width_are_fractions() {
+    let signed = [0x7fff, 0, 0x8000, 0, 0x7fff, 0, 0, 0, 0x8001];
+    let unsigned = [0xffff, 0, 0, 0, 0xffff, 0, 0, 0, 0x3333];
+    for (component, numbers, expected) in [
+        (SHORT, signed, [DVec3::new(1.0, 0.0, -1.0), DVec3::Y, -DVec3::Z]),
+        (UNSIGNED_SHORT, unsigned, [DVec3::X, DVec3::Y, 0.2 * DVec3::Z]),
+    ] {
+        let mut file = File::new();
+        let mesh = file.triangle();
+        let bytes: Vec<u8> = numbers.iter().flat_map(|number: &u16| number.to_le_bytes()).collect();
+        let positions = file.accessor("VEC3", component, 3, &bytes);
+        file.0["accessors"][positions]["normalized"] = json!(true);
+        file.0["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"] = json!(positions);
+        file.add("nodes", json!({"mesh": mesh}));
+        assert_eq!(file.parse().unwrap().objects[0].shape.vertices().unwrap(), expected);
+    }
+    // Numbers of joints and vertices are none.
+    let message = "indices: accessor 4 has no unsigned integers";
+    everything().is_refused_with("/accessors/4/normalized", json!(true), message);
 }
 
 #[test]

@@ -96,6 +96,9 @@ fn accessors_stay_in_their_buffers() {
     for (path, value, message) in changes {
         file.is_refused_with(path, value, message);
     }
+    // What its bytes have beyond its length is padding.
+    let message = "bufferView 0 goes to byte 36 of buffer 0, which has 35";
+    file.is_refused_with("/buffers/0/byteLength", json!(35), message);
 }
 
 /// Its warnings may say why.
@@ -140,7 +143,24 @@ fn sharing_is_limited_in_proportion_to_the_file() {
         }]);
         file
     };
-    let files: [&dyn Fn(usize) -> File; 3] = [&meshes, &targets, &channels];
+    let sparse = |count: usize| {
+        let mut file = File::new();
+        let many = 60_000;
+        let places = file.view(&vec![0; many]);
+        let values = file.view(&vec![0; 12 * many]);
+        for mesh in 0..count {
+            let sparse = json!({
+                "count": many, "indices": {"bufferView": places, "componentType": UNSIGNED_BYTE},
+                "values": {"bufferView": values},
+            });
+            let positions = json!({"type": "VEC3", "componentType": FLOAT, "count": 1, "sparse": sparse});
+            let positions = file.add("accessors", positions);
+            file.add("meshes", json!({"primitives": [{"attributes": {"POSITION": positions}, "mode": 0}]}));
+            file.add("nodes", json!({"mesh": mesh}));
+        }
+        file
+    };
+    let files: [&dyn Fn(usize) -> File; 4] = [&meshes, &targets, &channels, &sparse];
     for file in files {
         assert_eq!(file(20).parse().map(|_| ()), Ok(()));
         let refused = file(200).refused();
@@ -321,6 +341,10 @@ fn extensions_and_versions_are_checked() {
     );
     file.0["asset"] = json!({"version": "1.0"});
     assert_eq!(file.refused(), "the file is of glTF 1.0; expected 2.0");
+    file.0["asset"] = json!({"version": "2.3", "minVersion": "2.0"});
+    assert!(file.refused().contains("KHR_implicit_shapes"), "the version will do");
+    file.0["asset"] = json!({"version": "2.3", "minVersion": "2.1"});
+    assert_eq!(file.refused(), "the file is of glTF 2.1; expected 2.0");
 }
 
 /// What may be missed is said, once.
