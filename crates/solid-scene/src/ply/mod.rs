@@ -133,6 +133,43 @@ mod tests {
         }
     }
 
+    /// Integers whose bits are all set: what they are depends on their type alone.
+    #[test]
+    fn integers_of_every_type_are_read() {
+        let types = [
+            ("char", 1, -1.0),
+            ("int8", 1, -1.0),
+            ("uchar", 1, 255.0),
+            ("uint8", 1, 255.0),
+            ("short", 2, -1.0),
+            ("int16", 2, -1.0),
+            ("ushort", 2, 65_535.0),
+            ("uint16", 2, 65_535.0),
+            ("int", 4, -1.0),
+            ("int32", 4, -1.0),
+            ("uint", 4, 4_294_967_295.0),
+            ("uint32", 4, 4_294_967_295.0),
+        ];
+        for ((name, size, expected), order) in
+            types.into_iter().flat_map(|one| [(one, "little"), (one, "big")])
+        {
+            let header = format!(
+                "ply\nformat binary_{order}_endian 1.0\nelement vertex 1\nproperty {name} x\nproperty uchar y\n\
+                 property uchar z\nelement face 1\nproperty list uchar uchar vertex_index\nend_header\n"
+            );
+            let bytes = [header.as_bytes(), &vec![0xff; size], &[0, 0, 3, 0, 0, 0]].concat();
+            let part = parse(&bytes, "stem").unwrap();
+            assert_eq!(part.objects[0].shape.vertices().unwrap(), [DVec3::X * expected], "{name}, {order}");
+        }
+    }
+
+    #[test]
+    fn a_face_that_crosses_itself_is_warned_of() {
+        let text = TEXT.replace("1 0 9 0\r\n4 0 1 2 3", "3 0 9 0\r\n4 0 2 1 3");
+        let warnings = parse(text.as_bytes(), "stem").unwrap().warnings;
+        assert!(warnings.len() == 2 && warnings[1].starts_with("1 polygon"), "{warnings:?}");
+    }
+
     #[test]
     fn counts_beyond_the_file_are_refused() {
         let head = "ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty float y\n\
@@ -189,6 +226,32 @@ mod tests {
                 Some(3),
                 "`vertex` has no scalar property `y`",
             ),
+            (
+                header(
+                    &xyz.replace("property float x", "property list uchar float x"),
+                    "end_header\n0 0 0\n",
+                ),
+                Some(3),
+                "`vertex` has no scalar property `x`",
+            ),
+            (
+                header(xyz, &format!("{face}0 0 0\n3 0 0 0.5\n")),
+                Some(11),
+                "`face` 0 names vertex 0.5, but there is 1",
+            ),
+            (
+                header(xyz, &format!("{face}0 0 0\n9 0\n0\n0\n")),
+                Some(11),
+                "the file ends in `face` 0: expected 9 numbers of `vertex_indices`",
+            ),
+            // Each of the two has room, but not both.
+            (
+                header(xyz, &format!("{}0 0 0\n", face.replace("face 1", "face 2"))),
+                Some(7),
+                "the header tells 2 of `face`, of 4 bytes in all; the file has 0 for them",
+            ),
+            // Nothing is after the last number.
+            (header(xyz, &format!("{face}0 0 0 0")), None, "the file has no geometry: no face"),
             (
                 header(xyz, &format!("{face}0 0 0\n3 0 0 1\n")),
                 Some(11),
