@@ -102,6 +102,15 @@ mod tests {
         assert_eq!(shape.vertices().unwrap()[3], DVec3::new(2.0, 2.0, 20.0));
     }
 
+    #[test]
+    fn a_text_may_begin_with_space_or_with_a_facet() {
+        let without = TEXT.replacen("solid a\n", "", 1).replacen("endsolid a\n", "", 1);
+        for text in [format!("\n \t{TEXT}"), without.trim_start().to_owned(), format!("\u{feff}{without}")] {
+            let part = parse(text.as_bytes(), "stem").unwrap();
+            assert_eq!(part.objects[0].shape.triangles().unwrap(), [[0, 1, 2], [1, 0, 3]], "{text}");
+        }
+    }
+
     /// Law: how a text is divided into lines makes no difference, but that a name ends with its line or before `facet normal`.
     #[test]
     fn a_line_may_hold_many_facets() {
