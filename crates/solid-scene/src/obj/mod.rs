@@ -136,6 +136,30 @@ mod tests {
         assert_eq!(message, "the index 9 names no vertex; the file has 3");
     }
 
+    /// As old programs write faces.
+    #[test]
+    fn outlines_of_faces_are_faces() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nfo 1 2 3\n";
+        let part = parse(text.as_bytes(), "stem", false).unwrap();
+        assert_eq!(part.objects[0].shape.triangles().unwrap(), [[0, 1, 2]]);
+    }
+
+    #[test]
+    fn faces_that_cross_themselves_are_warned_of() {
+        let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 3 0\nf 1 3 2 4\nf 1 2 3 4\n";
+        for split in [false, true] {
+            let warnings = parse(text.as_bytes(), "stem", split).unwrap().warnings;
+            assert!(warnings.len() == 1 && warnings[0].starts_with("1 polygon"), "{warnings:?}");
+        }
+    }
+
+    #[test]
+    fn free_forms_are_counted() {
+        let text = "v 0 0 0\np 1\ncurv 0 1 1 1\ncurv2 1 1\nsurf 0 1 0 1 1\n";
+        let warnings = parse(text.as_bytes(), "stem", false).unwrap().warnings;
+        assert_eq!(warnings, ["3 free-form curves or surfaces are passed over"]);
+    }
+
     #[test]
     fn short_faces_are_passed_over() {
         let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1// 2//\nf 1// 2// 3//\n";
@@ -157,6 +181,8 @@ mod tests {
                 "expected a vertex index, but there is `99999999999999999999`",
             ),
             ("v 0 1e200 0\np 1\n", 1, "the vertex's y is `1e200`; it must be at most 1e100 in magnitude"),
+            // The greatest is told, whatever follows it.
+            ("v 0 0 0\nf 1 1 9\nf 1 7 1\n", 2, "the index 9 names no vertex; the file has 1"),
             ("\n\nv 0 0 inf\n", 3, "expected a finite number for the vertex's z, but there is `inf`"),
         ];
         for (text, line, message) in mistakes {
