@@ -152,6 +152,39 @@ mod tests {
         assert_eq!(triangulated(&square[..2]), [[0; 3]; 0]);
     }
 
+    /// Neither where ears are cut nor where corners lie on an edge.
+    #[test]
+    fn rounding_folds_nothing() {
+        for points in [5, 50, 500] {
+            let turn = std::f64::consts::PI / f64::from(points);
+            let corner = |i: u32| {
+                let (sin, cos) = (turn * f64::from(i)).sin_cos();
+                DVec3::new(cos, sin, 0.3) * if i.is_multiple_of(2) { 1.0 } else { 0.4 }
+            };
+            let star: Vec<DVec3> = (0..2 * points).map(corner).map(|p| p.with_z(0.3)).collect();
+            let area = total_area(&star, &triangulated(&star));
+            assert!((area - f64::from(points) * 0.4 * turn.sin()).abs() < 1e-12, "{points}: {area}");
+        }
+        for slope in (1..200).map(|i| 0.1 * f64::from(i)) {
+            let on_edge = [0.0, 0.1, 0.7, 1.0].map(|x| DVec3::new(x, slope * x, 0.0));
+            let polygon = [&on_edge[..], &[DVec3::new(0.5, 99.0, 0.0)]].concat();
+            assert_eq!(triangulated(&polygon), [[0, 1, 2], [0, 2, 3], [0, 3, 4]], "{slope}");
+        }
+    }
+
+    /// Which takes quadratic time.
+    #[test]
+    fn ears_are_cut_of_so_many_corners_and_no_more() {
+        let cut = |corners: usize| {
+            let teeth = (0..corners - 2).map(|i| DVec3::new(-(i as f64), (i % 2) as f64, 0.0));
+            let left = -(corners as f64);
+            let comb: Vec<DVec3> = teeth.chain([left, 0.0].map(|x| DVec3::new(x, -1.0, 0.0))).collect();
+            let numbers: Vec<u32> = (0..corners as u32).collect();
+            triangulate(&numbers, &comb, &mut Vec::new())
+        };
+        assert_eq!([0, 1].map(|more| cut(EARCUT_CORNERS_MAX + more)), [Cut::Faithful, Cut::Folded]);
+    }
+
     #[test]
     fn concave_polygons_keep_their_area() {
         // An arrowhead whose first corner does not see the third: the fan would cover 2 + 1 instead of 1.
