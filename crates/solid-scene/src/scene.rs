@@ -142,3 +142,15 @@ impl Names {
         candidate
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_also_where_they_look_like_numbered_ones() {
+        let mut names = Names::default();
+        let given = ["a", "a", "a#2", "a", "", "object", "a#2"].map(|name| names.unique(name));
+        assert_eq!(given, ["a", "a#2", "a#2#2", "a#3", "object", "object#2", "a#2#3"]);
+    }
+}

@@ -33,3 +33,23 @@ fn a_byte_order_mark_is_passed_over() {
         assert_eq!(vertices(format!("\u{feff}{text}")), vertices(text.to_owned()), "{name}");
     }
 }
+
+/// Of text in UTF-16, of either byte order, it is said what it is.
+#[test]
+fn text_in_utf16_is_named() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    for (name, text) in
+        [("wide.wrl", WRL), ("wide.obj", OBJ), ("wide.stl", STL), ("wide.ply", PLY), ("wide.gltf", GLTF)]
+    {
+        let path = folder.join(name);
+        for bytes_of in [u16::to_le_bytes, u16::to_be_bytes] {
+            let marked = format!("\u{feff}{text}");
+            std::fs::write(&path, marked.encode_utf16().flat_map(bytes_of).collect::<Vec<u8>>()).unwrap();
+            let error = Scene::load(&[&path], &LoadOptions::default()).map(|_| ()).unwrap_err().to_string();
+            assert!(
+                error.ends_with(": is text in UTF-16; expected UTF-8, so save it as that first"),
+                "{error}"
+            );
+        }
+    }
+}

@@ -8,7 +8,7 @@ mod generate;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use solid_scene::{LoadOptions, Pose, Scene};
+use solid_scene::{LoadOptions, Pose, Scene, SceneObject};
 use solid3d::{ObjectId, Response, World};
 
 const FPS: f64 = 30.0;
@@ -196,4 +196,17 @@ fn blocks() {
 #[test]
 fn channel() {
     check("channel.wrl", 4.0, &["channel", "marble"], &[("channel", "marble")]);
+}
+
+/// What is on one root path in a file has nothing to do with another file, if only another copy.
+#[test]
+fn root_paths_are_of_one_file() {
+    let file = folder().join("robot_cell.gltf");
+    let scene = Scene::load(&[&file, &file], &LoadOptions::default()).unwrap();
+    let (one, other) = scene.objects().split_at(scene.objects().len() / 2);
+    let related = |a: &[SceneObject], b: &[SceneObject]| {
+        a.iter().map(|a| b.iter().filter(|b| a.on_root_path_with(b)).count()).sum::<usize>()
+    };
+    assert!(related(one, one) > one.len() && related(one, one) == related(other, other));
+    assert_eq!(related(one, other), 0);
 }
