@@ -57,19 +57,24 @@ mod tests {
     use super::*;
     use crate::piece::Corner;
 
+    /// A cube of size 1 with its least corner at (x, y, 0).
+    fn brick((x, y): (f64, f64)) -> Piece {
+        let corner = |i: u32| DVec3::new(x + f64::from(i & 1), y + f64::from(i >> 1 & 1), f64::from(i >> 2));
+        let corners = (0..8).map(|i| Corner { at: corner(i), is_cut: false });
+        Piece::of(corners.collect()).expect("it has corners")
+    }
+
     /// Three bricks side by side, the middle one raised: the hull of two adds 0.3, and that of all as much again.
     #[test]
     fn what_was_added_before_counts() {
-        let bricks = || {
-            let corners = |x: f64, y: f64| {
-                (0..8).map(move |i| {
-                    DVec3::new(x + f64::from(i & 1), y + f64::from(i >> 1 & 1), f64::from(i >> 2))
-                })
-            };
-            let brick = |(x, y)| corners(x, y).map(|at| Corner { at, is_cut: false }).collect();
-            [(0.0, 0.0), (1.0, 0.3), (2.0, 0.0)].map(|place| Piece::of(brick(place)).expect("it has corners"))
-        };
-        let count = |allowance| join(bricks().to_vec(), 32, allowance).len();
-        assert_eq!([0.2, 0.5, 0.7].map(count), [3, 2, 1]);
+        let bricks = || [(0.0, 0.0), (1.0, 0.3), (2.0, 0.0)].map(brick).to_vec();
+        assert_eq!([0.2, 0.5, 0.7].map(|allowance| join(bricks(), 32, allowance).len()), [3, 2, 1]);
+    }
+
+    /// Whatever is between them, where there may be no more.
+    #[test]
+    fn what_is_apart_is_joined_only_where_there_are_too_many() {
+        let bricks = || [(0.0, 0.0), (5.0, 0.0)].map(brick).to_vec();
+        assert_eq!([1, 2].map(|pieces_max| join(bricks(), pieces_max, 9.0).len()), [1, 2]);
     }
 }
