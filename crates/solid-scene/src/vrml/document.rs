@@ -225,11 +225,28 @@ fn in_our_words(message: &str) -> String {
     if let Some((field, class)) = of_class(message, " in class ") {
         return format!("{field} is no field of {class}; expected one of its fields or '}}'");
     }
+    if let Some(message) = of_connection(message) {
+        return message;
+    }
     match message {
         "Unknown statement" => "expected a node, DEF, USE, PROTO or ROUTE".into(),
         "Expected ']'" => "expected one more value or ']'".into(),
         _ => message.replacen("Expected", "expected", 1),
     }
+}
+
+/// What is wrong with an IS, in a message that names a field and the name of an interface.
+fn of_connection(message: &str) -> Option<String> {
+    let (names, wrong) = message.strip_prefix("Field ")?.split_once(" in PROTO ")?;
+    let (field, name) = names.split_once(" and ")?;
+    let expected = if wrong.ends_with("have different types") {
+        "two of one type"
+    } else if wrong.ends_with("are incompatible as an IS mapping") {
+        "two of one kind (field, eventIn, eventOut or exposedField), or an exposedField before IS"
+    } else {
+        return None;
+    };
+    Some(format!("{field} IS {name}: expected {expected}"))
 }
 
 /// The parser's warnings say what it does not know; this says what becomes of it.
@@ -263,6 +280,23 @@ mod tests {
 
     fn parse(body: &str) -> Result<Document, SceneError> {
         Document::parse(Path::new("a.wrl"), &format!("#VRML V2.0 utf8\n{body}"), 0, |_| {})
+    }
+
+    #[test]
+    fn a_connection_of_what_does_not_fit_is_told() {
+        let message = |interface: &str, field: &str| {
+            parse(&format!("PROTO P [ {interface} ]\n{{ Collision {{ {field} }} }}")).unwrap_err().to_string()
+        };
+        let kinds =
+            "two of one kind (field, eventIn, eventOut or exposedField), or an exposedField before IS";
+        assert_eq!(
+            message("exposedField SFNode p NULL", "proxy IS p"),
+            format!("a.wrl:3: 'proxy' IS 'p': expected {kinds}")
+        );
+        assert_eq!(
+            message("field SFFloat p 1", "bboxSize IS p"),
+            "a.wrl:3: 'bboxSize' IS 'p': expected two of one type"
+        );
     }
 
     #[test]
