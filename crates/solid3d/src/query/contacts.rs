@@ -31,8 +31,8 @@ use crate::shape::Shape;
 /// point stay the same while the same parts of the shapes are in contact.
 ///
 /// Cost: that of the [`penetration`](super::penetration()), and some hundred nanoseconds for faces of four sides, more in proportion for faces of more; for a
-/// convex hull, or a convex piece of a complex shape, also of finding its faces, once; for meshes for each pair of primitives whose boxes are as near, so that
-/// a face of k sides on n triangles takes k * n steps, and O(n) once after each deformation.
+/// convex hull, or a convex piece of a complex shape, also of finding its faces, once; for meshes for each pair of primitives whose boxes are as near,
+/// where of a face of many sides a triangle looks at those near it, and O(n) once after each deformation.
 ///
 /// ```
 /// use solid3d::{Shape, glam::{DAffine3, DVec3}, query::{self, ContactOptions}};
