@@ -17,17 +17,19 @@ const FEW: usize = 8;
 /// A face of a body that is over a flat surface, with all of its corners.
 pub(super) struct Cover {
     pub face: Face,
-    /// Where it is seen counter-clockwise.
-    axis: DVec3,
-    edges: Edges,
+    outline: Polygon,
     /// The primitives under its corners; ascending.
     under_corners: Vec<u32>,
 }
 
-/// Those of a polygon.
-type Edges = SmallVec<[Edge; 4]>;
+/// A convex polygon as it is seen along a normal.
+struct Polygon {
+    /// The normal, or its opposite: against which it goes around counter-clockwise.
+    axis: DVec3,
+    edges: SmallVec<[Edge; 4]>,
+}
 
-/// An edge of a polygon as it is seen along a normal, and a way inward from it.
+/// An edge of a polygon, and a way inward from it.
 struct Edge {
     from: DVec3,
     inward: DVec3,
@@ -50,20 +52,21 @@ impl Encounter<'_> {
         if !(covers && leaving.iter().all(is_of_plane)) {
             return None;
         }
-        let under_corners = self.under_corners(&face, leaving, out)?;
-        let (axis, edges) = edges(&points(&face), out);
-        Some(Cover { face, axis, edges, under_corners })
+        let corners: SmallVec<[DVec3; 4]> = face.corners.iter().map(|corner| corner.point).collect();
+        let outline = Polygon::seen(&corners, out);
+        let under_corners = self.under_corners(&outline, leaving, out)?;
+        Some(Cover { face, outline, under_corners })
     }
 
     /// The primitives under the corners of a face; `None` where one has none under it.
-    fn under_corners(&self, face: &Face, leaving: &[Leaving], out: DVec3) -> Option<Vec<u32>> {
-        let (points, mut is_over) = (points(face), vec![false; face.corners.len()]);
-        let (axis, _) = edges(&points, out);
+    fn under_corners(&self, outline: &Polygon, leaving: &[Leaving], out: DVec3) -> Option<Vec<u32>> {
+        let mut is_over = vec![false; outline.edges.len()];
         let mut holds_any = |&primitive: &u32| {
-            let triangle = self.stars.corners(primitive);
-            let (_, edges) = edges(&triangle, out);
-            let near = face::part(points.len(), |i| points[i], axis, &triangle, 0);
-            let over = near.into_iter().filter(|&i| edges.iter().all(|edge| edge.has_inside(points[i])));
+            let corners = self.stars.corners(primitive);
+            let triangle = Polygon::seen(&corners, out);
+            let near = outline.edges_near(&corners).into_iter();
+            let over =
+                near.filter(|&i| triangle.edges.iter().all(|edge| edge.has_inside(outline.edges[i].from)));
             over.map(|i| is_over[i] = true).count() > 0
         };
         let primitives = leaving.iter().map(|leaving| leaving.primitive);
@@ -76,12 +79,27 @@ impl Cover {
     /// The first corner of a triangle that is under the face, where no corner of the face is over the triangle.
     pub fn over(&self, primitive: u32, corners: &[DVec3]) -> Option<usize> {
         let is_inner = self.under_corners.binary_search(&primitive).is_err();
-        let Cover { axis, edges, .. } = self;
         let under = || {
-            let near = face::part(edges.len(), |i| edges[i].from, *axis, corners, 0);
-            corners.iter().position(|&corner| near.iter().all(|&i| edges[i].has_inside(corner)))
+            let near = self.outline.edges_near(corners);
+            let is_under = |&corner: &DVec3| near.iter().all(|&i| self.outline.edges[i].has_inside(corner));
+            corners.iter().position(is_under)
         };
         is_inner.then(under).flatten()
+    }
+}
+
+impl Polygon {
+    fn seen(corners: &[DVec3], normal: DVec3) -> Polygon {
+        let ends = || corners.iter().zip(corners.iter().cycle().skip(1));
+        let area: f64 = ends().map(|(p, q)| normal.dot((p - corners[0]).cross(q - corners[0]))).sum();
+        let axis = normal * area.signum();
+        let edges = ends().map(|(&from, to)| Edge { from, inward: axis.cross(to - from) }).collect();
+        Polygon { axis, edges }
+    }
+
+    /// The edges that may have a corner of a triangle on their outer side, and those that begin at a corner which may be over it.
+    fn edges_near(&self, triangle: &[DVec3]) -> SmallVec<[usize; 16]> {
+        face::part(self.edges.len(), |i| self.edges[i].from, self.axis, triangle, 0)
     }
 }
 
@@ -90,17 +108,4 @@ impl Edge {
     fn has_inside(&self, point: DVec3) -> bool {
         self.inward.dot(point - self.from) >= 0.0
     }
-}
-
-/// The corners of a face.
-fn points(face: &Face) -> SmallVec<[DVec3; 4]> {
-    face.corners.iter().map(|corner| corner.point).collect()
-}
-
-/// The edges of a convex polygon, whichever way around it goes; and the normal, or its opposite, against which that is counter-clockwise.
-fn edges(corners: &[DVec3], normal: DVec3) -> (DVec3, Edges) {
-    let ends = || corners.iter().zip(corners.iter().cycle().skip(1));
-    let area: f64 = ends().map(|(p, q)| normal.dot((p - corners[0]).cross(q - corners[0]))).sum();
-    let turned = normal * area.signum();
-    (turned, ends().map(|(&from, to)| Edge { from, inward: turned.cross(to - from) }).collect())
 }

@@ -131,13 +131,16 @@ impl Placed<'_> {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DAffine3, DMat3, DQuat};
+    use std::f64::consts::TAU;
+
+    use glam::{DAffine3, DMat3, DQuat, DVec2};
     use rand::Rng;
     use solid_oracle::generate::{direction, in_cube, seeded};
 
+    use super::super::super::clip::{Clipped, clip};
     use super::super::super::map::Map;
     use super::*;
-    use crate::shape::Shape;
+    use crate::shape::{Body, Shape};
 
     /// Law: where a box stays one, its sides are those that the inverse tells.
     #[test]
@@ -160,5 +163,42 @@ mod tests {
                 assert!(p.vertex == q.vertex && (p.point - q.point).length() < 1e-14, "{at}, {toward}");
             }
         }
+    }
+    /// Law: beside a triangle a face of many sides is a part of itself, with as much in common with the triangle, under any map, and as high.
+    #[test]
+    fn beside_a_triangle_a_face_of_many_sides_is_a_part() {
+        let mut rng = seeded(185);
+        let rim = |i: u32| DVec2::from_angle(f64::from(i) / 100.0 * TAU);
+        let ends = |i: u32| [1.0, -1.0].map(|y| DVec3::new(rim(i).x, y, rim(i).y));
+        let shape = Shape::convex_hull(&(0..100).flat_map(ends).collect::<Vec<_>>()).unwrap();
+        let body = shape.body().unwrap();
+        let (mut fewer, mut common) = (0, 0);
+        for case in 0..2_000 {
+            let matrix3 = DMat3::from_cols(in_cube(&mut rng), in_cube(&mut rng), in_cube(&mut rng));
+            let map = Map::new(DAffine3 { matrix3, translation: in_cube(&mut rng) });
+            let placed = Placed::new(&body, &map);
+            let toward = (map.normal(DVec3::Y) + in_cube(&mut rng) * 0.3).normalize();
+            let whole = placed.face(toward);
+            let middle = whole.corners[case % whole.corners.len()].point;
+            let size = 10f64.powf(rng.random_range(-3.0..0.0));
+            let corners = [(); 3].map(|()| middle + matrix3 * in_cube(&mut rng) * size);
+            let triangle = Body::Simplex(&[0, 1, 2]);
+            let part = placed.face_beside(toward, &Placed::of_primitive(&triangle, 0, &map, &corners));
+            let highest = |face: &Face| {
+                let heights = face.corners.iter().map(|corner| corner.point.dot(toward));
+                heights.reduce(f64::max)
+            };
+            assert_eq!((part.number, highest(&part)), (whole.number, highest(&whole)), "case {case}");
+            let (u, v) = toward.any_orthonormal_pair();
+            let flat = |point: DVec3| DVec2::new(u.dot(point - middle), v.dot(point - middle)) / size;
+            let seen = |face: &Face| face.corners.iter().map(|corner| flat(corner.point)).collect::<Vec<_>>();
+            let in_common = |face: &Face| clip(&corners.map(flat), &seen(face));
+            let (expected, found) = (in_common(&whole), in_common(&part));
+            let is_told = |x: &Clipped| found.iter().any(|y| x.at.distance(y.at) < 1e-6);
+            assert!(expected.len() == found.len() && expected.iter().all(is_told), "case {case}");
+            fewer += usize::from(whole.corners.len() > 64 && 2 * part.corners.len() < whole.corners.len());
+            common += usize::from(!found.is_empty());
+        }
+        assert!(fewer > 800 && common > 800, "{fewer}, {common}");
     }
 }
