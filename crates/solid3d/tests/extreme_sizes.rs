@@ -8,6 +8,8 @@
 
 mod common;
 
+use std::fmt::Debug;
+
 use common::{
     Soup, convex_of_kind, cube, direction, grid, log_uniform, random_complex, random_mesh, sheet, torus,
 };
@@ -354,6 +356,40 @@ fn squares_of_a_cube() -> Shape {
     Shape::mesh(corners, triangles).unwrap()
 }
 
+/// The common point of two shapes that are so many times as large as in a unit, and what else is known of them, in that unit; contacts with a margin.
+fn of_pair(
+    [a, b]: [&Shape; 2],
+    [at_a, at_b]: [&DAffine3; 2],
+    margin: f64,
+    factor: f64,
+) -> (Option<DVec3>, impl Debug + PartialEq + use<>) {
+    let point = query::common_point(a, at_a, b, at_b).unwrap();
+    let near = query::distance(a, at_a, b, at_b).unwrap();
+    let deep = query::penetration(a, at_a, b, at_b).unwrap();
+    let options = ContactOptions { margin: margin * factor, ..ContactOptions::default() };
+    let contacts = query::contacts(a, at_a, b, at_b, &options).unwrap();
+    let told = |point: &query::ContactPoint| {
+        let points = [point.point_on_a / factor, point.point_on_b / factor];
+        (points, point.depth / factor, point.primitives, point.features)
+    };
+    let rest = (
+        query::separating_axis(a, at_a, b, at_b).unwrap(),
+        (near.distance / factor, near.point_on_a / factor, near.point_on_b / factor),
+        deep.map(|deep| ([deep.depth, deep.depth_min, deep.depth_max].map(|x| x / factor), deep.normal)),
+        contacts.iter().flat_map(|region| region.points.iter().map(told)).collect::<Vec<_>>(),
+    );
+    (point.map(|point| point / factor), rest)
+}
+
+/// The answers at the size itself, which are those at sizes that are powers of two larger.
+fn at_any_size<T: Debug + PartialEq>(case: usize, answers: impl Fn(f64) -> T) -> T {
+    let reference = answers(1.0);
+    for power in [-300, -110, 110, 300] {
+        assert_eq!(answers(2f64.powi(power)), reference, "case {case}, 2^{power}");
+    }
+    reference
+}
+
 /// Law: sizes that are a power of two larger, the shapes' own with the way between them, change no bit of an answer.
 #[test]
 fn a_power_of_two_in_the_shapes_own_sizes_changes_no_bit() {
@@ -380,30 +416,11 @@ fn a_power_of_two_in_the_shapes_own_sizes_changes_no_bit() {
         let answers = |factor: f64| {
             let [a, b] = [shape(i % 6, 0, factor), shape(i / 6 % 6, 1, factor)];
             let [at_a, at_b] = at.map(|at| DAffine3 { translation: at.translation * factor, ..at });
-            let point = query::common_point(&a, &at_a, &b, &at_b).unwrap();
-            let near = query::distance(&a, &at_a, &b, &at_b).unwrap();
-            let deep = query::penetration(&a, &at_a, &b, &at_b).unwrap();
-            let contacts = query::contacts(&a, &at_a, &b, &at_b, &ContactOptions::default()).unwrap();
-            let told = |point: &query::ContactPoint| {
-                let points = [point.point_on_a / factor, point.point_on_b / factor];
-                (points, point.depth / factor, point.features)
-            };
-            (
-                query::separating_axis(&a, &at_a, &b, &at_b).unwrap(),
-                point.map(|point| point / factor),
-                (near.distance / factor, near.point_on_a / factor, near.point_on_b / factor),
-                deep.map(|deep| {
-                    ([deep.depth, deep.depth_min, deep.depth_max].map(|x| x / factor), deep.normal)
-                }),
-                contacts.iter().flat_map(|region| region.points.iter().map(told)).collect::<Vec<_>>(),
-            )
+            of_pair([&a, &b], [&at_a, &at_b], 0.0, factor)
         };
-        let reference = answers(1.0);
-        hits += usize::from(reference.1.is_some());
+        let (common, _) = at_any_size(i, answers);
+        hits += usize::from(common.is_some());
         cases += 1;
-        for power in [-300, -110, 110, 300] {
-            assert_eq!(answers(2f64.powi(power)), reference, "case {i}, 2^{power}");
-        }
     }
     assert!((30..=70).contains(&(100 * hits / cases)), "{hits} of {cases} hit");
 }
@@ -448,38 +465,20 @@ fn a_power_of_two_in_the_sizes_of_meshes_changes_no_bit() {
         let answers = |factor: f64| {
             let (a, b) = (mesh(&ours, factor), other(factor));
             let [at_a, at_b] = at.map(|at| DAffine3 { translation: at.translation * factor, ..at });
-            let point = query::common_point(&a, &at_a, &b, &at_b).unwrap();
-            let near = query::distance(&a, &at_a, &b, &at_b).unwrap();
-            let deep = query::penetration(&a, &at_a, &b, &at_b).unwrap();
-            let options = ContactOptions { margin: 0.01 * factor, ..ContactOptions::default() };
-            let contacts = query::contacts(&a, &at_a, &b, &at_b, &options).unwrap();
-            let told = |point: &query::ContactPoint| {
-                let points = [point.point_on_a / factor, point.point_on_b / factor];
-                (points, point.depth / factor, point.primitives, point.features)
-            };
             let ray = Ray::new((at_a.translation - motion * factor) * 2.0, motion * factor);
             let hit = query::cast_ray(&a, &at_a, &ray, &RayOptions::default()).unwrap();
             let side = query::signed_distance(&a, &at_a, target * factor).unwrap();
             let impact = query::cast_shape(&a, &at_a, motion * factor, &b, &at_b, DVec3::ZERO).unwrap();
             (
-                query::separating_axis(&a, &at_a, &b, &at_b).unwrap(),
-                point.map(|point| point / factor),
-                (near.distance / factor, near.point_on_a / factor, near.point_on_b / factor),
-                deep.map(|deep| {
-                    ([deep.depth, deep.depth_min, deep.depth_max].map(|x| x / factor), deep.normal)
-                }),
-                contacts.iter().flat_map(|region| region.points.iter().map(told)).collect::<Vec<_>>(),
+                of_pair([&a, &b], [&at_a, &at_b], 0.01, factor),
                 hit.map(|hit| (hit.t, hit.point / factor, hit.surface)),
                 (side.distance / factor, side.point / factor, side.normal),
                 impact.map(|impact| (impact.time, impact.normal)),
             )
         };
-        let reference = answers(1.0);
-        hits += usize::from(reference.1.is_some());
+        let ((common, _), ..) = at_any_size(i, answers);
+        hits += usize::from(common.is_some());
         cases += 1;
-        for power in [-300, -110, 110, 300] {
-            assert_eq!(answers(2f64.powi(power)), reference, "case {i}, 2^{power}");
-        }
     }
     assert!((30..=80).contains(&(100 * hits / cases)), "{hits} of {cases} hit");
 }
