@@ -7,12 +7,15 @@
 
 mod common;
 
-use common::{are_convex, direction, in_cube, overlap_along, placement, random_mesh, some_shape, torus};
+use common::{
+    are_convex, at, convex_of_kind, direction, in_cube, overlap_along, placement, random_mesh, sheet,
+    some_shape, torus,
+};
 use glam::{DAffine3, DVec3};
 use rand::Rng;
 use solid_oracle::generate::seeded;
 use solid3d::convex::gjk::CAST_ERROR;
-use solid3d::{Shape, glam, query};
+use solid3d::{Shape, World, glam, query};
 
 fn moved(at: &DAffine3, motion: DVec3, t: f64) -> DAffine3 {
     DAffine3 { translation: at.translation + motion * t, ..*at }
@@ -114,6 +117,45 @@ fn next_to_each_other_they_have_a_normal() {
         }
     }
     assert!(!cast(2e-14, DVec3::X).0 && cast(1e-15, DVec3::X).0);
+}
+
+/// Law: what stops sooner by a skin slides along whatever it meets, a floor of triangles too, and never touches.
+#[test]
+fn with_a_skin_bodies_slide() {
+    const SKIN: f64 = 1e-6;
+    let mut rng = seeded(104);
+    let floor =
+        |rows| sheet(rows, rows, [false; 2], |x, z| DVec3::new(20.0 * x - 10.0, 0.0, 20.0 * z - 10.0));
+    let wall_at = DAffine3::from_rotation_y(0.3) * DAffine3::from_translation(DVec3::new(4.0, 2.0, 0.0));
+    let along = wall_at.transform_vector3(DVec3::Z);
+    for floor in [floor(21).shape(), Shape::convex_hull(&floor(2).vertices).unwrap()] {
+        let mut world = World::new();
+        world.add(&floor, DAffine3::IDENTITY).unwrap();
+        world.add(&Shape::cuboid([1.0, 4.0, 20.0]).unwrap(), wall_at).unwrap();
+        let slide = |body: &Shape, mut from: DVec3, mut motion: DVec3| {
+            for _ in 0..10 {
+                let met = world.cast_shape(body, &at(from.x, from.y, from.z), motion, |_| true).unwrap();
+                let Some(cast) = met.map(|met| met.cast) else { return from + motion };
+                let normal = cast.normal.unwrap();
+                let time = (cast.time + SKIN / motion.dot(normal)).max(0.0);
+                from += motion * time;
+                motion = (motion * (1.0 - time)).reject_from_normalized(normal);
+            }
+            from
+        };
+        for kind in 0..6 {
+            let body = convex_of_kind(&mut rng, kind, [0.5, 1.0, 1.0], 0.7);
+            let mut place = DVec3::new(0.0, 1.5, 0.0);
+            for frame in 0..100 {
+                let from = slide(&body, place, DVec3::Y * -0.1);
+                place = slide(&body, from, DVec3::new(0.1, 0.0, 0.1));
+                let way = (place - from).dot(along);
+                assert!(way > 0.1, "kind {kind}, frame {frame}: {way} from {from}");
+                let met = world.objects_in(&body, &at(place.x, place.y, place.z)).unwrap();
+                assert_eq!(met, [], "kind {kind}, frame {frame}, {place}");
+            }
+        }
+    }
 }
 
 /// Balls that come from afar stop no further off than others.

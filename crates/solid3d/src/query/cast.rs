@@ -15,8 +15,8 @@ pub struct ShapeCast {
     pub time: f64,
     /// Where they meet, at that time. Space: world.
     pub point: DVec3,
-    /// The common normal of the surfaces there, a unit vector pointing from `b` to `a`; `None` when they intersect or touch at the start.
-    /// Space: world.
+    /// The common normal of the surfaces there, a unit vector pointing from `b` to `a`; `None` when they intersect or touch at the start,
+    /// where [`penetration`](super::penetration()) tells the way out. Space: world.
     pub normal: Option<DVec3>,
 }
 
@@ -28,7 +28,8 @@ pub struct ShapeCast {
 /// Conservative: the time is never later than the first contact, up to the rounding of positions, and no contact is missed. At that
 /// time the shapes are nearer to each other than [`CAST_ERROR`](solid_convex::gjk::CAST_ERROR) of the size of the data, or 1e-14 of how far
 /// apart they start. So the way from there to the contact is as short when they meet head on; when they only graze, up to about the
-/// square root of it. Of contacts at the same time, one is reported. Cost: some ten times [`intersects`](super::intersects) for convex
+/// square root of it. They may count as touching there, and a motion that goes on from there along the surface meets it at once: what is to slide
+/// stops a little sooner, as in [`World::cast_shape`](crate::World::cast_shape). Of contacts at the same time, one is reported. Cost: some ten times [`intersects`](super::intersects) for convex
 /// shapes; for meshes, branch and bound over their trees.
 ///
 /// ```

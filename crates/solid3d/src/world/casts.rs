@@ -42,6 +42,39 @@ impl World {
     /// assert!((first.cast.time - 0.5).abs() < 1e-9 && (first.cast.normal.unwrap() + DVec3::X).length() < 1e-6);
     /// # Ok::<(), solid3d::Error>(())
     /// ```
+    ///
+    /// A character slides along what it meets. It keeps off by a skin, much more than the errors and too little to be seen: right at a
+    /// surface it would count as touching, and be stopped by the next cast already, whichever way it wants to go.
+    ///
+    /// ```
+    /// use solid3d::{Shape, World, glam::{DAffine3, DVec3}};
+    ///
+    /// /// Where a body ends that wants to go by `motion`.
+    /// fn slide(world: &World, body: &Shape, mut from: DVec3, mut motion: DVec3) -> solid3d::Result<DVec3> {
+    ///     const SKIN: f64 = 1e-4;
+    ///     for _ in 0..4 {
+    ///         let met = world.cast_shape(body, &DAffine3::from_translation(from), motion, |_| true)?;
+    ///         let Some(cast) = met.map(|met| met.cast) else { return Ok(from + motion) };
+    ///         let Some(normal) = cast.normal else { break }; // in something: `query::penetration` tells the way out
+    ///         let time = (cast.time + SKIN / motion.dot(normal)).max(0.0);
+    ///         from += motion * time;
+    ///         motion = (motion * (1.0 - time)).reject_from_normalized(normal);
+    ///     }
+    ///     Ok(from)
+    /// }
+    ///
+    /// let mut world = World::new();
+    /// world.add(&Shape::cuboid([20.0, 1.0, 20.0])?, DAffine3::from_translation(DVec3::Y * -0.5))?;
+    /// world.add(&Shape::cuboid([1.0, 4.0, 20.0])?, DAffine3::from_translation(DVec3::new(4.0, 2.0, 0.0)))?;
+    /// let body = Shape::capsule(0.5, 1.0)?;
+    /// let mut at = DVec3::Y * 3.0;
+    /// for _ in 0..100 {
+    ///     at = slide(&world, &body, at, DVec3::new(0.1, 0.0, 0.05))?;
+    ///     at = slide(&world, &body, at, DVec3::Y * -0.1)?; // it falls
+    /// }
+    /// assert!((at - DVec3::new(3.0, 1.0, 5.0)).length() < 1e-3); // on the floor, along the wall
+    /// # Ok::<(), solid3d::Error>(())
+    /// ```
     pub fn cast_shape(
         &self,
         shape: &Shape,
