@@ -1,7 +1,7 @@
 //! What a closed mesh bounds.
 
 use glam::DVec3;
-use solid_convex::unit_scale;
+use solid_convex::{Support, unit_scale};
 
 use super::hulled::Hulled;
 use super::parts::parts;
@@ -10,6 +10,9 @@ use crate::bounds::Aabb;
 
 /// How far a neighbour may rise above the plane of a triangle in a surface that is convex, relative to its extent.
 const FLATNESS: f64 = 1e-9;
+
+/// How far any other corner may: more, as the plane of a small triangle is less sure far from it.
+const RISE: f64 = 1e-6;
 
 /// What was found out about a mesh of which each edge has one triangle on either side. Triangles with two corners at one position do not count.
 #[derive(Debug, Default)]
@@ -51,13 +54,32 @@ impl Enclosed {
         let volume: f64 = triangles.iter().map(|&[i, j, k]| at(i).dot(at(j).cross(at(k)))).sum();
         let orientation = if volume < 0.0 { -1.0 } else { 1.0 };
         let rises = if orientation > 0.0 { above } else { below };
-        let convex = if rises { None } else { convex(topology, mesh) };
-        Some(Enclosed { orientation, convex })
+        let body = if rises { None } else { body(topology, mesh) };
+        // Edges that all bend outward are not enough: the surface may go around a corner twice, as that of a star does, or be flat, which tells nothing
+        // of its outline. So no corner is above a triangle, nor beyond an edge at which the surface turns back.
+        let holds_all = |(hull, _): &(Hulled, Vec<u32>)| {
+            let is_furthest = |corner: u32, along: DVec3| {
+                let furthest = (hull.polytope().support(along) - center) * scale;
+                along.dot(furthest - at(corner)) <= RISE
+            };
+            triangles.iter().filter_map(|&triangle| topology.spread(triangle)).all(|[i, j, k]| {
+                let normal = (at(j) - at(i)).cross(at(k) - at(i)).normalize_or_zero();
+                let is_within = |edge: [u32; 2]| {
+                    let [from, to] = edge.map(at);
+                    let outward = (to - from).cross(normal).normalize_or_zero();
+                    let third = topology.beyond(triangles, edge);
+                    third.is_none_or(|third| outward.dot(at(third) - from) >= 0.0)
+                        || is_furthest(edge[0], outward)
+                };
+                is_furthest(i, orientation * normal) && [[i, j], [j, k], [k, i]].into_iter().all(is_within)
+            })
+        };
+        Some(Enclosed { orientation, convex: body.filter(holds_all) })
     }
 }
 
-/// The body that a closed surface which nowhere rises bounds, if it is of one part that is a sphere. Euler's formula tells the sphere.
-fn convex(topology: &Topology, Positioned { vertices, triangles }: Positioned) -> Option<(Hulled, Vec<u32>)> {
+/// The hull of a closed surface which rises at no edge, if it is of one part that is a sphere. Euler's formula tells the sphere.
+fn body(topology: &Topology, Positioned { vertices, triangles }: Positioned) -> Option<(Hulled, Vec<u32>)> {
     let spread: Vec<[u32; 3]> = triangles.iter().filter_map(|&triangle| topology.spread(triangle)).collect();
     let mut corners = spread.as_flattened().to_vec();
     corners.sort_unstable();
@@ -78,6 +100,8 @@ fn convex(topology: &Topology, Positioned { vertices, triangles }: Positioned) -
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use solid_oracle::generate::{in_cube, seeded};
 
     use super::*;
@@ -137,6 +161,41 @@ mod tests {
             if triangles.len() > 4 {
                 assert!(!found(&bent, &triangles, false).1, "bent, case {case}");
                 assert!(found(&bent, &triangles, true).0 != 0.0, "bent solid, case {case}");
+            }
+        }
+    }
+
+    /// Law: what is flat is convex where its outline is: both sides of a square of which a corner is pulled in, whose triangles share no edge but that.
+    #[test]
+    fn a_notch_is_not_convex() {
+        for (middle, is_convex) in [(5.0, true), (4.0, true), (3.0, false)] {
+            let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, middle], [0.0, 4.0]];
+            let vertices = corners.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
+            let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [3, 2, 1], [4, 3, 1], [0, 4, 1]].to_vec();
+            let mesh = Complex::mesh(vertices, triangles).unwrap();
+            assert_eq!(mesh.topology().enclosed().convex.is_some(), is_convex, "{middle}");
+        }
+    }
+
+    /// Law: a surface that goes around its corners twice, as that of a star does, is not convex, though it bends outward at each edge.
+    #[test]
+    fn a_star_is_not_convex() {
+        for (tips, height, is_solid) in [(5, 0.01, false), (5, 1.0, true), (7, 1.0, false), (9, 100.0, true)]
+        {
+            for (turns, is_convex) in [(1, true), (2, false)] {
+                let tip = |i: u32| {
+                    let (sin, cos) = (TAU * f64::from(turns * i) / f64::from(tips)).sin_cos();
+                    DVec3::new(cos, 0.0, -sin)
+                };
+                let vertices = (0..tips).map(tip).chain([DVec3::Y, DVec3::NEG_Y].map(|end| height * end));
+                let sides = (0..tips).map(|i| [i, (i + 1) % tips]);
+                let triangles = sides.flat_map(|[i, j]| [[i, j, tips], [j, i, tips + 1]]);
+                let mut mesh = Complex::mesh(vertices.collect(), triangles.collect()).unwrap();
+                if is_solid {
+                    mesh.solidify().unwrap();
+                }
+                let Enclosed { orientation, convex } = mesh.topology().enclosed();
+                assert_eq!((*orientation, convex.is_some()), (1.0, is_convex), "{tips} tips, {turns} turns");
             }
         }
     }

@@ -10,7 +10,7 @@ use solid3d::{Shape, glam};
 
 use super::{SEED, assert_flat, assert_laws, contacts, cube, cube_mesh, deepest, floor, only, within};
 use crate::common::{
-    self, at, convex_of_kind, placement, random_complex, random_mesh, sheet, size_of, torus,
+    self, at, convex_of_kind, globe, placement, random_complex, random_mesh, sheet, size_of, torus,
 };
 
 /// The ridge of a roof of small triangles has the normals that the edge of a wedge has, and faces their own.
@@ -73,6 +73,23 @@ fn cubes_of_triangles_are_as_deep_as_cubes() {
     let small = Shape::cuboid([0.1; 3]).unwrap();
     assert!(contacts(&small, &at(0.1, 0.0, 0.0), &mesh, &DAffine3::IDENTITY).is_empty());
     assert_eq!(contacts(&small, &at(0.1, 0.0, 0.0), &solid, &DAffine3::IDENTITY).len(), 1);
+}
+
+/// A star goes around its middle twice and bends outward at each edge, but its tips stand apart: what is between them touches what it meets there.
+#[test]
+fn between_the_tips_of_a_star_is_nothing() {
+    let star = globe(2, 5, |p| DVec3::new(p.x * p.x - p.z * p.z, p.y, 2.0 * p.x * p.z)).shape();
+    let solid = star.clone().into_solid().unwrap();
+    let ball = Shape::sphere(0.1).unwrap();
+    for (distance, depth) in [(0.6, None), (0.52, None), (0.5, Some(0.01)), (0.45, Some(0.06))] {
+        let place = DAffine3::from_rotation_y(0.1 * TAU) * at(distance, 0.0, 0.0);
+        for star in [&star, &solid] {
+            let found = contacts(&ball, &place, star, &DAffine3::IDENTITY);
+            let met = query::intersects(&ball, &place, star, &DAffine3::IDENTITY).unwrap();
+            assert_eq!((met, found.is_empty()), (depth.is_some(), depth.is_none()), "{distance}: {found:?}");
+            assert!(deepest(&found) < depth.unwrap_or(0.0), "{distance}: {found:?}");
+        }
+    }
 }
 
 /// Sliding over a floor of triangles gives what one big box would: its normal, and the corners of what slides.
