@@ -83,5 +83,26 @@ fn limit(argument: &str) -> String {
     }
 }
 
+impl PolygonError {
+    /// The same, of a chain that was made of rings, by the names that its vertices have there; `next` says which comes after each in its ring. The chain
+    /// may run backward along an edge.
+    pub(super) fn of_rings(self, chain: &[u32], next: &[u32]) -> Self {
+        let edge = |i: usize| {
+            let [from, to] = [chain[i], chain[(i + 1) % chain.len()]];
+            if next[to as usize] == from { to as usize } else { from as usize }
+        };
+        match self {
+            PolygonError::NotFlat { index, deviation, tolerance } => {
+                PolygonError::NotFlat { index: chain[index] as usize, deviation, tolerance }
+            }
+            PolygonError::NotSimple { first, second } => {
+                let [one, other] = [edge(first), edge(second)];
+                PolygonError::NotSimple { first: one.min(other), second: one.max(other) }
+            }
+            error => error,
+        }
+    }
+}
+
 /// A result whose error says why vertices make no polygon.
 pub type Result<T> = std::result::Result<T, PolygonError>;

@@ -136,7 +136,8 @@ impl Polygon {
         Ok(Polygon { chain, plane, area, bounds, fits_predicates })
     }
 
-    /// A polygon with holes: [`join_holes`] makes one chain of them. Also checks that no edges cross.
+    /// A polygon with holes: [`join_holes`] makes one chain of them. Also checks that no edges cross. Errors count the vertices of `outer`, and
+    /// then those of each hole.
     ///
     /// ```
     /// use solid3d::{glam::DVec3, polygon::Polygon};
@@ -165,7 +166,12 @@ impl Polygon {
             places.push((first..vertices.len() as u32).collect::<Vec<u32>>());
         }
         let chain = join_holes(&vertices, &outer, &places)?;
-        Polygon::new(chain.iter().map(|&i| vertices[i as usize]).collect::<Vec<_>>())?.simple()
+        let polygon = Polygon::new(chain.iter().map(|&i| vertices[i as usize]).collect::<Vec<_>>());
+        let mut next = vec![0; vertices.len()];
+        for ring in std::iter::once(&outer).chain(&places) {
+            ring.iter().zip(ring.iter().cycle().skip(1)).for_each(|(&i, &after)| next[i as usize] = after);
+        }
+        polygon.and_then(Polygon::simple).map_err(|error| error.of_rings(&chain, &next))
     }
 
     /// The polygon itself, if none of its edges cross. Exact. Edges that touch, also along a piece, do not cross. Cost: O(n log n), and a

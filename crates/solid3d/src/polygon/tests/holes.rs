@@ -247,3 +247,28 @@ fn holes_may_touch_slits() {
         assert_eq!(apart.unwrap_err(), PolygonError::HoleOutside { hole: 0 });
     }
 }
+
+/// Law: what is wrong with a vertex or an edge is told by its place among all that were given, wherever the joined chain has it.
+#[test]
+fn errors_name_what_was_given() {
+    let ring = |corners: &[[f64; 2]]| raise(&corners.iter().map(|&p| DVec2::from(p)).collect::<Vec<_>>());
+    let bow = |x: f64| ring(&[[x, 1.0], [x + 5.0, 6.0], [x + 5.0, 4.0], [x, 9.0]]);
+    let turned = |bow: Vec<DVec3>| bow.into_iter().rev().collect::<Vec<_>>();
+    let triangle = ring(&[[2.0, 4.0], [2.0, 6.0], [3.0, 5.0]]);
+    let square = ring(&[[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]);
+    for (outer, hole, [first, second]) in [
+        (bow(1.0), triangle.clone(), [0, 2]),
+        (turned(bow(1.0)), triangle.clone(), [0, 2]),
+        (square.clone(), bow(1.0), [4, 6]),
+        (square.clone(), turned(bow(1.0)), [4, 6]),
+    ] {
+        let error = Polygon::with_holes(outer, [hole]).unwrap_err();
+        assert_eq!(error, PolygonError::NotSimple { first, second });
+    }
+    for raised in 4..7 {
+        let mut hole = triangle.clone();
+        hole[raised - 4].z += 0.5;
+        let error = Polygon::with_holes(square.clone(), [hole]).unwrap_err();
+        assert!(matches!(error, PolygonError::NotFlat { index, .. } if index == raised), "{raised}: {error}");
+    }
+}
