@@ -19,7 +19,7 @@ pub enum Error {
     Polygon {
         /// The primitive's place, in the order in which they were given.
         primitive: usize,
-        /// What is wrong with it.
+        /// What is wrong with it. Vertices and edges are told by their places around it.
         error: PolygonError,
     },
     /// A shape without any vertex.

@@ -68,7 +68,9 @@ fn bad_vertices_and_indices_are_refused_by_place() {
             // Also where no triangle uses it.
             refused(Shape::mesh(vertices, [[0, 2, 2]]), &words);
             refused(Shape::convex_hull(&vertices), &words);
-            refused(ComplexShapeBuilder::new(vertices).point(0).build(), &words);
+            let builder = ComplexShapeBuilder::new(vertices);
+            refused(builder.clone().point(0).build(), &words);
+            refused(builder.simple_polygon(&[2, 0, 1]).build(), &words);
         }
     }
     refused(Shape::convex_hull(&[]), &["points", "empty", "vertex"]);

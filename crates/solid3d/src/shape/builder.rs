@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::complex::{Complex, CutPolygon, Primitives};
 use super::{Geometry, Shape, validate};
 use crate::error::{Error, Result};
-use crate::polygon::Polygon;
+use crate::polygon::{Polygon, PolygonError};
 
 /// Builds a *complex shape*: a soup of points, segments, triangles, tetrahedra, convex polygons and convex polyhedra
 /// over one vertex buffer (thesis, sections 6.2 and B.2), and of polygons that need not be convex (chapter 3).
@@ -119,9 +119,12 @@ impl ComplexShapeBuilder {
     pub fn simple_polygon(mut self, vertices: &[u32]) -> Self {
         let polygon = self.checked(vertices, 3).and_then(|()| {
             let corners: Vec<DVec3> = vertices.iter().map(|&i| self.vertices[i as usize]).collect();
-            Polygon::new(corners)
-                .and_then(Polygon::simple)
-                .map_err(|error| Error::Polygon { primitive: self.given, error })
+            Polygon::new(corners).and_then(Polygon::simple).map_err(|error| match error {
+                PolygonError::Vertex { index, value } => {
+                    Error::Vertex { index: vertices[index] as usize, value }
+                }
+                error => Error::Polygon { primitive: self.given, error },
+            })
         });
         match polygon {
             Ok(polygon) => {
