@@ -7,12 +7,13 @@
 
 mod common;
 
-use common::{assert_rate, in_cube, log_uniform, placement};
-use glam::{DAffine3, DVec3};
+use common::{assert_rate, at, cube, in_cube, log_uniform, placement, random_complex, torus};
+use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::seeded;
-use solid3d::{ComplexShapeBuilder, Shape, glam, query};
+use solid3d::query::{self, ContactOptions};
+use solid3d::{ComplexShapeBuilder, Shape, glam};
 
 const CASES: usize = 4000;
 
@@ -109,4 +110,75 @@ fn descriptions_of_one_geometry_agree() {
         }
     }
     assert_rate("descriptions of one geometry", hits, CASES);
+}
+
+/// What is told of a shape beside some others.
+fn answers(shape: &Shape) -> String {
+    let options = ContactOptions { margin: 0.05, ..ContactOptions::default() };
+    let others = [
+        Shape::sphere(0.4).unwrap(),
+        Shape::cuboid([0.5, 0.6, 0.7]).unwrap(),
+        torus(30, 16, 0.3).shape(),
+        cube(0.3).shape(),
+    ];
+    let here = DAffine3::IDENTITY;
+    let mut told = Vec::new();
+    for (other, at) in
+        others.iter().zip([at(0.4, 0.3, 0.1), at(0.1, 0.6, 0.2), at(0.9, 0.1, 0.0), at(0.3, 0.0, 0.45)])
+    {
+        let point = at.translation;
+        told.push(format!(
+            "{:?}",
+            (
+                query::distance(shape, &here, other, &at),
+                query::penetration(shape, &here, other, &at),
+                query::contacts(shape, &here, other, &at, &options),
+                query::intersection_curve(shape, &here, other, &at),
+                query::cast_shape(other, &at, 4.0 * point, shape, &here, DVec3::ZERO),
+                query::signed_distance(shape, &here, point),
+                query::closest_point(shape, &here, 3.0 * point),
+            )
+        ));
+    }
+    told.join("\n")
+}
+
+/// Law: what was asked of a shape, and is kept, is forgotten when it is deformed, a little or by so much that its tree is made anew, and when it is made
+/// solid.
+#[test]
+fn what_was_asked_before_changes_no_answer() {
+    let mut rng = seeded(431);
+    let complex = random_complex(&mut rng, 40);
+    let square = [[-0.6, -0.6], [0.6, -0.6], [0.6, 0.6], [0.2, 0.6], [-0.6, 0.6]];
+    let corners = square.map(|[x, y]| DVec3::new(x, 0.1, y));
+    let polygon = || ComplexShapeBuilder::new(corners).simple_polygon(&[0, 1, 2, 3, 4]).build().unwrap();
+    let shapes: [&dyn Fn() -> Shape; 5] = [
+        &|| cube(0.5).shape(),
+        &|| torus(40, 24, 0.4).shape(),
+        &|| torus(24, 12, 0.4).shape().into_solid().unwrap(),
+        &|| complex.shape(),
+        &polygon,
+    ];
+    for (case, make) in shapes.into_iter().enumerate() {
+        let mut asked = make();
+        let start = asked.vertices().unwrap().to_vec();
+        let mut ways = Vec::new();
+        for (wave, twist) in [(0.3, 0.0), (0.02, 0.4), (0.02, 40.0), (0.0, 0.1)] {
+            let mut before = make();
+            ways.iter().for_each(|way: &Vec<DVec3>| before.deform(way).unwrap());
+            assert!(answers(&asked) == answers(&before), "case {case}, {} deformations", ways.len());
+            let moved =
+                |&v: &DVec3| DQuat::from_rotation_y(twist * v.length()) * v + wave * in_cube(&mut rng);
+            let moved: Vec<DVec3> = start.iter().map(moved).collect();
+            asked.deform(&moved).unwrap();
+            ways.push(moved);
+        }
+        if let Ok(solid) = make().into_solid() {
+            let asked = make();
+            let of_surface = answers(&asked);
+            let of_solid = answers(&solid);
+            assert!(answers(&asked.into_solid().unwrap()) == of_solid, "case {case}, as a solid");
+            assert!(solid.is_solid() && (case == 2 || of_solid != of_surface), "case {case}");
+        }
+    }
 }
