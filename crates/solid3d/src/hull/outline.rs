@@ -63,7 +63,34 @@ fn chain(points: &[DVec2], order: impl Iterator<Item = usize>) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
     use super::*;
+    use crate::hull::Hull;
+
+    /// Law: whatever their order, and however small, points of a lattice have the corners that their hull has, in order around it.
+    #[test]
+    fn corners_are_those_of_the_hull() {
+        let mut rng = seeded(421);
+        for case in 0..2000 {
+            let unit = [1.0, 1.0 / 131_072.0][case % 2];
+            let mut point =
+                || DVec2::new(rng.random_range(0..5).into(), rng.random_range(0..5).into()) * unit;
+            let points: Vec<DVec2> = (0..1 + case % 15).map(|_| point()).collect();
+            let hull = Hull::of(&points.iter().map(|p| p.extend(0.0)).collect::<Vec<_>>()).unwrap();
+            let mut expected: Vec<DVec2> = hull.vertices().iter().map(|&i| points[i as usize]).collect();
+            let found: Vec<DVec2> = outline(&points, 1e-9).into_iter().map(|i| points[i]).collect();
+            let corner = |i: usize| found[i % found.len()];
+            let turns = |i: usize| (corner(i + 1) - corner(i)).perp_dot(corner(i + 2) - corner(i));
+            assert!(found.len() < 3 || (0..found.len()).all(|i| turns(i) > 0.0), "{points:?}: {found:?}");
+            let by_place = |p: &DVec2, q: &DVec2| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
+            let mut found = found;
+            found.sort_by(by_place);
+            expected.sort_by(by_place);
+            assert_eq!(found, expected, "{points:?}");
+        }
+    }
 
     #[test]
     fn only_corners_are_left() {

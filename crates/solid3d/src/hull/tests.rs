@@ -221,6 +221,11 @@ fn the_range_reaches_from_1e_minus_100_to_1e100() {
     // Mixed sizes in one hull.
     let mixed: Vec<_> = (0..200).map(|_| in_cube(&mut rng) * 10f64.powi(rng.random_range(-80..80))).collect();
     assert_eq!(hull_of(&mixed).dimension(), 3);
+    // What is smaller on an axis than 10^-188 of the greatest there is zero.
+    for (small, corners) in [(1e-187, [1, 2, 3]), (1e-189, [0, 1, 2])] {
+        let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::NEG_X * small];
+        assert_eq!(Hull::of(&points).unwrap().vertices(), corners, "{small}");
+    }
 }
 
 #[test]
