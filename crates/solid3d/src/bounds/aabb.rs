@@ -106,3 +106,55 @@ impl Aabb {
 pub(crate) fn abs(m: &glam::DMat3) -> glam::DMat3 {
     glam::DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs())
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+    use rand::Rng;
+    use solid_oracle::generate::seeded;
+
+    use super::*;
+
+    /// Law: what boxes of a lattice are to each other is what its points tell, the gap between two and the sizes of one included.
+    #[test]
+    fn points_tell_what_boxes_are() {
+        let mut rng = seeded(419);
+        let lattice = || (0..64).map(|i| DVec3::from([i % 4, i / 4 % 4, i / 16].map(f64::from)));
+        let mut met = 0;
+        for _ in 0..2000 {
+            let mut corner = || DVec3::from_array(std::array::from_fn(|_| f64::from(rng.random_range(0..4))));
+            let [a, b] = [(); 2].map(|()| Aabb::of_points([corner(), corner()]));
+            let holds = |of: &Aabb, p: DVec3| of.min.cmple(p).all() && p.cmple(of.max).all();
+            let overlap = lattice().any(|p| holds(&a, p) && holds(&b, p));
+            assert_eq!(a.overlaps(&b), overlap, "{a:?} {b:?}");
+            assert_eq!(a.contains(&b), lattice().all(|p| holds(&a, p) || !holds(&b, p)), "{a:?} {b:?}");
+            let gap = a.gap(&b);
+            assert_eq!((gap == DVec3::ZERO, gap), (overlap, b.gap(&a)), "{a:?} {b:?}");
+            // Where one is grown by the gap they touch; by less they do not.
+            let most = gap.max_element();
+            assert!(a.inflated(most).overlaps(&b) && (overlap || !b.inflated(most - 0.5).overlaps(&a)));
+            let union = Aabb::of_points(lattice().filter(|&p| holds(&a, p) || holds(&b, p)));
+            assert_eq!(a.union(&b), union);
+            let mut grown = a;
+            [b.min, b.max].into_iter().for_each(|p| grown.grow(p));
+            assert_eq!(grown, union);
+            assert_eq!([a.center() - a.half_extents(), a.center() + a.half_extents()], [a.min, a.max]);
+            let size = a.max - a.min;
+            assert_eq!(2.0 * a.half_area(), size.dot(DVec3::splat(size.element_sum()) - size), "{a:?}");
+            met += usize::from(overlap);
+        }
+        assert!((600..1400).contains(&met), "{met}");
+    }
+
+    /// Law: the image of a box is the box around the images of its corners.
+    #[test]
+    fn an_image_holds_the_corners_alone() {
+        let bounds = Aabb::new(DVec3::new(-1.0, 0.0, 2.0), DVec3::new(3.0, 1.0, 2.0));
+        let linear = DMat3::from_cols_array(&[1.0, -2.0, 0.5, 0.0, 3.0, -1.0, 4.0, 0.25, 2.0]);
+        let map = DAffine3::from_mat3_translation(linear, DVec3::new(5.0, -6.0, 7.0));
+        let corner =
+            |i: usize| DVec3::from_array(std::array::from_fn(|k| [bounds.min, bounds.max][i >> k & 1][k]));
+        let corners = (0..8).map(|i| map.transform_point3(corner(i)));
+        assert_eq!(bounds.transformed(&map), Aabb::of_points(corners));
+    }
+}
