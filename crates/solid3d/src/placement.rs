@@ -144,6 +144,21 @@ mod tests {
         }
     }
 
+    /// Law: what spans a little more than the least volume is good at any size, and so is its inverse; what spans a little less is singular.
+    #[test]
+    fn nearly_flat_placements_have_an_inverse() {
+        for scale in [1e-100, 1e-60, 1.0, 1e60, 1e100] {
+            let slanted =
+                |height| DAffine3::from_cols(DVec3::X, DVec3::Y, DVec3::new(1.0, 0.0, height), DVec3::ZERO);
+            let placement = |height| DAffine3::from_mat3(slanted(height).matrix3 * scale);
+            let [good, flat] = [1.1e-12, 0.9e-12].map(placement);
+            assert!(checked("placement", &good).is_ok(), "{scale}");
+            assert!(matches!(checked("placement", &flat), Err(Error::SingularPlacement { .. })), "{scale}");
+            let product = good.matrix3 * inverse_linear(&good.matrix3);
+            assert!(product.abs_diff_eq(DMat3::IDENTITY, 1e-15), "{scale}: {product}");
+        }
+    }
+
     /// Law: of axes of ordinary lengths the inverse has the same bits with and without scaling.
     #[test]
     fn scaling_changes_no_bit_of_an_inverse() {
