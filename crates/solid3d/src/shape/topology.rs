@@ -156,3 +156,58 @@ impl Topology {
         third.filter(|_| along == 1 && against == 1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Complex;
+
+    /// Squares of two triangles each, so many in a row and as many rows.
+    fn floor(squares: u32, size: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let row = squares + 1;
+        let place = |i: u32| size * DVec3::new(f64::from(i % row), f64::from(i / row), 0.0);
+        let corners = (0..row * squares).filter(|i| i % row < squares);
+        let triangles = corners.flat_map(|i| [[i, i + 1, i + row + 1], [i, i + row + 1, i + row]]);
+        ((0..row * row).map(place).collect(), triangles.collect())
+    }
+
+    /// Law: a triangle is level where nothing around its corners leaves its plane, by more than rounding does, and flat if the surface goes on all around
+    /// them; at any size.
+    #[test]
+    fn what_lies_around_a_triangle_is_known() {
+        for size in [1e-100, 1e-80, 1.0, 1e80, 1e98] {
+            let (vertices, triangles) = floor(6, size);
+            let is_rim = |i: u32| [0, 6].iter().any(|&end| i % 7 == end || i / 7 == end);
+            let raised = 3 * 7 + 3;
+            let around = |corner: u32| triangles.iter().filter(move |triangle| triangle.contains(&corner));
+            for (height, is_bent) in [(0.0, false), (1e-11, false), (1e-7, true), (-1.0, true)] {
+                let mut vertices = vertices.clone();
+                vertices[raised].z = height * size;
+                let mesh = Complex::mesh(vertices, triangles.clone()).unwrap();
+                for (number, triangle) in (0..).zip(&triangles) {
+                    let sees = |&corner: &u32| around(corner).any(|other| other.contains(&(raised as u32)));
+                    let is_level = !(is_bent && triangle.iter().any(sees));
+                    let is_inside = !triangle.iter().any(|&corner| is_rim(corner));
+                    let found = [mesh.is_level(number), mesh.is_flat(number)];
+                    assert_eq!(found, [is_level, is_level && is_inside], "{triangle:?}, {height}, {size}");
+                }
+            }
+        }
+    }
+
+    /// Law: what lies on the other side, or twice in one place, does not go on all around.
+    #[test]
+    fn what_lies_in_one_place_is_no_surrounding() {
+        let (vertices, triangles) = floor(6, 1.0);
+        let (inside, reversed) = (2 * (2 * 6 + 2), triangles.iter().map(|&[i, j, k]| [k, j, i]));
+        let known = |triangles: Vec<[u32; 3]>| {
+            let mesh = Complex::mesh(vertices.clone(), triangles).unwrap();
+            [0, inside].map(|i| (mesh.is_level(i), mesh.is_flat(i)))
+        };
+        let twice: Vec<_> = triangles.iter().chain(&triangles).copied().collect();
+        let both_sides: Vec<_> = triangles.iter().copied().chain(reversed).collect();
+        assert_eq!(known(triangles.clone()), [(true, false), (true, true)]);
+        assert_eq!(known(twice), [(true, false); 2]);
+        assert_eq!(known(both_sides), [(false, false); 2]);
+    }
+}
