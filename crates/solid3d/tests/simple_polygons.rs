@@ -169,6 +169,30 @@ fn strip() -> (Shape, Vec<DVec3>) {
     (ComplexShapeBuilder::new(vertices.clone()).simple_polygon(&chain).build().unwrap(), vertices)
 }
 
+/// Where a surface goes through polygons that are cut, they are named, not their pieces.
+#[test]
+fn a_curve_names_polygons() {
+    let [first, second]: [Vec<u32>; 2] = [(0..22).collect(), (22..44).collect()];
+    let vertices = strip().1;
+    let both = [vertices.clone(), vertices.iter().map(|p| p + DVec3::Z).collect()].concat();
+    let strips =
+        ComplexShapeBuilder::new(both).simple_polygon(&first).simple_polygon(&second).build().unwrap();
+    let pillar = Shape::cuboid([0.3, 0.3, 4.0]).unwrap();
+    for x in 1..10 {
+        let at = DAffine3::from_translation(DVec3::new(f64::from(x), 0.5, 0.0));
+        let curve = query::intersection_curve(&strips, &DAffine3::IDENTITY, &pillar, &at).unwrap();
+        let named = |z: f64| curve.segments().filter(move |segment| segment.ends[0].z == z);
+        for (z, primitive) in [(0.0, 0), (1.0, 1)] {
+            assert!(
+                named(z).count() >= 4 && named(z).all(|segment| segment.primitives.a == primitive),
+                "{curve:?}"
+            );
+        }
+        let back = query::intersection_curve(&pillar, &at, &strips, &DAffine3::IDENTITY).unwrap();
+        assert!(back.segments().all(|segment| segment.primitives.b == segment.ends[0].z as u32), "{back:?}");
+    }
+}
+
 /// Every corner counts for a box that fits the shape however it turns.
 #[test]
 fn boxes_of_a_fixed_size_lose_nothing_of_a_polygon() {
