@@ -149,4 +149,15 @@ mod tests {
         println!("{hits} of 4000 hit");
         assert!((1200..=2800).contains(&hits));
     }
+
+    /// Law: what is below 2^-300 counts as zero, and nothing else does.
+    #[test]
+    fn the_least_gap_parts() {
+        let floor = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        for (gap, meet) in [(1e-85, false), (2f64.powi(-300), false), (2f64.powi(-301), true), (-1e-85, true)]
+        {
+            let above = [DVec3::new(0.2, 0.2, gap), DVec3::ONE, DVec3::new(1.0, 0.0, 1.0)];
+            assert_eq!([intersect(&floor, &above), intersect(&above, &floor)], [meet; 2], "{gap:e}");
+        }
+    }
 }
