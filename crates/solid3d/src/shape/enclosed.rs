@@ -102,7 +102,8 @@ fn body(topology: &Topology, Positioned { vertices, triangles }: Positioned) -> 
 mod tests {
     use std::f64::consts::TAU;
 
-    use solid_oracle::generate::{in_cube, seeded};
+    use glam::DQuat;
+    use solid_oracle::generate::{direction, in_cube, seeded};
 
     use super::*;
     use crate::hull::Hull;
@@ -162,6 +163,22 @@ mod tests {
                 assert!(!found(&bent, &triangles, false).1, "bent, case {case}");
                 assert!(found(&bent, &triangles, true).0 != 0.0, "bent solid, case {case}");
             }
+        }
+    }
+
+    /// Law: rounding bends nothing: a box of triangles is convex, however it is turned, and wherever it is.
+    #[test]
+    fn a_turned_box_is_convex() {
+        let mut rng = seeded(433);
+        let corner = |i: u32| DVec3::from([i & 1, i >> 1 & 1, i >> 2].map(f64::from)) - 0.5;
+        let corners: Vec<DVec3> = (0..8).map(corner).collect();
+        let triangles = Hull::of(&corners).unwrap().triangles().to_vec();
+        for case in 0..100 {
+            let turn = DQuat::from_axis_angle(direction(&mut rng), f64::from(case));
+            let [size, place] = [in_cube(&mut rng).abs() + 0.1, 1e3 * in_cube(&mut rng)];
+            let vertices = corners.iter().map(|&corner| turn * (size * corner) + place).collect();
+            let mesh = Complex::mesh(vertices, triangles.clone()).unwrap();
+            assert!(mesh.topology().enclosed().convex.is_some(), "case {case}");
         }
     }
 
