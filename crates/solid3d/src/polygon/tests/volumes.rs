@@ -1,6 +1,6 @@
 //! Spheres and boxes, judged by the oracle over the triangles.
 
-use glam::DVec3;
+use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use solid_oracle::generate::seeded;
 use solid_oracle::{hulls_intersect_exact, mesh_distance};
@@ -103,4 +103,38 @@ fn bad_arguments_are_named() {
     assert!(!triangle.meets_box(&Aabb::new(DVec3::NEG_INFINITY, DVec3::new(9.0, 9.0, -1e-9))).unwrap());
     assert!(Polygon::new([DVec3::X, DVec3::NAN, DVec3::Y]).is_err());
     assert!(Polygon::new([DVec3::X, DVec3::splat(1e101), DVec3::Y]).is_err());
+}
+
+/// Law: a ball over the middle of a polygon meets it where it reaches its plane, wherever that is.
+#[test]
+fn balls_over_the_middle_reach_the_plane() {
+    let square = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+    for place in [DVec3::ZERO, DVec3::new(7.0, -3.0, 5.0), DVec3::new(0.0, 100.0, 20.0)] {
+        let map = DAffine3::from_rotation_translation(DQuat::from_scaled_axis(place + DVec3::ONE), place);
+        let polygon = Polygon::new(square).unwrap().transformed(&map).unwrap();
+        for (height, meets) in [(0.0, true), (0.99, true), (-0.99, true), (1.01, false), (-1.01, false)] {
+            let center = map.transform_point3(DVec3::Z * height);
+            assert_eq!(polygon.meets_sphere(center, 1.0).unwrap(), meets, "{place}, {height}");
+        }
+    }
+}
+
+/// Law: the edges of an uneven polygon are part of it, though its plane passes them; and an empty box meets nothing.
+#[test]
+fn edges_off_the_plane_are_met() {
+    let tent = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.5), DVec3::Y];
+    let polygon = Polygon::with_tolerance(tent, 0.12).unwrap();
+    for (i, &corner) in tent.iter().enumerate() {
+        for part in [0.0, 0.1, 0.3, 0.9] {
+            let on_edge = corner.lerp(tent[(i + 1) % 4], part);
+            assert!(polygon.meets_sphere(on_edge, 1e-3).unwrap(), "{on_edge}");
+            assert!(polygon.meets_box(&Aabb::new(on_edge, on_edge).inflated(1e-3)).unwrap(), "{on_edge}");
+        }
+    }
+    for axis in 0..3 {
+        let mut bounds = Aabb::new(DVec3::splat(-1.0), DVec3::splat(2.0));
+        assert!(polygon.meets_box(&bounds).unwrap());
+        (bounds.min[axis], bounds.max[axis]) = (0.3, 0.2);
+        assert!(!polygon.meets_box(&bounds).unwrap());
+    }
 }
