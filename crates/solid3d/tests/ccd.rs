@@ -348,6 +348,46 @@ fn elements_aimed_at_each_other_meet_in_time() {
     assert_rate("aimed elements", hits, cases);
 }
 
+/// Law: where they meet is told by a point of each, of slivers and of triangles that are segments or points too: these are near at the time told.
+#[test]
+fn the_parameters_are_those_of_points_that_meet() {
+    let mut rng = seeded(2202);
+    let (cases, mut hits, mut outer) = (3000, [0; 2], 0);
+    for case in 0..cases {
+        let k = case % 2;
+        let (_, _, test) = TESTS[k];
+        let mut elements = random_elements(&mut rng);
+        // The triangle has a short side, or one of the edges is short.
+        let short = [1.0, 1e-3, 1e-6, 0.0][case / 4 % 4];
+        let [base, end] = [[[1, 2], [1, 3]], [[0, 1], [2, 3]]][k][case / 2 % 2];
+        for points in [&mut elements.from, &mut elements.to] {
+            points[end] = points[base] + (points[end] - points[base]) * short;
+        }
+        let part = rng.random_range(0.0..=1.0);
+        let off = elements.to[2].lerp(elements.to[3], part) - elements.to[0];
+        for points in [&mut elements.from, &mut elements.to] {
+            points[..=k].iter_mut().for_each(|point| *point += off);
+        }
+        let Some(found) = test(&elements, &Options::default()).unwrap() else { continue };
+        let [u, v] = found.parameters;
+        assert!(u >= 0.0 && v >= 0.0 && u <= 1.0 && v <= 1.0, "case {case}: {found:?}");
+        let at: [DVec3; 4] = std::array::from_fn(|i| elements.from[i].lerp(elements.to[i], found.time));
+        let between = if k == 0 {
+            assert!(u + v <= 1.0, "case {case}: {found:?}");
+            outer += usize::from(u + v == 1.0);
+            at[1] + (at[2] - at[1]) * u + (at[3] - at[1]) * v - at[0]
+        } else {
+            at[2].lerp(at[3], v) - at[0].lerp(at[1], u)
+        };
+        hits[k] += 1;
+        let size =
+            elements.from.iter().chain(&elements.to).map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        assert!(!found.near || between.length() < 1e-5 * size, "case {case}: {found:?} {between} {size}");
+    }
+    println!("vertex-face {} and edge-edge {} of {cases} hit, {outer} at the outer edge", hits[0], hits[1]);
+    assert!(hits.iter().all(|&hits| hits > cases / 4) && outer > cases / 20);
+}
+
 #[test]
 fn bad_input_is_refused_by_name() {
     let good = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];

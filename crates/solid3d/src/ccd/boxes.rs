@@ -18,6 +18,9 @@ pub(super) trait Trilinear {
 
     /// Whether a box is outside of what the parameters may be.
     fn outside(&self, least: [f64; 3]) -> bool;
+
+    /// The two parameters in a cell that are told: of those that may be, near its middle.
+    fn told(&self, cell: &Cell) -> [f64; 2];
 }
 
 /// A bound on the rounding error of a value, when the differences of all positions are at most 2 in magnitude: differences to the
@@ -84,7 +87,7 @@ impl Values {
 /// A box of the parameters: its corner and sides, powers of two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cell {
-    least: [f64; 3],
+    pub least: [f64; 3],
     sides: [f64; 3],
     /// No zero in it is before this time, which lies in the box.
     pub earliest: f64,

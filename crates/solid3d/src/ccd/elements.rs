@@ -3,7 +3,7 @@
 use glam::DVec3;
 use solid_convex::unit_scale;
 
-use super::boxes::{EVALUATION_ERROR, Search, Trilinear, earliest};
+use super::boxes::{Cell, EVALUATION_ERROR, Search, Trilinear, earliest};
 use crate::error::{Error, Result, bounded};
 
 /// Four vertices, at the start and at the end of their way.
@@ -41,8 +41,8 @@ impl Default for Options {
 pub struct Impact {
     /// The time, from 0 to 1: never later than the first contact.
     pub time: f64,
-    /// Where in the elements. Of [`vertex_face`] the weights of the triangle's second and third corner, of [`edge_edge`] how far along the
-    /// first and along the second edge.
+    /// Where in the elements. Of [`vertex_face`] the weights of the triangle's second and third corner, whose sum is at most 1, of
+    /// [`edge_edge`] how far along the first and along the second edge.
     pub parameters: [f64; 2],
     /// Whether it is nearer than the tolerance; else the search gave up there, and it may be further.
     pub near: bool,
@@ -112,10 +112,7 @@ fn find(function: &impl Trilinear, options: &Options) -> Result<Option<Impact>> 
         Search::Found(cell) => Some((cell, true)),
         Search::GivenUp(cell) => Some((cell, false)),
     }
-    .map(|(cell, near)| {
-        let [_, u, v] = cell.middle();
-        Impact { time: cell.earliest, parameters: [u, v], near }
-    }))
+    .map(|(cell, near)| Impact { time: cell.earliest, parameters: function.told(&cell), near }))
 }
 
 /// The ways of four vertices: seen from the first vertex at the start, in a unit of length in which no difference of two is more than
@@ -177,6 +174,13 @@ impl Trilinear for VertexFace {
     fn outside(&self, [_, u, v]: [f64; 3]) -> bool {
         u + v > 1.0
     }
+
+    /// The cell of a short edge is long across the triangle, and its middle may be far beyond the opposite edge.
+    fn told(&self, cell: &Cell) -> [f64; 2] {
+        let ([_, _, v_least], [_, u, v]) = (cell.least, cell.middle());
+        let v = v.min(1.0 - u).max(v_least);
+        [u.min(1.0 - v), v]
+    }
 }
 
 /// A point of the edge of vertices 0 and 1 less one of the edge of vertices 2 and 3.
@@ -201,5 +205,10 @@ impl Trilinear for EdgeEdge {
 
     fn outside(&self, _: [f64; 3]) -> bool {
         false
+    }
+
+    fn told(&self, cell: &Cell) -> [f64; 2] {
+        let [_, u, v] = cell.middle();
+        [u, v]
     }
 }
