@@ -9,7 +9,7 @@ use rand::Rng;
 use rand::rngs::StdRng;
 use solid_oracle::generate::{random_shape, seeded};
 use solid3d::polygon::{Polygon, join_holes};
-use solid3d::query::ImpactOptions;
+use solid3d::query::{ImpactOptions, Ray, RayOptions};
 use solid3d::{
     Boxes, ComplexShapeBuilder, Error, Motion, Shape, ShapeKind, World, WorldOptions, glam, query,
 };
@@ -229,6 +229,33 @@ fn the_way_of_a_deformation_is_that_of_all_corners() {
         world.proceed();
         world.set_shape(id, &is).unwrap();
         assert_eq!(world.test().len(), 1);
+    }
+}
+
+/// Law: a ray meets a polygon in one place, wherever it was cut, at corners and on edges too; weights of corners are told of triangles alone, in the
+/// order that was given.
+#[test]
+fn a_ray_meets_a_polygon_once() {
+    let options = RayOptions::default();
+    let all =
+        |shape: &Shape, ray: &Ray| query::cast_ray_all(shape, &DAffine3::IDENTITY, ray, &options).unwrap();
+    let strip = strip().0;
+    for (x, y) in (0..=40).flat_map(|x| (0..=4).map(move |y| (0.25 * f64::from(x), 0.25 * f64::from(y)))) {
+        for way in [DVec3::NEG_Z, DVec3::new(0.1, 0.3, -0.7), DVec3::new(-7.0, 0.2, 0.3)] {
+            let target = DVec3::new(x, y, 0.0);
+            let hits = all(&strip, &Ray::new(target - way, way));
+            // At the border rounding may take it past the edge.
+            let is_inside = x > 0.0 && x < 10.0 && y > 0.0 && y < 1.0;
+            assert!(hits.len() <= 1 && (hits.len() == 1 || !is_inside), "{target}: {hits:?}");
+            assert!(hits.iter().all(|hit| hit.surface.unwrap().barycentric.is_none()));
+        }
+    }
+    let corners = [DVec3::X * 8.0, DVec3::Y * 8.0, DVec3::ZERO, DVec3::Z];
+    for chain in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        let shape = ComplexShapeBuilder::new(corners).point(3).simple_polygon(&chain).build().unwrap();
+        let hits = all(&shape, &Ray::new(DVec3::new(4.0, 1.0, 2.0), DVec3::NEG_Z));
+        let weights = hits[0].surface.unwrap().barycentric;
+        assert_eq!((hits.len(), weights), (1, Some(chain.map(|i| [0.5, 0.125, 0.375][i as usize]))));
     }
 }
 

@@ -149,7 +149,7 @@ pub struct SurfaceHit {
     pub back: bool,
     /// The primitive of a mesh or a complex shape, in the order in which they were given; 0 for a convex shape.
     pub primitive: u32,
-    /// The weights of a triangle's corners that give the point, for triangles; they sum to 1.
+    /// The weights of a triangle's corners that give the point, for triangles; they sum to 1. A polygon of more corners has none.
     pub barycentric: Option<[f64; 3]>,
 }
 
