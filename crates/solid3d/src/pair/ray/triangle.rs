@@ -213,6 +213,7 @@ impl Shear {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exact::orient2d;
     use rand::Rng;
     use solid_convex::simd::levels;
     use solid_oracle::generate::seeded;
@@ -300,6 +301,28 @@ mod tests {
         }
         println!("{wound} of {cases} lines are wound around");
         assert!((0.3..=0.7).contains(&(f64::from(wound) / f64::from(cases))));
+    }
+
+    /// Law: edges have exact signs, also where products of corners in line with the ray are rounded to the wrong order, or to one number.
+    #[test]
+    fn an_edge_next_to_the_ray_passes_it_on_the_side_where_it_is() {
+        let mut rng = seeded(86);
+        let shear = Shear::new(DVec3::NEG_Z, DVec3::Z, DVec3::ONE);
+        let (cases, mut hits, mut misleading) = (4000, 0, 0);
+        for case in 0..cases {
+            let mut part = || rng.random_range(0.1..1.0);
+            let p = DVec2::new(part(), part());
+            let (q, r) = (p * -part(), p.perp() * part());
+            let areas = [[q, r], [r, p], [p, q]].map(|[u, v]| orient2d(DVec2::ZERO, u, v));
+            let turns = |sign: f64| areas.iter().any(|area| sign * area > 0.0);
+            let triangle = [p, q, r].map(|corner| corner.extend(0.0));
+            let is_hit = shear.hit(&triangle).is_some();
+            assert_eq!(is_hit, !(turns(1.0) && turns(-1.0)), "case {case}: {triangle:?}");
+            hits += u32::from(is_hit);
+            misleading += u32::from(sign(p.x * q.y - p.y * q.x) != sign(areas[2]));
+        }
+        println!("{hits} of {cases} hit; of {misleading} products mislead");
+        assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))) && misleading > cases / 20);
     }
 
     /// A third of an edge has no exact weights, but the ray starts there all the same; both ways.
