@@ -348,7 +348,8 @@ fn elements_aimed_at_each_other_meet_in_time() {
     assert_rate("aimed elements", hits, cases);
 }
 
-/// Law: where they meet is told by a point of each, of slivers and of triangles that are segments or points too: these are near at the time told.
+/// Law: where they meet is told by a point of each, of slivers, of triangles that are segments or points, and of what is long along one axis too:
+/// these are near at the time told.
 #[test]
 fn the_parameters_are_those_of_points_that_meet() {
     let mut rng = seeded(2202);
@@ -357,6 +358,10 @@ fn the_parameters_are_those_of_points_that_meet() {
         let k = case % 2;
         let (_, _, test) = TESTS[k];
         let mut elements = random_elements(&mut rng);
+        let long = [1.0, 1e4][case / 16 % 2];
+        for points in [&mut elements.from, &mut elements.to] {
+            points.iter_mut().for_each(|point| point[case % 3] *= long);
+        }
         // The triangle has a short side, or one of the edges is short.
         let short = [1.0, 1e-3, 1e-6, 0.0][case / 4 % 4];
         let [base, end] = [[[1, 2], [1, 3]], [[0, 1], [2, 3]]][k][case / 2 % 2];
