@@ -35,15 +35,14 @@ impl Enclosed {
     /// O(n log n) of what is convex.
     pub fn of(topology: &Topology, mesh: Positioned, bounds: &Aabb, is_solid: bool) -> Option<Enclosed> {
         let Positioned { vertices, triangles } = mesh;
-        let (center, scale) = (bounds.center(), unit_scale(bounds.half_extents().max_element()));
-        let at = |i: u32| (vertices[i as usize] - center) * scale;
+        let unit = Unit::of(vertices, bounds);
         // Whether some neighbour is above the plane of a triangle, and some below, on the side from which its corners run clockwise.
         let [mut above, mut below] = [false; 2];
-        for [i, j, k] in triangles.iter().filter_map(|&triangle| topology.spread(triangle)) {
-            let normal = (at(j) - at(i)).cross(at(k) - at(i)).normalize_or_zero();
-            for edge in [[i, j], [j, k], [k, i]] {
+        for triangle in triangles.iter().filter_map(|&triangle| topology.spread(triangle)) {
+            let normal = unit.normal(triangle);
+            for edge in edges(triangle) {
                 let third = topology.beyond(triangles, edge)?;
-                let height = normal.dot(at(third) - at(i));
+                let height = normal.dot(unit.at(third) - unit.at(triangle[0]));
                 above |= height > FLATNESS;
                 below |= height < -FLATNESS;
             }
@@ -51,31 +50,72 @@ impl Enclosed {
                 return None;
             }
         }
-        let volume: f64 = triangles.iter().map(|&[i, j, k]| at(i).dot(at(j).cross(at(k)))).sum();
-        let orientation = if volume < 0.0 { -1.0 } else { 1.0 };
+        let volume = |triangle: &[u32; 3]| {
+            let [p, q, r] = triangle.map(|i| unit.at(i));
+            p.dot(q.cross(r))
+        };
+        let orientation = if triangles.iter().map(volume).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
         let rises = if orientation > 0.0 { above } else { below };
         let body = if rises { None } else { body(topology, mesh) };
-        // Edges that all bend outward are not enough: the surface may go around a corner twice, as that of a star does, or be flat, which tells nothing
-        // of its outline. So no corner is above a triangle, nor beyond an edge at which the surface turns back.
-        let holds_all = |(hull, _): &(Hulled, Vec<u32>)| {
-            let is_furthest = |corner: u32, along: DVec3| {
-                let furthest = (hull.polytope().support(along) - center) * scale;
-                along.dot(furthest - at(corner)) <= RISE
-            };
-            triangles.iter().filter_map(|&triangle| topology.spread(triangle)).all(|[i, j, k]| {
-                let normal = (at(j) - at(i)).cross(at(k) - at(i)).normalize_or_zero();
-                let is_within = |edge: [u32; 2]| {
-                    let [from, to] = edge.map(at);
-                    let outward = (to - from).cross(normal).normalize_or_zero();
-                    let third = topology.beyond(triangles, edge);
-                    third.is_none_or(|third| outward.dot(at(third) - from) >= 0.0)
-                        || is_furthest(edge[0], outward)
-                };
-                is_furthest(i, orientation * normal) && [[i, j], [j, k], [k, i]].into_iter().all(is_within)
-            })
-        };
-        Some(Enclosed { orientation, convex: body.filter(holds_all) })
+        let is_convex = |(hull, _): &_| bounds_all(triangles, topology, &unit, orientation, hull);
+        Some(Enclosed { orientation, convex: body.filter(is_convex) })
     }
+}
+
+/// The corners of a mesh as seen from its middle, in a unit in which their distances are about one.
+struct Unit<'m> {
+    vertices: &'m [DVec3],
+    center: DVec3,
+    scale: f64,
+}
+
+impl<'m> Unit<'m> {
+    fn of(vertices: &'m [DVec3], bounds: &Aabb) -> Self {
+        let scale = unit_scale(bounds.half_extents().max_element());
+        Unit { vertices, center: bounds.center(), scale }
+    }
+
+    fn point(&self, point: DVec3) -> DVec3 {
+        (point - self.center) * self.scale
+    }
+
+    fn at(&self, vertex: u32) -> DVec3 {
+        self.point(self.vertices[vertex as usize])
+    }
+
+    fn normal(&self, triangle: [u32; 3]) -> DVec3 {
+        let [p, q, r] = triangle.map(|i| self.at(i));
+        (q - p).cross(r - p).normalize_or_zero()
+    }
+}
+
+fn edges([i, j, k]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[i, j], [j, k], [k, i]]
+}
+
+/// Whether a closed surface that rises at no edge is that of its hull. Edges that all bend outward are not enough: it may go around a corner twice, as
+/// that of a star does, or be flat, which tells nothing of its outline. So no corner is above a triangle, nor beyond an edge at which the surface turns back.
+fn bounds_all(
+    triangles: &[[u32; 3]],
+    topology: &Topology,
+    unit: &Unit,
+    orientation: f64,
+    hull: &Hulled,
+) -> bool {
+    let is_furthest = |corner: u32, along: DVec3| {
+        let furthest = unit.point(hull.polytope().support(along));
+        along.dot(furthest - unit.at(corner)) <= RISE
+    };
+    let is_within = |[from, to]: [u32; 2], normal: DVec3| {
+        let outward = (unit.at(to) - unit.at(from)).cross(normal).normalize_or_zero();
+        let turns_back = |third: u32| outward.dot(unit.at(third) - unit.at(from)) < 0.0;
+        !topology.beyond(triangles, [from, to]).is_some_and(turns_back) || is_furthest(from, outward)
+    };
+    triangles.iter().filter_map(|&triangle| topology.spread(triangle)).all(|triangle| {
+        let normal = unit.normal(triangle);
+        is_furthest(triangle[0], orientation * normal)
+            && edges(triangle).into_iter().all(|edge| is_within(edge, normal))
+    })
 }
 
 /// The hull of a closed surface which rises at no edge, if it is of one part that is a sphere. Euler's formula tells the sphere.
