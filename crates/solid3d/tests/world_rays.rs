@@ -7,7 +7,7 @@
 
 mod common;
 
-use common::{cube, direction, in_cube, placement, random_mesh, shape_of};
+use common::{convex_of_kind, cube, direction, in_cube, placement, random_mesh, shape_of, torus};
 use glam::{DAffine3, DQuat, DVec3};
 use rand::Rng;
 use rand::rngs::StdRng;
@@ -374,6 +374,37 @@ fn a_world_and_a_query_tell_the_same_bits() {
     }
     println!("{backs} of {cases} hit from the back");
     assert!(backs > cases / 10);
+}
+
+/// Law: what starts off each surface by a skin bounces about in a closed room, and never hits where it comes from.
+#[test]
+fn with_a_skin_a_ray_bounces() {
+    const SKIN: f64 = 1e-9;
+    let mut rng = seeded(117);
+    for solid in [false, true] {
+        let mut world = World::new();
+        world.add(&cube(5.0).shape(), DAffine3::IDENTITY).unwrap();
+        for kind in 0..12 {
+            let mut at = placement(&mut rng, 3.0);
+            at.translation = 3.0 * in_cube(&mut rng);
+            let soup = torus(16, 9, 0.3).shape();
+            let shape = match kind % 6 {
+                0 if solid => soup.into_solid().unwrap(),
+                0 => soup,
+                kind => convex_of_kind(&mut rng, kind, [0.6, 1.0, 0.8], 0.7),
+            };
+            world.add(&shape, at).unwrap();
+        }
+        let mut ray = Ray::new(DVec3::new(4.9, 4.8, 4.7), direction(&mut rng));
+        for bounce in 0..4000 {
+            let found = world.cast_ray(&ray, &RayOptions::default(), |_| true).unwrap();
+            let hit = found.unwrap_or_else(|| panic!("bounce {bounce}: {ray:?} leaves the room")).hit;
+            let normal = hit.surface.unwrap_or_else(|| panic!("bounce {bounce}: {ray:?} is inside")).normal;
+            assert!(hit.t > 0.1 * SKIN, "bounce {bounce}: {ray:?} hits at {:e}", hit.t);
+            let onward = ray.direction.reflect(normal).normalize();
+            ray = Ray::new(hit.point + SKIN * normal, onward);
+        }
+    }
 }
 
 /// Of a ray without an end, too, only the objects are asked whose boxes it meets; in either broad phase, whether they were tested or not.

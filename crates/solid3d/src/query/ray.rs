@@ -19,6 +19,8 @@ use crate::shape::Shape;
 ///   shape's extent more, never late.
 ///   A ray that touches a triangle or a convex shape with an end, or passes by an outer edge, closer than by that error may miss it; so may one that
 ///   starts at a triangle of a solid mesh and goes out. One that goes in does not: it hits there, or starts inside.
+/// - What starts on a surface hits it. A ray that goes on from a hit, as a reflection or towards a light, starts off it, at `point + skin * normal`, with a
+///   skin of some 1e-9 of the size.
 ///
 /// A ray with a coordinate that is not finite or beyond 1e100, without a direction, or with a `max` that is negative or not a number
 /// is an [`Error`](crate::Error). Cost: a constant for convex shapes, about log n for meshes.
