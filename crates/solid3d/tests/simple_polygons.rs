@@ -250,6 +250,12 @@ fn a_ray_meets_a_polygon_once() {
             assert!(hits.iter().all(|hit| hit.surface.unwrap().barycentric.is_none()));
         }
     }
+    // Seen edge on, and of one that is a segment.
+    let along = all(&strip, &Ray::new(DVec3::new(-1.0, 0.5, 0.0), DVec3::X));
+    assert_eq!(along.iter().map(|hit| hit.t).collect::<Vec<_>>(), [1.0]);
+    let line = [0.0, 1.0, 3.0, 2.0].map(|x| DVec3::X * x);
+    let line = ComplexShapeBuilder::new(line).simple_polygon(&[0, 1, 2, 3]).build().unwrap();
+    assert_eq!(all(&line, &Ray::new(DVec3::new(0.5, 1.0, 0.0), DVec3::NEG_Y)).len(), 1);
     let corners = [DVec3::X * 8.0, DVec3::Y * 8.0, DVec3::ZERO, DVec3::Z];
     for chain in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
         let shape = ComplexShapeBuilder::new(corners).point(3).simple_polygon(&chain).build().unwrap();

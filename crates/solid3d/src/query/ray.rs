@@ -64,8 +64,8 @@ fn first_at_length(
 }
 
 /// All places where a ray or segment meets the surface of a placed shape, in the order of `t`, then of primitives. Where it
-/// passes through an edge or a corner of a mesh, each triangle there is one; where it passes between two of the triangles that a
-/// [simple polygon](crate::ComplexShapeBuilder::simple_polygon) is cut into, the polygon is one.
+/// passes through an edge or a corner of a mesh, each triangle there is one. A
+/// [simple polygon](crate::ComplexShapeBuilder::simple_polygon) is hit once, as it is flat.
 ///
 /// Of a ray that starts inside of a solid the first has no surface, unless [`RayOptions`] says otherwise. See
 /// [`cast_ray`].

@@ -324,22 +324,18 @@ impl Complex {
         !self.primitives.polygons().is_empty()
     }
 
-    /// The place in the list of polygons of that which a primitive is a piece of.
-    fn polygon_of(&self, primitive: u32) -> Option<usize> {
-        let polygons = self.primitives.polygons();
-        let last = polygons.partition_point(|polygon| polygon.pieces.start <= primitive).checked_sub(1)?;
-        polygons[last].pieces.contains(&primitive).then_some(last)
-    }
-
-    /// Whether a primitive is one of several pieces of a polygon.
+    /// Whether a primitive, of those that were given, is a polygon that was cut into pieces. Cost: O(log n).
     pub fn is_cut(&self, primitive: u32) -> bool {
-        self.polygon_of(primitive).is_some()
+        let owner = |polygon: &CutPolygon| self.owner(polygon.pieces.start);
+        self.primitives.polygons().binary_search_by_key(&primitive, owner).is_ok()
     }
 
     /// The convex polygon that a primitive is a piece of. Cost: O(n log n) for a polygon at the first call since the last deformation.
     fn convex_polygon(&self, piece: u32) -> Option<&CutPolygon> {
-        let polygon = self.polygon_of(piece).filter(|&polygon| self.is_convex(polygon))?;
-        Some(&self.primitives.polygons()[polygon])
+        let polygons = self.primitives.polygons();
+        let last = polygons.partition_point(|polygon| polygon.pieces.start <= piece).checked_sub(1)?;
+        let polygon = &polygons[last];
+        (polygon.pieces.contains(&piece) && self.is_convex(last)).then_some(polygon)
     }
 
     fn is_convex(&self, polygon: usize) -> bool {

@@ -1,7 +1,5 @@
 //! A ray against a complex shape: along its tree, nearest leaf first.
 
-use std::collections::BTreeSet;
-
 use fearless_simd::Simd;
 use glam::{DAffine3, DMat3, DVec3};
 use solid_convex::simd::level;
@@ -36,7 +34,7 @@ pub(super) fn hits(placed: Placed, complex: &Complex, hits: &mut Hits, scratch: 
     let Some(ray) = LocalRay::new(placed, complex, hits) else { return };
     let asks_for_start =
         ray.start == 0.0 && complex.is_solid() && hits.options.from_inside == FromInside::Hits;
-    let found = Found { hits, crossed: asks_for_start.then(Crossed::default), cuts: BTreeSet::new() };
+    let found = Found { hits, crossed: asks_for_start.then(Crossed::default) };
     let tree_ray = TreeRay { origin: ray.origin, direction: ray.direction, half_extents: DVec3::ZERO };
     let Scratch { traversal, primitive_tests, .. } = scratch;
     let mut left = found.left(&ray);
@@ -45,6 +43,9 @@ pub(super) fn hits(placed: Placed, complex: &Complex, hits: &mut Hits, scratch: 
     complex.tree().along_on(level(), &tree_ray, &mut left, traversal, &mut meeting);
     if meeting.found.crossed.is_some_and(|crossed| crossed.starts_inside()) {
         hits.add_inside();
+    }
+    if complex.has_polygons() {
+        hits.put_together(|primitive| complex.is_cut(primitive));
     }
 }
 
@@ -64,8 +65,6 @@ struct Found<'s, 'r> {
     hits: &'s mut Hits<'r>,
     /// Where a hit is wanted if it starts inside of a solid mesh.
     crossed: Option<Crossed>,
-    /// Of polygons that were hit on a border of a piece: their numbers, with the vertices that the place is between.
-    cuts: BTreeSet<(u32, [u32; 2])>,
 }
 
 /// Where a ray starts, as to a solid mesh: told by the triangles that it crosses from there to beyond all.
@@ -193,9 +192,6 @@ impl LocalRay {
     fn meet_primitive(&self, (complex, at): PlacedComplex, primitive: u32, found: &mut Found) {
         let owner = complex.owner(primitive);
         match triangle(complex, primitive) {
-            Some(triangle) if complex.is_cut(primitive) => {
-                self.meet_piece(&triangle, complex.primitive(primitive), owner, found);
-            }
             Some(triangle) => self.meet(&triangle, owner, found),
             None => {
                 let earliest = || {
@@ -211,46 +207,14 @@ impl LocalRay {
     /// Adds where the ray meets a triangle.
     #[inline]
     fn meet(&self, triangle: &Triangle, primitive: u32, found: &mut Found) {
-        if let Some((t, surface)) = self.wanted(triangle, primitive, found) {
-            found.hits.add(t, Some(surface));
-        }
-    }
-
-    /// Adds where the ray meets a piece of a polygon: between two pieces that is one place.
-    fn meet_piece(&self, triangle: &Triangle, corners: &[u32], polygon: u32, found: &mut Found) {
-        let [p, q, r] = *triangle;
-        // What is on a line, for a vertex between two others, is the border of another piece too.
-        if (q - p).cross(r - p) == DVec3::ZERO {
-            return;
-        }
-        let Some((t, surface)) = self.wanted(triangle, polygon, found) else { return };
-        let weights = surface.barycentric.unwrap_or_default();
-        let mut between =
-            corners.iter().zip(weights).filter(|(_, weight)| *weight != 0.0).map(|(&corner, _)| corner);
-        let is_new = match [between.next(), between.next(), between.next()] {
-            [Some(corner), other, None] => {
-                let other = other.unwrap_or(corner);
-                found.cuts.insert((polygon, [corner.min(other), corner.max(other)]))
-            }
-            _ => true,
-        };
-        if is_new {
-            // The weights are those of the corners of the piece.
-            found.hits.add(t, Some(SurfaceHit { barycentric: None, ..surface }));
-        }
-    }
-
-    /// Where the ray meets a triangle, if that is wanted.
-    #[inline]
-    fn wanted(&self, triangle: &Triangle, primitive: u32, found: &mut Found) -> Option<(f64, SurfaceHit)> {
-        let TriangleHit { t, barycentric, back } = self.shear.hit(triangle)?;
-        let Found { hits, crossed, .. } = found;
+        let Some(TriangleHit { t, barycentric, back }) = self.shear.hit(triangle) else { return };
+        let Found { hits, crossed } = found;
         if let Some(crossed) = crossed {
             crossed.add(t, self.shear.winding(triangle));
         }
         let t = self.start + t;
         if back.is_some_and(|back| !hits.options.faces.includes(back)) || !hits.wants(t, primitive) {
-            return None;
+            return;
         }
         let scale = unit_scale(
             (triangle[1] - triangle[0]).abs().max((triangle[2] - triangle[0]).abs()).max_element(),
@@ -266,7 +230,7 @@ impl LocalRay {
             // A segment or a point has none: it turns to the ray.
             None => -direction(hits.ray.direction).expect("a ray has a direction"),
         };
-        Some((t, SurfaceHit { normal, back, primitive, barycentric: Some(barycentric) }))
+        hits.add(t, Some(SurfaceHit { normal, back, primitive, barycentric: Some(barycentric) }));
     }
 }
 

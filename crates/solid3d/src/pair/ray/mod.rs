@@ -7,6 +7,8 @@ mod convex;
 mod glance;
 mod triangle;
 
+use std::collections::BTreeSet;
+
 pub(crate) use convex::first_hit;
 use glam::{DMat3, DVec3};
 
@@ -213,10 +215,25 @@ impl<'r> Hits<'r> {
         }
     }
 
-    /// All in order.
-    pub fn sorted(mut self) -> Vec<RayHit> {
+    /// A polygon that was cut has one hit, that of the piece which is hit first; no weights are told of corners that were not given as a triangle's.
+    fn put_together(&mut self, is_cut: impl Fn(u32) -> bool) {
+        self.sort();
+        let mut met = BTreeSet::new();
+        self.all.retain(|hit| {
+            hit.surface.is_none_or(|SurfaceHit { primitive, .. }| !is_cut(primitive) || met.insert(primitive))
+        });
+        let surfaces = self.all.iter_mut().chain(&mut self.found).filter_map(|hit| hit.surface.as_mut());
+        surfaces.filter(|surface| is_cut(surface.primitive)).for_each(|surface| surface.barycentric = None);
+    }
+
+    fn sort(&mut self) {
         let primitive = |hit: &RayHit| hit.surface.map(|surface| surface.primitive);
         self.all.sort_by(|x, y| x.t.total_cmp(&y.t).then(primitive(x).cmp(&primitive(y))));
+    }
+
+    /// All in order.
+    pub fn sorted(mut self) -> Vec<RayHit> {
+        self.sort();
         self.all
     }
 }
