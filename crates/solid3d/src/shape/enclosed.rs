@@ -5,7 +5,7 @@ use solid_convex::{Support, unit_scale};
 
 use super::hulled::Hulled;
 use super::parts::parts;
-use super::topology::{Positioned, Topology};
+use super::topology::{Positioned, Topology, edges};
 use crate::bounds::Aabb;
 
 /// How far a neighbour may rise above the plane of a triangle in a surface that is convex, relative to its extent.
@@ -89,10 +89,6 @@ impl<'m> Unit<'m> {
     }
 }
 
-fn edges([i, j, k]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[i, j], [j, k], [k, i]]
-}
-
 /// Whether a closed surface that rises at no edge is that of its hull. Edges that all bend outward are not enough: it may go around a corner twice, as
 /// that of a star does, or be flat, which tells nothing of its outline. So no corner is above a triangle, nor beyond an edge at which the surface turns back.
 fn bounds_all(
@@ -124,11 +120,11 @@ fn body(topology: &Topology, Positioned { vertices, triangles }: Positioned) -> 
     let mut corners = spread.as_flattened().to_vec();
     corners.sort_unstable();
     corners.dedup();
-    let edges = 3 * spread.len() / 2;
+    let edge_count = 3 * spread.len() / 2;
     let twins: Vec<_> = (0..vertices.len() as u32).map(|i| [i, topology.welded(i)]).collect();
     let is_one = || parts(vertices.len(), triangles.iter().map(|t| t.as_slice()), &twins).len() == 1;
     let is_corner = |&i: &u32| corners.binary_search(&topology.welded(i)).is_ok();
-    if corners.len() + spread.len() != edges + 2
+    if corners.len() + spread.len() != edge_count + 2
         || !is_one()
         || !triangles.as_flattened().iter().all(is_corner)
     {

@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 use solid_convex::unit_scale;
 
 use super::incidence::Incidence;
+use super::topology::edges;
 use crate::bounds::Aabb;
 use crate::hull::{Hull, outline};
 
@@ -108,16 +109,13 @@ fn ends(points: &[DVec3], extreme: &[u32]) -> [u32; 2] {
 fn merged(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Facet> {
     let corner = |index: u32| points[index as usize];
     let cross = |[i, j, k]: [u32; 3]| (corner(j) - corner(i)).cross(corner(k) - corner(i));
-    let longest_edge = |[i, j, k]: [u32; 3]| {
-        [[i, j], [j, k], [k, i]]
-            .map(|[from, to]| corner(from).distance(corner(to)))
-            .into_iter()
-            .fold(0.0, f64::max)
+    let longest_edge = |triangle: [u32; 3]| {
+        edges(triangle).map(|[from, to]| corner(from).distance(corner(to))).into_iter().fold(0.0, f64::max)
     };
     // Of a flat hull a diagonal is run through the same way by a triangle of either side.
     let mut beyond: HashMap<[u32; 2], SmallVec<[usize; 2]>> = HashMap::new();
-    for (index, &[i, j, k]) in triangles.iter().enumerate() {
-        for edge in [[i, j], [j, k], [k, i]] {
+    for (index, &triangle) in triangles.iter().enumerate() {
+        for edge in edges(triangle) {
             beyond.entry(edge).or_default().push(index);
         }
     }

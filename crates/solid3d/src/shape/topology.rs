@@ -157,6 +157,11 @@ impl Topology {
     }
 }
 
+/// The edges of a triangle, as it runs through them.
+pub(super) fn edges([i, j, k]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[i, j], [j, k], [k, i]]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
