@@ -167,11 +167,15 @@ impl Polygon {
         }
         let chain = join_holes(&vertices, &outer, &places)?;
         let polygon = Polygon::new(chain.iter().map(|&i| vertices[i as usize]).collect::<Vec<_>>());
-        let mut next = vec![0; vertices.len()];
-        for ring in std::iter::once(&outer).chain(&places) {
-            ring.iter().zip(ring.iter().cycle().skip(1)).for_each(|(&i, &after)| next[i as usize] = after);
-        }
-        polygon.and_then(Polygon::simple).map_err(|error| error.of_rings(&chain, &next))
+        polygon.and_then(Polygon::simple).map_err(|error| {
+            let mut next = vec![0; vertices.len()];
+            for ring in std::iter::once(&outer).chain(&places) {
+                ring.iter()
+                    .zip(ring.iter().cycle().skip(1))
+                    .for_each(|(&i, &after)| next[i as usize] = after);
+            }
+            error.of_rings(&chain, &next)
+        })
     }
 
     /// The polygon itself, if none of its edges cross. Exact. Edges that touch, also along a piece, do not cross. Cost: O(n log n), and a

@@ -129,13 +129,8 @@ impl ComplexShapeBuilder {
         match polygon {
             Ok(polygon) => {
                 let first = self.count();
-                // In the order that was given: by it, weights of corners are told.
-                if vertices.len() == 3 {
-                    self.push(vertices);
-                } else {
-                    for triangle in polygon.triangles() {
-                        self.push(&triangle.map(|place| vertices[place as usize]));
-                    }
+                for triangle in polygon.triangles() {
+                    self.push(&triangle.map(|place| vertices[place as usize]));
                 }
                 let pieces = first..self.count();
                 if pieces.len() > 1 {
