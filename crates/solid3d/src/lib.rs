@@ -22,7 +22,7 @@
 //! - [`hull`], [`polygon`] and [`ccd`] are of use by themselves: hulls of points, polygons with holes, vertices and edges that move.
 //! - [`convex`], [`tree`] and [`broad`] are what all of it is built on: support mappings and GJK, the tree of a mesh, the broad phase.
 //!
-//! Lengths are in any unit, from 1e-100 to 1e100. Whatever takes input from outside returns a [`Result`] whose [`Error`] names the argument, its
+//! Lengths are in any unit, from 1e-100 to 1e100. Shapes, queries and worlds refuse bad input with an [`Error`] that names the argument, its
 //! value and its limit. All types can be sent to and shared among threads; with the feature `rayon` a test, a build and a refit use those
 //! of the current pool. Results are the same bits for any number of them, and on every machine.
 
