@@ -221,19 +221,21 @@ impl Lists {
         heights: &mut Vec<Height>,
     ) {
         let corners = square.corners();
-        heights.clear();
-        heights.extend(candidates.iter().map(|&point| Height {
-            point,
-            corners: corners.map(|corner| points[point as usize].dot(corner)),
-        }));
         // The furthest at each corner and in the middle exceed most of the others, if anything does.
-        let champion =
-            |of: &dyn Fn(&Height) -> f64| heights.iter().copied().max_by(|x, y| of(x).total_cmp(&of(y)));
-        let middle = champion(&|height| height.corners.iter().sum());
-        let champions: Vec<Height> =
-            (0..4).filter_map(|k| champion(&|height| height.corners[k])).chain(middle).collect();
-        let exceeds = |x: &Height, y: &Height| (0..4).all(|k| x.corners[k] > y.corners[k] + margin);
-        heights.retain(|height| !champions.iter().any(|champion| exceeds(champion, height)));
+        let mut furthest = [(f64::NEG_INFINITY, [0.0; 4]); 5];
+        heights.clear();
+        heights.extend(candidates.iter().map(|&point| {
+            let corners = corners.map(|corner| points[point as usize].dot(corner));
+            let [p, q, r, s] = corners;
+            for (best, height) in furthest.iter_mut().zip([p, q, r, s, p + q + r + s]) {
+                if height >= best.0 {
+                    *best = (height, corners);
+                }
+            }
+            Height { point, corners }
+        }));
+        let exceeds = |x: &[f64; 4], y: &[f64; 4]| (0..4).fold(true, |all, k| all & (x[k] > y[k] + margin));
+        heights.retain(|height| !furthest.iter().any(|(_, corners)| exceeds(corners, &height.corners)));
         self.candidates.extend(heights.iter().map(|height| height.point));
         self.starts.push(self.candidates.len() as u32);
     }
