@@ -39,6 +39,7 @@ mod placement;
 pub mod polygon;
 pub mod query;
 mod shape;
+mod solid_angle;
 mod threads;
 pub mod tree;
 mod triangle_triangle;

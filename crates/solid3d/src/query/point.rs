@@ -4,13 +4,12 @@ use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
 use glam::{DAffine3, DVec3};
-use libm::atan2;
 
 use super::{Distance, distance, intersects, placed, unchecked};
 use crate::error::{Error, Result, bounded};
 use crate::pair::{self, ClosestPoint, Placed};
-use crate::placement::direction;
 use crate::shape::{Shape, ShapeKind};
+use crate::solid_angle::half_solid_angle;
 
 /// Whether a point is in a placed shape: in a convex shape or a solid mesh, or on the surface of a mesh or a complex shape.
 /// Right beyond 1e-12 of the size of the data; of solid meshes beyond the rounding of their placed corners, some 1e-15 of it.
@@ -86,20 +85,6 @@ pub fn winding_number(mesh: &Shape, placement: &DAffine3, point: DVec3) -> Resul
     let seen = |i: u32| placed.placement.transform_point3(vertices[i as usize]) - point;
     let halves: f64 = triangles.iter().map(|t| half_solid_angle(t.map(seen))).sum();
     Ok(halves / TAU * placed.placement.matrix3.determinant().signum())
-}
-
-/// Half of the solid angle of a triangle seen from the origin; positive when its corners run clockwise there, that is, when it
-/// shows its back. 0 where the origin is a corner.
-fn half_solid_angle(corners: [DVec3; 3]) -> f64 {
-    // Only directions count; unit vectors stay in range whatever the unit of length.
-    let [Some(a), Some(b), Some(c)] = corners.map(direction) else { return 0.0 };
-    // Next to an edge its ends are seen in opposite directions, whose sum is what is left of them.
-    let [a, b, c] = [[a, b, c], [b, c, a], [c, a, b]]
-        .into_iter()
-        .min_by(|[a, b, _], [p, q, _]| a.dot(*b).total_cmp(&p.dot(*q)))
-        .expect("there are three edges");
-    let left = a + b;
-    atan2(left.dot(b.cross(c)), 0.5 * left.length_squared() + c.dot(left))
 }
 
 /// The origin as a shape.

@@ -1,8 +1,9 @@
 //! What a closed mesh bounds.
 
 use glam::DVec3;
-use solid_convex::{Support, unit_scale};
+use solid_convex::unit_scale;
 
+use super::convexity::{convex_facets, six_volumes};
 use super::hulled::Hulled;
 use super::parts::parts;
 use super::topology::{Positioned, Topology, edges};
@@ -10,9 +11,6 @@ use crate::bounds::Aabb;
 
 /// How far a neighbour may rise above the plane of a triangle in a surface that is convex, relative to its extent.
 const FLATNESS: f64 = 1e-9;
-
-/// How far any other corner may: more, as the plane of a small triangle is less sure far from it.
-const RISE: f64 = 1e-6;
 
 /// What was found out about a mesh of which each edge has one triangle on either side. Triangles with two corners at one position do not count.
 #[derive(Debug, Default)]
@@ -35,14 +33,17 @@ impl Enclosed {
     /// O(n log n) of what is convex.
     pub fn of(topology: &Topology, mesh: Positioned, bounds: &Aabb, is_solid: bool) -> Option<Enclosed> {
         let Positioned { vertices, triangles } = mesh;
-        let unit = Unit::of(vertices, bounds);
+        let center = bounds.center();
+        let scale = unit_scale(bounds.half_extents().max_element());
+        // In a unit in which distances are about one.
+        let at = |vertex: u32| (vertices[vertex as usize] - center) * scale;
         // Whether some neighbour is above the plane of a triangle, and some below, on the side from which its corners run clockwise.
         let [mut above, mut below] = [false; 2];
         for triangle in triangles.iter().filter_map(|&triangle| topology.spread(triangle)) {
-            let normal = unit.normal(triangle);
+            let [p, q, r] = triangle.map(at);
+            let normal = (q - p).cross(r - p).normalize_or_zero();
             for edge in edges(triangle) {
-                let third = topology.beyond(triangles, edge)?;
-                let height = normal.dot(unit.at(third) - unit.at(triangle[0]));
+                let height = normal.dot(at(topology.beyond(triangles, edge)?) - p);
                 above |= height > FLATNESS;
                 below |= height < -FLATNESS;
             }
@@ -50,73 +51,23 @@ impl Enclosed {
                 return None;
             }
         }
-        let volume = |triangle: &[u32; 3]| {
-            let [p, q, r] = triangle.map(|i| unit.at(i));
-            p.dot(q.cross(r))
-        };
-        let orientation = if triangles.iter().map(volume).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
+        let volume: f64 = triangles.iter().map(|corners| six_volumes(corners.map(at))).sum();
+        let orientation = if volume < 0.0 { -1.0 } else { 1.0 };
         let rises = if orientation > 0.0 { above } else { below };
-        let body = if rises { None } else { body(topology, mesh) };
-        let is_convex = |(hull, _): &_| bounds_all(triangles, topology, &unit, orientation, hull);
-        Some(Enclosed { orientation, convex: body.filter(is_convex) })
+        let convex = if rises { None } else { body(topology, mesh, at, orientation) };
+        Some(Enclosed { orientation, convex })
     }
 }
 
-/// The corners of a mesh as seen from its middle, in a unit in which their distances are about one.
-struct Unit<'m> {
-    vertices: &'m [DVec3],
-    center: DVec3,
-    scale: f64,
-}
-
-impl<'m> Unit<'m> {
-    fn of(vertices: &'m [DVec3], bounds: &Aabb) -> Self {
-        let scale = unit_scale(bounds.half_extents().max_element());
-        Unit { vertices, center: bounds.center(), scale }
-    }
-
-    fn point(&self, point: DVec3) -> DVec3 {
-        (point - self.center) * self.scale
-    }
-
-    fn at(&self, vertex: u32) -> DVec3 {
-        self.point(self.vertices[vertex as usize])
-    }
-
-    fn normal(&self, triangle: [u32; 3]) -> DVec3 {
-        let [p, q, r] = triangle.map(|i| self.at(i));
-        (q - p).cross(r - p).normalize_or_zero()
-    }
-}
-
-/// Whether a closed surface that rises at no edge is that of its hull. Edges that all bend outward are not enough: it may go around a corner twice, as
-/// that of a star does, or be flat, which tells nothing of its outline. So no corner is above a triangle, nor beyond an edge at which the surface turns back.
-fn bounds_all(
-    triangles: &[[u32; 3]],
+/// What a closed surface which rises at no edge bounds, if it is of one part that is a sphere, and convex. Euler's formula tells the sphere.
+fn body(
     topology: &Topology,
-    unit: &Unit,
+    Positioned { vertices, triangles }: Positioned,
+    at: impl Fn(u32) -> DVec3,
     orientation: f64,
-    hull: &Hulled,
-) -> bool {
-    let is_furthest = |corner: u32, along: DVec3| {
-        let furthest = unit.point(hull.polytope().support(along));
-        along.dot(furthest - unit.at(corner)) <= RISE
-    };
-    let is_within = |[from, to]: [u32; 2], normal: DVec3| {
-        let outward = (unit.at(to) - unit.at(from)).cross(normal).normalize_or_zero();
-        let turns_back = |third: u32| outward.dot(unit.at(third) - unit.at(from)) < 0.0;
-        !topology.beyond(triangles, [from, to]).is_some_and(turns_back) || is_furthest(from, outward)
-    };
-    triangles.iter().filter_map(|&triangle| topology.spread(triangle)).all(|triangle| {
-        let normal = unit.normal(triangle);
-        is_furthest(triangle[0], orientation * normal)
-            && edges(triangle).into_iter().all(|edge| is_within(edge, normal))
-    })
-}
-
-/// The hull of a closed surface which rises at no edge, if it is of one part that is a sphere. Euler's formula tells the sphere.
-fn body(topology: &Topology, Positioned { vertices, triangles }: Positioned) -> Option<(Hulled, Vec<u32>)> {
-    let spread: Vec<[u32; 3]> = triangles.iter().filter_map(|&triangle| topology.spread(triangle)).collect();
+) -> Option<(Hulled, Vec<u32>)> {
+    let mut spread: Vec<[u32; 3]> =
+        triangles.iter().filter_map(|&triangle| topology.spread(triangle)).collect();
     let mut corners = spread.as_flattened().to_vec();
     corners.sort_unstable();
     corners.dedup();
@@ -130,8 +81,19 @@ fn body(topology: &Topology, Positioned { vertices, triangles }: Positioned) -> 
     {
         return None;
     }
-    let points: Vec<DVec3> = corners.iter().map(|&i| vertices[i as usize]).collect();
-    Hulled::new(points).map(|hull| (hull, corners))
+    // Counter-clockwise seen from outside, over the corners.
+    let mut slots = vec![0; vertices.len()];
+    (0u32..).zip(&corners).for_each(|(slot, &vertex)| slots[vertex as usize] = slot);
+    for triangle in &mut spread {
+        *triangle = triangle.map(|vertex| slots[vertex as usize]);
+        if orientation < 0.0 {
+            triangle.reverse();
+        }
+    }
+    let unit: Vec<DVec3> = corners.iter().map(|&vertex| at(vertex)).collect();
+    let facets = convex_facets(&unit, &spread)?;
+    let points = corners.iter().map(|&vertex| vertices[vertex as usize]).collect();
+    Some((Hulled::with_facets(points, facets)?, corners))
 }
 
 #[cfg(test)]

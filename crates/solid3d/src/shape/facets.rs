@@ -2,10 +2,7 @@
 //!
 //! [`Hull`] merges what is exactly coplanar. The corners of a prism that was turned are not, by their rounding; here they are.
 
-use std::collections::HashMap;
-
 use glam::{DVec2, DVec3};
-use smallvec::SmallVec;
 use solid_convex::unit_scale;
 
 use super::incidence::Incidence;
@@ -17,28 +14,42 @@ use crate::hull::{Hull, outline};
 /// positions that were turned and moved, far below what can be seen.
 const FLATNESS: f64 = 1e-9;
 
+/// The number of no face.
+pub(super) const NO_FACE: u32 = u32::MAX;
+
 /// The faces of a convex hull.
 #[derive(Clone, Debug)]
 pub(crate) struct Facets {
-    faces: Vec<Facet>,
+    faces: Vec<Face>,
+    /// Those of all faces, one after the other.
+    corners: Vec<u32>,
     /// The faces at each point.
     at_point: Incidence,
     /// The extreme points: of a hull that is a segment up to rounding its ends, which are its face, as a point is.
     extreme: Vec<u32>,
 }
 
-/// A face: a convex polygon.
+/// A face as it is kept.
 #[derive(Clone, Debug)]
-pub(crate) struct Facet {
+struct Face {
+    normal: DVec3,
+    lowest: u32,
+    /// Where its corners end.
+    end: u32,
+}
+
+/// A face: a convex polygon.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Facet<'a> {
     /// The outward unit normal.
     pub normal: DVec3,
     /// The corners, in order around it.
-    pub corners: Vec<u32>,
+    pub corners: &'a [u32],
     /// The corner of the triangles in it that is furthest below the plane of the others.
     pub lowest: u32,
 }
 
-impl Facet {
+impl Facet<'_> {
     /// The corner that follows one of it.
     pub fn after(&self, corner: u32) -> u32 {
         let at = self.corners.iter().position(|&other| other == corner);
@@ -49,10 +60,9 @@ impl Facet {
 impl Facets {
     /// The memory that they own, in bytes.
     pub fn bytes(&self) -> usize {
-        let Facets { faces, at_point, extreme } = self;
-        let corners: usize = faces.iter().map(|face| face.corners.capacity()).sum();
-        let indices = corners + extreme.capacity();
-        faces.capacity() * size_of::<Facet>() + indices * size_of::<u32>() + at_point.bytes()
+        let Facets { faces, corners, at_point, extreme } = self;
+        let indices = corners.capacity() + extreme.capacity();
+        faces.capacity() * size_of::<Face>() + indices * size_of::<u32>() + at_point.bytes()
     }
 
     /// The faces of the hull of points, of which there must be one. A flat hull has two, one for each side. O(n log n).
@@ -63,14 +73,15 @@ impl Facets {
         // In a unit near the extent, so that no product overflows.
         let unit: Vec<DVec3> = points.iter().map(|&p| (p - center) * scale).collect();
         let hull = Hull::of(&unit);
-        let (triangles, mut extreme) = hull
+        let (triangles, extreme) = hull
             .map_or((Vec::new(), Vec::new()), |hull| (hull.triangles().to_vec(), hull.vertices().to_vec()));
-        let faces = merged(&unit, &triangles);
-        if faces.is_empty() && extreme.len() > 2 {
-            extreme = ends(&unit, &extreme).to_vec();
-        }
-        let at_point = Incidence::of(points.len(), faces.iter().map(|face| face.corners.iter().copied()));
-        Facets { faces, at_point, extreme }
+        let mut facets = Triangles::new(&unit, &triangles).merged().0;
+        facets.extreme = if facets.faces.is_empty() && extreme.len() > 2 {
+            ends(&unit, &extreme).to_vec()
+        } else {
+            extreme
+        };
+        facets
     }
 
     /// How many faces there are.
@@ -79,8 +90,11 @@ impl Facets {
     }
 
     /// A face.
-    pub fn get(&self, face: u32) -> &Facet {
-        &self.faces[face as usize]
+    pub fn get(&self, face: u32) -> Facet<'_> {
+        let face = face as usize;
+        let start = face.checked_sub(1).map_or(0, |before| self.faces[before].end as usize);
+        let Face { normal, lowest, end } = self.faces[face];
+        Facet { normal, corners: &self.corners[start..end as usize], lowest }
     }
 
     /// The faces that have a point for a corner; none when the hull has no faces.
@@ -105,45 +119,102 @@ fn ends(points: &[DVec3], extreme: &[u32]) -> [u32; 2] {
     [end.min(other), end.max(other)]
 }
 
-/// Grows a face from each triangle, the largest first, over its neighbours in the same plane.
-fn merged(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Facet> {
-    let corner = |index: u32| points[index as usize];
-    let cross = |[i, j, k]: [u32; 3]| (corner(j) - corner(i)).cross(corner(k) - corner(i));
-    let longest_edge = |triangle: [u32; 3]| {
-        edges(triangle).map(|[from, to]| corner(from).distance(corner(to))).into_iter().fold(0.0, f64::max)
-    };
-    // Of a flat hull a diagonal is run through the same way by a triangle of either side.
-    let mut beyond: HashMap<[u32; 2], SmallVec<[usize; 2]>> = HashMap::new();
-    for (index, &triangle) in triangles.iter().enumerate() {
-        for edge in edges(triangle) {
-            beyond.entry(edge).or_default().push(index);
-        }
+/// The triangles of a closed surface, counter-clockwise seen from outside; in a unit in which their distances are about one.
+pub(super) struct Triangles<'a> {
+    points: &'a [DVec3],
+    triangles: &'a [[u32; 3]],
+    /// Those at each point.
+    around: Incidence,
+}
+
+impl<'a> Triangles<'a> {
+    pub fn new(points: &'a [DVec3], triangles: &'a [[u32; 3]]) -> Self {
+        Triangles { points, triangles, around: Incidence::of(points.len(), triangles.iter().copied()) }
     }
-    let mut seeds: Vec<usize> = (0..triangles.len()).collect();
-    seeds.sort_by(|&i, &j| {
-        cross(triangles[j]).length_squared().total_cmp(&cross(triangles[i]).length_squared()).then(i.cmp(&j))
-    });
-    let mut taken = vec![false; triangles.len()];
-    let mut faces = Vec::new();
-    for seed in seeds {
-        // What is left that is no wider than rounding is a sliver within a face, or has no plane.
-        let wide = cross(triangles[seed]).length() > FLATNESS * longest_edge(triangles[seed]);
-        let Some(normal) = cross(triangles[seed]).try_normalize().filter(|_| wide && !taken[seed]) else {
-            continue;
-        };
-        let origin = corner(triangles[seed][0]);
-        let in_plane = |&index: &u32| normal.dot(corner(index) - origin).abs() <= FLATNESS;
-        let (mut stack, mut members) = (vec![seed], Vec::new());
-        taken[seed] = true;
+
+    fn corner(&self, point: u32) -> DVec3 {
+        self.points[point as usize]
+    }
+
+    /// The normal of a triangle, as long as its area is large.
+    fn cross(&self, triangle: usize) -> DVec3 {
+        let [p, q, r] = self.triangles[triangle].map(|point| self.corner(point));
+        (q - p).cross(r - p)
+    }
+
+    fn longest_edge(&self, triangle: usize) -> f64 {
+        let lengths = edges(self.triangles[triangle]).map(|ends| {
+            let [from, to] = ends.map(|point| self.corner(point));
+            from.distance(to)
+        });
+        lengths.into_iter().fold(0.0, f64::max)
+    }
+
+    /// The triangles on the other side of an edge of one: of a flat hull a diagonal is run through the same way by one of either side.
+    pub fn beyond(&self, [from, to]: [u32; 2]) -> impl Iterator<Item = usize> {
+        let [of_from, of_to] = [from, to].map(|end| self.around.at(end as usize));
+        let star = if of_from.len() < of_to.len() { of_from } else { of_to };
+        let has_edge = move |&triangle: &usize| edges(self.triangles[triangle]).contains(&[to, from]);
+        star.iter().map(|&triangle| triangle as usize).filter(has_edge)
+    }
+
+    /// Grows a face from each triangle, the largest first, over its neighbours in the same plane. The number of the face that each is a part of is told, too;
+    /// [`NO_FACE`] of what is no wider than rounding, and has none beside it.
+    pub fn merged(&self) -> (Facets, Vec<u32>) {
+        let areas: Vec<f64> = (0..self.triangles.len()).map(|i| self.cross(i).length_squared()).collect();
+        let mut seeds: Vec<usize> = (0..areas.len()).collect();
+        seeds.sort_unstable_by(|&i, &j| areas[j].total_cmp(&areas[i]).then(i.cmp(&j)));
+        let mut face_of = vec![NO_FACE; areas.len()];
+        let (mut faces, mut all_corners) = (Vec::new(), Vec::new());
+        let (mut stack, mut members) = (Vec::new(), Vec::new());
+        for seed in seeds {
+            // What is left that is no wider than rounding is a sliver within a face, or has no plane.
+            let wide = self.cross(seed).length() > FLATNESS * self.longest_edge(seed);
+            let is_left = face_of[seed] == NO_FACE;
+            let Some(normal) = self.cross(seed).try_normalize().filter(|_| wide && is_left) else {
+                continue;
+            };
+            self.grow(seed, normal, faces.len() as u32, &mut face_of, &mut stack, &mut members);
+            let height = |index: &u32| normal.dot(self.corner(*index));
+            let lowest = members.iter().copied().min_by(|i, j| height(i).total_cmp(&height(j)));
+            let lowest = lowest.expect("a face has a triangle");
+            let (u, v) = normal.any_orthonormal_pair();
+            let flat: Vec<DVec2> =
+                members.iter().map(|&i| DVec2::new(u.dot(self.corner(i)), v.dot(self.corner(i)))).collect();
+            all_corners.extend(outline(&flat, FLATNESS).into_iter().map(|i| members[i]));
+            faces.push(Face { normal, lowest, end: all_corners.len() as u32 });
+        }
+        let starts = std::iter::once(0).chain(faces.iter().map(|face| face.end as usize));
+        let each =
+            starts.zip(&faces).map(|(start, face)| all_corners[start..face.end as usize].iter().copied());
+        let at_point = Incidence::of(self.points.len(), each);
+        (Facets { faces, corners: all_corners, at_point, extreme: Vec::new() }, face_of)
+    }
+
+    /// Makes a face of a triangle and what lies around it in its plane; the corners of these are its members, ascending.
+    fn grow(
+        &self,
+        seed: usize,
+        normal: DVec3,
+        number: u32,
+        face_of: &mut [u32],
+        stack: &mut Vec<usize>,
+        members: &mut Vec<u32>,
+    ) {
+        let origin = self.corner(self.triangles[seed][0]);
+        let in_plane = |&index: &u32| normal.dot(self.corner(index) - origin).abs() <= FLATNESS;
+        members.clear();
+        stack.push(seed);
+        face_of[seed] = number;
         // Each triangle enters once.
         while let Some(index) = stack.pop() {
-            let [i, j, k] = triangles[index];
-            members.extend([i, j, k]);
-            for edge in [[j, i], [k, j], [i, k]] {
-                for &other in beyond.get(&edge).into_iter().flatten() {
-                    let same_side = cross(triangles[other]).dot(normal) >= -FLATNESS;
-                    if !taken[other] && same_side && triangles[other].iter().all(in_plane) {
-                        taken[other] = true;
+            members.extend(self.triangles[index]);
+            for edge in edges(self.triangles[index]) {
+                for other in self.beyond(edge) {
+                    let same_side = self.cross(other).dot(normal) >= -FLATNESS;
+                    let is_left = face_of[other] == NO_FACE;
+                    if is_left && same_side && self.triangles[other].iter().all(in_plane) {
+                        face_of[other] = number;
                         stack.push(other);
                     }
                 }
@@ -151,16 +222,7 @@ fn merged(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Facet> {
         }
         members.sort_unstable();
         members.dedup();
-        let height = |index: &u32| normal.dot(corner(*index));
-        let lowest = members.iter().copied().min_by(|i, j| height(i).total_cmp(&height(j)));
-        let lowest = lowest.expect("a face has a triangle");
-        let (u, v) = normal.any_orthonormal_pair();
-        let flat: Vec<DVec2> =
-            members.iter().map(|&i| DVec2::new(u.dot(corner(i)), v.dot(corner(i)))).collect();
-        let corners = outline(&flat, FLATNESS).into_iter().map(|i| members[i]).collect();
-        faces.push(Facet { normal, corners, lowest });
     }
-    faces
 }
 
 #[cfg(test)]
@@ -176,7 +238,7 @@ mod tests {
         let points: Vec<DVec3> =
             (0..8).flat_map(|i| [rim(i) + DVec3::Y, rim(i) - DVec3::Y]).map(|p| turn * p + 5.0).collect();
         let facets = Facets::of(&points);
-        let mut corners: Vec<usize> = facets.faces.iter().map(|face| face.corners.len()).collect();
+        let mut corners: Vec<usize> = (0..facets.len()).map(|face| facets.get(face).corners.len()).collect();
         corners.sort_unstable();
         assert_eq!(corners, [4, 4, 4, 4, 4, 4, 4, 4, 8, 8]);
         assert!((0..16).all(|i| facets.at(i).len() == 3));

@@ -24,6 +24,11 @@ impl Hulled {
         Some(Polytope::new(points)?.into())
     }
 
+    /// The hull of points whose faces are known; `None` for no points.
+    pub fn with_facets(points: Vec<DVec3>, facets: Facets) -> Option<Hulled> {
+        Some(Hulled { facets: facets.into(), ..Hulled::new(points)? })
+    }
+
     /// A hull, of the points that it was made from.
     pub fn of(hull: &Hull, points: &[DVec3]) -> Hulled {
         let mut slots = vec![0; points.len()];

@@ -3,6 +3,7 @@
 mod builder;
 mod chord;
 mod complex;
+mod convexity;
 mod debug;
 mod enclosed;
 mod facets;

@@ -75,7 +75,7 @@ fn facets(hull: &Hulled, map: &Map, count: usize) -> Option<Vec<(DVec3, f64)>> {
     if facets.len() < 4 || facets.len() as usize > FACETS_MAX.min(FACETS_EACH * count) {
         return None;
     }
-    let plane = |facet: &Facet| {
+    let plane = |facet: Facet| {
         let normal = map.normal(facet.normal);
         let height = |local: DVec3| normal.dot(map.point(local));
         let highest = height(hull.polytope().support(map.linear().transpose() * normal));
