@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use vrml97::fields::{FieldValue, access};
 use vrml97::scene::{FieldLoc, FieldRef, NodeKind, ProtoRef, ROOT, Scene};
 
-use super::scan::{Mark, scan};
+use super::scan::{MARK, Mark, as_written, handed_on, scan};
 use super::{vectors, wide};
 use crate::error::SceneError;
 use crate::text::{quoted, with_words_cut};
@@ -84,11 +84,11 @@ impl Document {
         let mut scene = parse(&scanned.text).map_err(|error| {
             let stops_at = |text: &str| parse(text).err().map(|error| error.line);
             let message = wide::message(&scanned, error.line, stops_at)
-                .unwrap_or_else(|| with_words_cut(&in_our_words(&error.message)));
+                .unwrap_or_else(|| with_words_cut(&in_our_words(&as_written(&error.message))));
             SceneError::new(file, Some(error.line), message)
         })?;
         for warning in std::mem::take(&mut scene.warnings) {
-            warn(with_words_cut(&warning_in_our_words(&warning)));
+            warn(with_words_cut(&warning_in_our_words(&as_written(&warning))));
         }
         vectors::uneven(&scanned.text, warn);
         let marks = if scanned.nodes.len() == scene.nodes.len() { scanned.nodes } else { Vec::new() };
@@ -127,14 +127,14 @@ impl Document {
 
     /// The name of the node's type or PROTO.
     pub fn type_name(&self, node: Syntax) -> String {
-        self.scene.type_name(node)
+        as_written(&self.scene.type_name(node))
     }
 
     /// The name that DEF gives.
     pub fn name(&self, node: Syntax) -> Option<&str> {
         match self.marks.get(node as usize) {
             Some(mark) => mark.name.as_deref(),
-            None => Some(self.scene.node(node).name.as_str()).filter(|name| !name.is_empty()),
+            None => Some(self.scene.node(node).name.trim_start_matches(MARK)).filter(|name| !name.is_empty()),
         }
     }
 
@@ -179,7 +179,7 @@ impl Document {
     pub fn find_proto(&self, name: Option<&str>) -> Option<Proto> {
         let protos = &self.scene.ctx(FILE).protos;
         match name {
-            Some(name) => protos.get(name),
+            Some(name) => protos.get(&handed_on(name)),
             None => protos.values().first().copied(),
         }
     }

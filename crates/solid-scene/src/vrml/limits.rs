@@ -24,9 +24,9 @@ pub(super) const FILE_DECLARATIONS_MAX: usize = 20_000;
 /// up to 15 times as many.
 pub(super) const COPIED_BYTES_MAX: usize = 1 << 26;
 
-/// Names beginning with USE, which the parser may take for a USE of something unknown; it looks through all nodes for
-/// each.
-pub(super) const USE_LOOKALIKES_MAX: usize = 1_000;
+/// Nodes of a file times the names that DEF gives to nodes of other types than those of the standard, and USE has: where the parser
+/// knows no such type it looks through all nodes for each. It takes some 8 seconds for so many.
+pub(super) const OTHERS_USED_MAX: usize = 100_000_000;
 
 /// Nodes after the instances of PROTO, Inline and USE are written out.
 pub(super) const NODES_MAX: usize = 1_000_000;

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::document::Kind;
 use super::graph::{Graph, Node, Slot};
 use super::limits::{FILE_ROUTES_MAX, NODES_MAX};
+use super::scan::as_written;
 use crate::error::SceneError;
 
 /// For every field that receives events, the fields that send them, in the order of the file.
@@ -56,6 +57,7 @@ fn ends(graph: &Graph, slot: Slot) -> Result<Vec<Slot>, SceneError> {
     let mut rest = vec![slot];
     while let Some((node, field)) = rest.pop() {
         if ends.len() + rest.len() > FILE_ROUTES_MAX {
+            let field = as_written(&field);
             return Err(graph.error(node, format!("{field} stands for more than {FILE_ROUTES_MAX} fields")));
         }
         let call = graph.contents(node).and_then(|scope| Some((scope, graph.scopes()[scope].call.as_ref()?)));

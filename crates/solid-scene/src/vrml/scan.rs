@@ -7,8 +7,11 @@
 //! * comments are blank, because `#/*` opens a comment over several lines in the dialect;
 //! * a decimal integer below -2^31 or above 2^31 - 1, in an image above 2^32 - 1, gets a decimal point: it is a legal float, but
 //!   the parser takes an integer by its lowest 32 bits, and one so low as the size of an image makes it panic. Where an integer is
-//!   wanted the parser stops at the point, and [`super::wide`] says why. A hexadecimal one above 32 bits is refused here.
+//!   wanted the parser stops at the point, and [`super::wide`] says why. A hexadecimal one above 32 bits is refused here;
+//! * a name that begins with a word of the language, as USER and ISLAND do, has a [`MARK`] before that, as the parser takes the word and
+//!   goes on in the middle of the name. Where such a word follows a number without space it is refused.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -17,11 +20,91 @@ use super::limits::*;
 use crate::error::SceneError;
 use crate::text::quoted;
 
+/// The types of nodes of the standard (ISO/IEC 14772-1, 6).
+const STANDARD_NODES: [&str; 54] = [
+    "Anchor",
+    "Appearance",
+    "AudioClip",
+    "Background",
+    "Billboard",
+    "Box",
+    "Collision",
+    "Color",
+    "ColorInterpolator",
+    "Cone",
+    "Coordinate",
+    "CoordinateInterpolator",
+    "Cylinder",
+    "CylinderSensor",
+    "DirectionalLight",
+    "ElevationGrid",
+    "Extrusion",
+    "Fog",
+    "FontStyle",
+    "Group",
+    "ImageTexture",
+    "IndexedFaceSet",
+    "IndexedLineSet",
+    "Inline",
+    "LOD",
+    "Material",
+    "MovieTexture",
+    "NavigationInfo",
+    "Normal",
+    "NormalInterpolator",
+    "OrientationInterpolator",
+    "PixelTexture",
+    "PlaneSensor",
+    "PointLight",
+    "PointSet",
+    "PositionInterpolator",
+    "ProximitySensor",
+    "ScalarInterpolator",
+    "Script",
+    "Shape",
+    "Sound",
+    "Sphere",
+    "SphereSensor",
+    "SpotLight",
+    "Switch",
+    "Text",
+    "TextureCoordinate",
+    "TextureTransform",
+    "TimeSensor",
+    "TouchSensor",
+    "Transform",
+    "Viewpoint",
+    "VisibilitySensor",
+    "WorldInfo",
+];
+
 /// What an integer may be.
 const INTEGERS: RangeInclusive<f64> = i32::MIN as f64..=i32::MAX as f64;
 
 /// What an integer of an image may be, of which a pixel has no sign.
 const PIXELS: RangeInclusive<f64> = i32::MIN as f64..=u32::MAX as f64;
+
+/// Stands before what begins with a word of the language but is a name. No text has it.
+pub(super) const MARK: char = '\u{ffff}';
+
+/// Words of the language with which names may begin.
+const KEYWORDS: [&str; 12] =
+    ["DEF", "USE", "NULL", "null", "IS", "ROUTE", "PROTO", "EXTERNPROTO", "TRUE", "true", "FALSE", "false"];
+
+/// Words of the parser's dialect alone, which are names as a whole, too.
+const WORDS_OF_DIALECT: [&str; 2] = ["IMPORT", "EXPORT"];
+
+/// With what a declaration begins; the parser wants no space after it.
+const DECLARATIONS: [&str; 8] = [
+    "field",
+    "eventIn",
+    "eventOut",
+    "exposedField",
+    "initializeOnly",
+    "inputOnly",
+    "outputOnly",
+    "inputOutput",
+];
 
 /// How many digits of a hexadecimal integer 32 bits hold.
 const HEX_DIGITS_MAX: usize = 8;
@@ -112,7 +195,10 @@ struct Scanner<'a> {
     declarations: usize,
     repeats: usize,
     proto_repeats: usize,
-    lookalikes: usize,
+    /// The names that DEF gives to nodes of other types than those of the standard, until USE has them.
+    others: HashSet<&'a str>,
+    /// How many of these USE has had.
+    others_used: usize,
     expect: Expect,
 }
 
@@ -140,7 +226,8 @@ impl<'a> Scanner<'a> {
             declarations: 0,
             repeats: 0,
             proto_repeats: 0,
-            lookalikes: 0,
+            others: HashSet::new(),
+            others_used: 0,
             expect: Expect::Anything,
         }
     }
@@ -164,7 +251,7 @@ impl<'a> Scanner<'a> {
                     "the file ends where '{close}' was expected, for the bracket of line {line}"
                 ))
             }
-            None => Ok(()),
+            None => self.check_counts(),
         }
     }
 
@@ -199,8 +286,9 @@ impl<'a> Scanner<'a> {
         match opened {
             Opened::Body(_) => self.names.push(HashSet::new()),
             Opened::Node => {
-                let name = self.def.take().map(Box::from);
-                self.nodes.push(Mark { line: self.line, name });
+                let name = self.def.take();
+                self.others.extend(name.filter(|_| !STANDARD_NODES.contains(&self.field)));
+                self.nodes.push(Mark { line: self.line, name: name.map(Box::from) });
             }
             Opened::List | Opened::Interface(_) => {}
         }
@@ -269,7 +357,8 @@ impl<'a> Scanner<'a> {
             return self.number(word);
         }
         self.name(word)?;
-        self.copy(self.at + word.len());
+        self.out.push_str(&handed_on(word));
+        self.at += word.len();
         Ok(())
     }
 
@@ -280,6 +369,11 @@ impl<'a> Scanner<'a> {
         let is_fraction = self.out.ends_with('.');
         if !is_fraction && has_wide_hex(word) {
             let message = format!("{} has more than 32 bits; expected at most 0xFFFFFFFF", quoted(word));
+            return self.fail(message);
+        }
+        if let Some(keyword) = keyword_within(word) {
+            let message =
+                format!("{} holds {keyword}; expected a number, or space before that", quoted(word));
             return self.fail(message);
         }
         let range = if self.images.contains(self.field) { PIXELS } else { INTEGERS };
@@ -347,24 +441,19 @@ impl<'a> Scanner<'a> {
                 self.expect = Expect::OtherName;
                 self.copied += self.body_interface();
             }
-            "field" | "eventIn" | "eventOut" | "exposedField" | "initializeOnly" | "inputOnly"
-            | "outputOnly" | "inputOutput" => self.declarations += 1,
-            _ => {
-                self.copied += self.interfaces.get(word).copied().unwrap_or(0);
-                self.lookalikes += usize::from(word.starts_with("USE"));
-            }
+            _ if DECLARATIONS.iter().any(|begin| word.starts_with(begin)) => self.declarations += 1,
+            _ => self.copied += self.interfaces.get(word).copied().unwrap_or(0),
         }
         self.check_counts()
     }
 
     /// A node can be used after its DEF, in the same file or PROTO (ISO/IEC 14772-1, 4.4.4 and 4.6.2).
     fn check_use(&mut self, word: &str) -> Result<(), SceneError> {
-        match self.names.last().is_some_and(|names| names.contains(word)) {
-            true => Ok(()),
-            false => {
-                self.fail(format!("USE {}: expected the name of a DEF that stands before", quoted(word)))
-            }
+        if !self.names.last().is_some_and(|names| names.contains(word)) {
+            return self.fail(format!("USE {}: expected the name of a DEF that stands before", quoted(word)));
         }
+        self.others_used += usize::from(self.others.remove(word));
+        self.check_counts()
     }
 
     /// Counts a name that PROTO or EXTERNPROTO gives again, if in another PROTO.
@@ -380,7 +469,11 @@ impl<'a> Scanner<'a> {
             (self.repeats, FILE_REPEATS_MAX, "names given again by DEF"),
             (self.proto_repeats, FILE_REPEATS_MAX, "names given again by PROTO and EXTERNPROTO"),
             (self.copied, COPIED_BYTES_MAX, "bytes of PROTO interfaces, counted for each instance"),
-            (self.lookalikes, USE_LOOKALIKES_MAX, "names that begin with USE"),
+            (
+                self.others_used.saturating_mul(self.nodes.len()),
+                OTHERS_USED_MAX,
+                "pairs of any node and one that USE names and that is of no type of VRML97",
+            ),
         ];
         match counts.iter().find(|(count, most, _)| count > most) {
             Some((_, most, what)) => self.fail(format!("the file has more than {most} {what}")),
@@ -432,6 +525,30 @@ pub(super) fn word(text: &str) -> &str {
 pub(super) fn is_word(byte: u8) -> bool {
     !(byte <= 0x20
         || matches!(byte, b'"' | b'#' | b'\'' | b',' | b'.' | b'[' | b'\\' | b']' | b'{' | b'}' | 0x7f))
+}
+
+/// A name as the parser reads it: with a [`MARK`] where it begins with a word of the language, and `set_` before that begins no other name.
+pub(super) fn handed_on(name: &str) -> Cow<'_, str> {
+    let begin = if name.starts_with("set_") { "set_".len() } else { 0 };
+    let (set, field) = name.split_at(begin);
+    let goes_on = |word: &&str| field.len() > word.len() && field.starts_with(*word);
+    match KEYWORDS.iter().any(goes_on) || WORDS_OF_DIALECT.iter().any(|word| field.starts_with(word)) {
+        true => format!("{set}{MARK}{field}").into(),
+        false => name.into(),
+    }
+}
+
+/// What the parser or the graph say of names, with these as the file has them.
+pub(super) fn as_written(text: &str) -> String {
+    text.replace(MARK, "")
+}
+
+/// A word of the language that stands in a number, as the parser ends that before it.
+fn keyword_within(number: &str) -> Option<&'static str> {
+    let begins_hex = number.starts_with("0x") || number.starts_with("0X");
+    let rest =
+        if begins_hex { number[2..].trim_start_matches(|c: char| c.is_ascii_hexdigit()) } else { number };
+    KEYWORDS.into_iter().find(|keyword| rest.contains(keyword))
 }
 
 /// Whether a hexadecimal integer that 32 bits do not hold begins here.

@@ -6,6 +6,7 @@ use super::graph::{Graph, Node, Slot};
 use super::interpolator::{Event, Interpolator, is_interpolator};
 use super::limits::{CHAIN_MAX, ELEMENTS_MAX};
 use super::route::Routes;
+use super::scan::as_written;
 use super::sensor::Sensor;
 use crate::error::SceneError;
 use crate::text::quoted;
@@ -183,7 +184,7 @@ impl<'a> SignalBuilder<'a> {
             }
             _ => {
                 let plain = if type_name.is_empty() { "a node that is not known" } else { type_name };
-                warnings.add(format!("events {} of {plain} are not followed", quoted(event)));
+                warnings.add(format!("events {} of {plain} are not followed", quoted(&as_written(event))));
                 Ok(None)
             }
         }

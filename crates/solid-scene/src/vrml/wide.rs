@@ -3,7 +3,7 @@
 //! The scan gives them a point, at which the parser stops where it wants an integer. It tells the line, but not at which of the
 //! numbers there it stopped: this asks it once more, with a line for each of them.
 
-use super::scan::{Scanned, is_word};
+use super::scan::{Scanned, as_written, is_word};
 use crate::text::quoted;
 
 /// What to say of the integer at which the parser stopped in a line of a text, counted from 1; `None` where it stopped at something
@@ -51,5 +51,5 @@ fn says(text: &str, begin: usize) -> String {
         true => format!("at least {}", i32::MIN),
         false => format!("at most {}", i32::MAX),
     };
-    format!("{} holds {}; expected an integer of {limit}", quoted(field), quoted(number))
+    format!("{} holds {}; expected an integer of {limit}", quoted(&as_written(field)), quoted(number))
 }

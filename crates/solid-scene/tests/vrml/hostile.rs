@@ -201,9 +201,25 @@ fn what_would_be_slow_to_parse_is_an_error() {
         refused(&proto.repeat(30_000), "more than 20000 names given again by PROTO and EXTERNPROTO");
     }
     refused(&format!("Script {{ {} }}", "field SFBool a TRUE ".repeat(30_000)), "more than 20000 declared");
-    let lookalikes: String = (0..2_000).map(|i| format!("USEa{i} ")).collect();
-    refused(&lookalikes, "names that begin with USE");
+    refused(&format!("Script {{ {} }}", "fieldSFBool a TRUE ".repeat(30_000)), "more than 20000 declared");
+    let others: String = (0..20_000).map(|i| format!("DEF a{i} Other {{}} USE a{i} ")).collect();
+    refused(&others, "any node and one that USE names");
     assert!(load(&"#/* \n".repeat(300_000)).is_ok());
+}
+
+/// A number ends before them, as the parser has it, so that they would be counted nowhere.
+#[test]
+fn words_of_the_language_after_a_number_are_an_error() {
+    let uses: String = (0..100_000).map(|i| format!("1USEa{i} ")).collect();
+    refused(
+        &format!("Group {{ a [ {uses} ] }}"),
+        "1USEa0 holds USE; expected a number, or space before that",
+    );
+    refused("Transform { scale 1 1 .5ROUTE A.b TO C.d }", "5ROUTE holds ROUTE");
+    assert!(
+        load("Shape { appearance Appearance { texture PixelTexture { image 1 2 3 0xDEF 0XdeFDEF } } }")
+            .is_ok()
+    );
 }
 
 /// The disk is asked once for each URL, and there are not too many of them, however many instances have them.

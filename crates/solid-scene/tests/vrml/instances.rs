@@ -93,6 +93,47 @@ fn a_proto_can_be_a_geometry_and_a_coordinate() {
     assert_eq!((x(0), x(1)), (Some(1.0), Some(5.0)));
 }
 
+/// Law: a name is one as a whole, whatever it begins with.
+#[test]
+fn names_may_begin_with_words_of_the_language() {
+    let words = [
+        "USE",
+        "DEF",
+        "NULL",
+        "null",
+        "IS",
+        "ROUTE",
+        "PROTO",
+        "EXTERNPROTO",
+        "TRUE",
+        "false",
+        "IMPORT",
+        "EXPORT",
+    ];
+    for name in words.map(|word| format!("{word}R_1")).iter().map(String::as_str).chain(["IMPORT", "EXPORT"])
+    {
+        let body = format!(
+            "PROTO {name} [ exposedField SFVec3f {name} 1 0 0 ] {{
+               Transform {{ translation IS {name} children Shape {{ geometry Box {{}} }} }} }}
+             Group {{ children {name} {{}} }} DEF {name} {name} {{ {name} 2 0 0 }}
+             Group {{ children [ USE {name} ] }}
+             DEF Clock TimeSensor {{}} DEF I PositionInterpolator {{ key 0 keyValue 3 0 0 }}
+             ROUTE Clock.fraction_changed TO I.set_fraction ROUTE I.value_changed TO {name}.set_{name}"
+        );
+        let scene = scene(&body);
+        assert_eq!(names(&scene), ["box", name, &format!("{name}#2")]);
+        let x: Vec<f64> = pose(&scene, 0.0).objects.iter().map(|o| o.placement.translation.x).collect();
+        assert_eq!(x, [1.0, 3.0, 3.0], "{name}");
+        assert_eq!(warnings(&scene), [""; 0], "{name}");
+    }
+    let folder = Folder::new();
+    folder.write("cars.wrl", "PROTO CAR [] {} PROTO USED_CAR [] { Shape { geometry Box {} } }");
+    let file = folder.write("main.wrl", "EXTERNPROTO USED_CAR [] \"cars.wrl#USED_CAR\" USED_CAR {}");
+    assert_eq!(load_file(&file).expect("it is there").objects().len(), 1);
+    let (line, message) = error("PROTO USER [ field SFInt32 ISO 1 ] {}\nUSER { ISO x }");
+    assert_eq!((line, message.as_str()), (Some(3), "expected a value for the field 'ISO'"));
+}
+
 #[test]
 fn a_proto_cannot_hold_itself() {
     let scene = scene("PROTO P [] { Group { children [ Shape { geometry Box {} } P {} ] } } P {}");
