@@ -1,5 +1,7 @@
 //! What the readers of text formats share: where a text begins, lines with their numbers, and numbers.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 use solid3d::convex::MAGNITUDE_MAX;
 
@@ -8,6 +10,21 @@ use crate::fault::{Fault, Result};
 /// A text without the byte order mark that some editors write before it.
 pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+/// The bytes of a text, which may have a byte order mark before it, as characters. What is no UTF-8 is taken for Latin-1, as old programs wrote it, so that
+/// different names stay different.
+pub(crate) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+    let bytes = without_mark(bytes);
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        return text.into();
+    }
+    let mut text = String::with_capacity(bytes.len());
+    for chunk in bytes.utf8_chunks() {
+        text.push_str(chunk.valid());
+        text.extend(chunk.invalid().iter().map(|&byte| char::from(byte)));
+    }
+    text.into()
 }
 
 /// The lines of a text with their numbers, from 1; a line ends with LF, CR or both.
@@ -83,6 +100,11 @@ mod tests {
     fn a_text_may_follow_a_byte_order_mark() {
         assert_eq!(without_mark(b"\xef\xbb\xbfv 1 2 3"), b"v 1 2 3");
         assert_eq!(without_mark(b"v 1 2 3"), b"v 1 2 3");
+    }
+
+    #[test]
+    fn what_is_no_utf_8_is_latin_1() {
+        assert_eq!(decoded(b"\xef\xbb\xbfg T\xfcr \xc3\xa9 \xe9\xe8"), "g T\u{fc}r \u{e9} \u{e9}\u{e8}");
     }
 
     #[test]

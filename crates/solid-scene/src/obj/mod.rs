@@ -17,7 +17,7 @@ use crate::load::LoadOptions;
 use crate::part::{ObjectCount, Part};
 use crate::polygon::folded_warning;
 use crate::soup::still_part;
-use crate::text::{lines, without_mark};
+use crate::text::{decoded, lines};
 
 /// Reads an OBJ file: one object, named by the file, or with [`LoadOptions::split`] one for each group or object that
 /// has primitives, named by it.
@@ -27,7 +27,7 @@ pub(crate) fn load(path: &Path, options: &LoadOptions) -> std::result::Result<Pa
 }
 
 fn parse(bytes: &[u8], stem: &str, split: bool) -> Result<Part> {
-    let text = String::from_utf8_lossy(without_mark(bytes));
+    let text = decoded(bytes);
     parse_text(&text, stem, split).map_err(|fault| not_text(&text).unwrap_or(fault))
 }
 
@@ -120,6 +120,14 @@ mod tests {
         let groups: String = (0..=1_000_000).map(|i| format!("g {i}\np 1\n")).collect();
         let fault = parse(format!("v 0 0 0\n{groups}").as_bytes(), "stem", true).unwrap_err();
         assert_eq!(fault.message(), "the file makes more than 1000000 objects");
+    }
+
+    #[test]
+    fn names_may_be_of_latin_1() {
+        let text = b"v 0 0 0\ng T\xfcr\np 1\ng T\xf6r\np 1 1\n";
+        let part = parse(text, "stem", true).unwrap();
+        let seen: Vec<_> = part.objects.iter().map(|o| o.name.as_str()).collect();
+        assert_eq!(seen, ["T\u{fc}r", "T\u{f6}r"]);
     }
 
     #[test]

@@ -5,12 +5,12 @@ use std::path::Path;
 use super::limits::FILE_BYTES_MAX;
 use crate::error::SceneError;
 use crate::file;
-use crate::text::without_mark;
+use crate::text::decoded;
 
 /// The first line of every VRML97 file begins with this.
 const HEADER: &str = "#VRML V2.0 utf8";
 
-/// Reads a file of VRML97. Bytes that are not UTF-8 (old exporters wrote Latin-1 into comments and names) become U+FFFD.
+/// Reads a file of VRML97. Bytes that are not UTF-8 are Latin-1, which old exporters wrote into comments and names.
 pub(super) fn read(path: &Path) -> Result<String, SceneError> {
     let length = file::metadata(path)?.len();
     if length > FILE_BYTES_MAX {
@@ -26,7 +26,7 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<String, SceneError> {
     if bytes.starts_with(&[0x1f, 0x8b]) {
         return fail("is compressed with gzip; expected plain text, so decompress it first (gzip -dc)");
     }
-    let mut text = String::from_utf8_lossy(without_mark(bytes)).into_owned();
+    let mut text = decoded(bytes).into_owned();
     if text.starts_with("#VRML V1.0") {
         return fail("is VRML 1.0; expected VRML97, whose first line is \"#VRML V2.0 utf8\"");
     }

@@ -25,6 +25,15 @@ fn a_name_given_twice_means_the_latest() {
     assert_eq!(sizes(scene.objects()[2].shape()), [2.0, 2.0, 2.0]);
 }
 
+/// Of Latin-1, as old exporters wrote them.
+#[test]
+fn names_that_are_no_utf_8_are_told_apart() {
+    let body = b"#VRML V2.0 utf8\nDEF T\xfcr Shape { geometry Box {} } DEF T\xf6r Shape { geometry Sphere {} } USE T\xfcr";
+    let scene = load_file(&Folder::new().write_bytes("a.wrl", body)).expect("it loads");
+    assert_eq!(names(&scene), ["T\u{fc}r", "T\u{f6}r", "T\u{fc}r#2"]);
+    assert_eq!(scene.objects()[2].shape().kind(), scene.objects()[0].shape().kind());
+}
+
 #[test]
 fn a_use_before_its_def_is_an_error() {
     let (line, message) = error("Shape {\n geometry USE B }\nShape { geometry DEF B Box {} }");
