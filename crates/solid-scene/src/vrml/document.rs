@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use vrml97::fields::{FieldValue, access};
-use vrml97::scene::{FieldLoc, FieldRef, NodeKind, ProtoRef, ROOT, Scene};
+use vrml97::scene::{FieldLoc, FieldRef, Node, NodeKind, ProtoRef, ROOT, Scene};
 
 use super::scan::{MARK, Mark, as_written, handed_on, scan};
 use super::{vectors, wide};
@@ -64,8 +64,8 @@ pub(super) struct Document {
     scene: Scene,
     /// How many nodes are written in it.
     pub written: usize,
-    /// The line and name of each node; empty when they can't be told.
-    marks: Vec<Mark>,
+    /// The line and name of each node that is written; empty when they can't be told.
+    marks: Vec<Option<Mark>>,
     /// The fields that are connected to a name of a PROTO's interface.
     connected: HashMap<(Proto, String), Vec<(Syntax, String)>>,
 }
@@ -91,7 +91,7 @@ impl Document {
             warn(with_words_cut(&warning_in_our_words(&as_written(&warning))));
         }
         vectors::uneven(&scanned.text, warn);
-        let marks = if scanned.nodes.len() == scene.nodes.len() { scanned.nodes } else { Vec::new() };
+        let marks = marks(scanned.nodes, &scene);
         let connected = connections(&scene);
         Ok(Document { file: file.to_owned(), scene, written, marks, connected })
     }
@@ -133,14 +133,14 @@ impl Document {
     /// The name that DEF gives.
     pub fn name(&self, node: Syntax) -> Option<&str> {
         match self.marks.get(node as usize) {
-            Some(mark) => mark.name.as_deref(),
+            Some(mark) => mark.as_ref()?.name.as_deref(),
             None => Some(self.scene.node(node).name.trim_start_matches(MARK)).filter(|name| !name.is_empty()),
         }
     }
 
     /// The line on which the node begins.
     pub fn line(&self, node: Syntax) -> Option<usize> {
-        self.marks.get(node as usize).map(|mark| mark.line)
+        Some(self.marks.get(node as usize)?.as_ref()?.line)
     }
 
     /// A field of a node, by its name in the standard.
@@ -202,6 +202,16 @@ impl Document {
     }
 }
 
+/// The mark of each node of a scene, of those that the scan found; none of one that stands where USE names what is not known.
+fn marks(found: Vec<Mark>, scene: &Scene) -> Vec<Option<Mark>> {
+    let is_written = |node: &Node| !matches!(node.kind, NodeKind::Placeholder);
+    if scene.nodes.iter().filter(|node| is_written(node)).count() != found.len() {
+        return Vec::new();
+    }
+    let mut found = found.into_iter();
+    scene.nodes.iter().map(|node| if is_written(node) { found.next() } else { None }).collect()
+}
+
 /// Which fields are connected to which names of interfaces.
 fn connections(scene: &Scene) -> HashMap<(Proto, String), Vec<(Syntax, String)>> {
     let mut connected: HashMap<_, Vec<_>> = HashMap::new();
@@ -231,6 +241,13 @@ fn in_our_words(message: &str) -> String {
     match message {
         "Unknown statement" => "expected a node, DEF, USE, PROTO or ROUTE".into(),
         "Expected ']'" => "expected one more value or ']'".into(),
+        "No name given after DEF" => "expected a name after DEF".into(),
+        "No name given after USE" => "expected a name after USE".into(),
+        "No name give after IS statement" => "expected a name after IS".into(),
+        "Invalid PROTO definition name" => "expected a name after PROTO".into(),
+        "Invalid EXTERNPROTO definition name" => "expected a name after EXTERNPROTO".into(),
+        "IS statement outside PROTO definition" => "IS stands outside of a PROTO; expected a value".into(),
+        "Invalid color name" => "expected a colour of three numbers".into(),
         _ => message.replacen("Expected", "expected", 1),
     }
 }
@@ -254,8 +271,21 @@ fn warning_in_our_words(warning: &str) -> String {
     let rest = warning.strip_prefix("Parser error at ").unwrap_or(warning);
     let rest = rest.split(". You probably have insufficient").next().unwrap_or(rest);
     let warning = rest.replacen(". Error: ", ": ", 1).trim_end_matches('.').to_owned();
+    if let Some(name) = warning.strip_prefix("Parser: Named or imported node ") {
+        let name = name.strip_suffix(" not found").unwrap_or(name);
+        return format!("USE {name}: the node of that name is not known; passed over");
+    }
     let Some((place, what)) = warning.split_once(": ") else { return warning };
-    let what = if let Some(name) = what.strip_prefix("Unknown node type or proto ") {
+    let what = if let Some((name, _)) =
+        what.strip_prefix("No such event or field ").and_then(|rest| rest.split_once(" inside PROTO"))
+    {
+        format!("{name} is no field or event of the PROTO around; the IS is passed over")
+    } else if let Some((access, field)) =
+        what.strip_prefix("Couldn't assign value to ").and_then(|rest| rest.split_once(" field "))
+    {
+        let event = if access == "outputOnly" { "an eventOut" } else { "an eventIn" };
+        format!("{field} is {event}, which has no value; passed over")
+    } else if let Some(name) = what.strip_prefix("Unknown node type or proto ") {
         format!("{name} is no node of VRML97, and no PROTO before; passed over")
     } else if let Some(name) = what.strip_prefix("Unknown named or imported node ") {
         format!("no DEF before gives the name {name}; the ROUTE is passed over")
@@ -315,6 +345,55 @@ mod tests {
     }
 
     #[test]
+    fn what_is_missing_is_told() {
+        let message = |body: &str| parse(body).unwrap_err().to_string();
+        for word in ["DEF", "USE", "PROTO", "EXTERNPROTO"] {
+            assert_eq!(message(&format!("\n{word} 1a")), format!("a.wrl:3: expected a name after {word}"));
+        }
+        assert_eq!(
+            message("PROTO P [ field SFVec3f s 1 1 1 ] { Box { size IS 1 } }"),
+            "a.wrl:2: expected a name after IS"
+        );
+        assert_eq!(message("Box { size IS s }"), "a.wrl:2: IS stands outside of a PROTO; expected a value");
+        assert_eq!(
+            message("Material { diffuseColor 1 }"),
+            "a.wrl:2: expected a value for the field 'diffuseColor'"
+        );
+        assert_eq!(
+            message("Material { diffuseColor nosuch }"),
+            "a.wrl:2: expected a colour of three numbers"
+        );
+    }
+
+    #[test]
+    fn warnings_say_what_becomes_of_it() {
+        let warning = |body: &str| {
+            let mut warnings = Vec::new();
+            let text = format!("#VRML V2.0 utf8\n{body}");
+            Document::parse(Path::new("a.wrl"), &text, 0, |warning| warnings.push(warning)).unwrap();
+            warnings.pop().unwrap()
+        };
+        for (body, expected) in [
+            (
+                "PROTO P [] { Box { size IS s } }",
+                "line 2: 's' is no field or event of the PROTO around; the IS is passed over",
+            ),
+            (
+                "PROTO P [] { Script { field SFBool a IS s } }",
+                "line 2: 's' is no field or event of the PROTO around; the IS is passed over",
+            ),
+            (
+                "\nGroup { addChildren Box {} }",
+                "line 3: 'addChildren' is an eventIn, which has no value; passed over",
+            ),
+            ("TimeSensor { time 1 }", "line 2: 'time' is an eventOut, which has no value; passed over"),
+            ("DEF X Other {} USE X", "USE 'X': the node of that name is not known; passed over"),
+        ] {
+            assert_eq!(warning(body), expected);
+        }
+    }
+
+    #[test]
     fn integers_of_more_than_32_bits_are_told_as_written() {
         let message = |body: &str| parse(body).unwrap_err().to_string();
         let most = "expected an integer of at most 2147483647";
@@ -351,6 +430,9 @@ mod tests {
         let lines: Vec<_> = (0..3).map(|node| document.line(node)).collect();
         assert_eq!(lines, [Some(2), Some(4), Some(5)]);
         assert_eq!(document.describe(2), "Shape S");
+        // What USE has of a node that is not known stands between.
+        let document = parse("DEF X Other {} DEF A Group { children [ USE X\nDEF A Shape {} ] }").unwrap();
+        assert_eq!((document.line(3), document.describe(3)), (Some(3), "Shape A".into()));
     }
 
     #[test]
