@@ -20,6 +20,10 @@ pub(super) const FILE_REPEATS_MAX: usize = 20_000;
 /// same PROTO or Script.
 pub(super) const FILE_DECLARATIONS_MAX: usize = 20_000;
 
+/// Fields and events declared in one PROTO or Script: for each field of an instance that is given a value, or asked for by an IS, all are
+/// looked through. Of 20,000 a file of half a megabyte took 80 seconds.
+pub(super) const DECLARATIONS_MAX: usize = 2_000;
+
 /// Bytes of PROTO interface that the parser copies: once for each instance, and once for each IS. In its memory they are
 /// up to 15 times as many.
 pub(super) const COPIED_BYTES_MAX: usize = 1 << 26;

@@ -147,6 +147,15 @@ enum Opened {
     Body(usize),
 }
 
+/// A bracket that is open.
+#[derive(Clone, Copy, Debug)]
+struct Bracket {
+    opened: Opened,
+    line: usize,
+    /// Fields and events declared in it, not in those that it holds.
+    declarations: usize,
+}
+
 /// What the next name is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Expect {
@@ -182,7 +191,7 @@ struct Scanner<'a> {
     images: HashSet<&'a str>,
     /// The name of a DEF whose node has not begun.
     def: Option<&'a str>,
-    brackets: Vec<(Opened, usize)>,
+    brackets: Vec<Bracket>,
     /// The names that DEF has given, one set for the file and one for each PROTO body around.
     names: Vec<HashSet<&'a str>>,
     declared: Vec<Declared<'a>>,
@@ -245,7 +254,7 @@ impl<'a> Scanner<'a> {
             }
         }
         match self.brackets.last() {
-            Some(&(_, line)) => {
+            Some(&Bracket { line, .. }) => {
                 let close = self.closing();
                 self.fail(format!(
                     "the file ends where '{close}' was expected, for the bracket of line {line}"
@@ -296,7 +305,7 @@ impl<'a> Scanner<'a> {
             let which = if self.nodes_before == 0 { "the file has" } else { "with this file there are" };
             return self.fail(format!("{which} more than {WRITTEN_NODES_MAX} nodes"));
         }
-        self.brackets.push((opened, self.line));
+        self.brackets.push(Bracket { opened, line: self.line, declarations: 0 });
         self.expect = Expect::Anything;
         self.copy(self.at + 1);
         Ok(())
@@ -322,7 +331,7 @@ impl<'a> Scanner<'a> {
     fn close(&mut self, byte: u8) -> Result<(), SceneError> {
         let found = byte as char;
         let expected = self.closing();
-        let Some((opened, line)) = self.brackets.pop() else {
+        let Some(Bracket { opened, line, .. }) = self.brackets.pop() else {
             return self.fail(format!("'{found}' closes nothing; expected a node, PROTO or ROUTE"));
         };
         if found != expected {
@@ -346,7 +355,7 @@ impl<'a> Scanner<'a> {
     /// The bracket that closes the innermost open one.
     fn closing(&self) -> char {
         match self.brackets.last() {
-            Some((Opened::List | Opened::Interface(_), _)) => ']',
+            Some(Bracket { opened: Opened::List | Opened::Interface(_), .. }) => ']',
             _ => '}',
         }
     }
@@ -441,7 +450,17 @@ impl<'a> Scanner<'a> {
                 self.expect = Expect::OtherName;
                 self.copied += self.body_interface();
             }
-            _ if DECLARATIONS.iter().any(|begin| word.starts_with(begin)) => self.declarations += 1,
+            _ if DECLARATIONS.iter().any(|begin| word.starts_with(begin)) => {
+                self.declarations += 1;
+                if let Some(bracket) = self.brackets.last_mut() {
+                    bracket.declarations += 1;
+                    if bracket.declarations > DECLARATIONS_MAX {
+                        return self.fail(format!(
+                            "the PROTO or Script has more than {DECLARATIONS_MAX} declared fields and events"
+                        ));
+                    }
+                }
+            }
             _ => self.copied += self.interfaces.get(word).copied().unwrap_or(0),
         }
         self.check_counts()
@@ -483,7 +502,7 @@ impl<'a> Scanner<'a> {
 
     /// The bytes of the interface of the PROTO whose body this is.
     fn body_interface(&self) -> usize {
-        let body = |&(opened, _): &(Opened, usize)| match opened {
+        let body = |bracket: &Bracket| match bracket.opened {
             Opened::Body(interface) => Some(interface),
             _ => None,
         };

@@ -200,8 +200,10 @@ fn what_would_be_slow_to_parse_is_an_error() {
     for proto in ["PROTO P [] {}", "EXTERNPROTO P [] \"\""] {
         refused(&proto.repeat(30_000), "more than 20000 names given again by PROTO and EXTERNPROTO");
     }
-    refused(&format!("Script {{ {} }}", "field SFBool a TRUE ".repeat(30_000)), "more than 20000 declared");
-    refused(&format!("Script {{ {} }}", "fieldSFBool a TRUE ".repeat(30_000)), "more than 20000 declared");
+    refused(&format!("Script {{ {} }}", "field SFBool a TRUE ".repeat(3_000)), "more than 2000 declared");
+    let script = format!("Script {{ {} }}", "eventIn SFBool a ".repeat(1_900));
+    refused(&script.repeat(11), "more than 20000 declared");
+    refused(&format!("Script {{ {} }}", "fieldSFBool a TRUE ".repeat(3_000)), "more than 2000 declared");
     let others: String = (0..20_000).map(|i| format!("DEF a{i} Other {{}} USE a{i} ")).collect();
     refused(&others, "any node and one that USE names");
     assert!(load(&"#/* \n".repeat(300_000)).is_ok());
@@ -268,13 +270,12 @@ fn nodes_of_inlined_files_count_together() {
 /// What the limits let through at most.
 #[test]
 fn what_is_just_within_the_limits_is_read_in_time() {
+    let fields = (0..1_900).map(|i| format!("field SFBool a{i} TRUE ")).collect::<String>();
     let worst = [
         "DEF A Group{}".repeat(20_000) + &"Group{}".repeat(179_000),
         format!("DEF A Transform{{}} {}", "ROUTE A.scale TO A.scale ".repeat(19_000)),
-        format!(
-            "Script {{ {} }}",
-            (0..19_000).map(|i| format!("field SFBool a{i} TRUE ")).collect::<String>()
-        ),
+        format!("Script {{ {} }}", fields).repeat(10),
+        format!("PROTO P [ {} ] {{ Group {{}} }} P {{ {} }}", fields, "a1899 FALSE ".repeat(200_000)),
         (0..19_000).map(|i| format!("DEF A{i} Transform {{}} ")).collect::<String>()
             + &(1..19_000).map(|i| format!("ROUTE A0.scale TO A{i}.scale ")).collect::<String>(),
     ];
