@@ -38,8 +38,27 @@ pub(super) fn read(header: &Header, mut payload: Payload) -> Result<(Soup, Vec<S
             strip_triangles(&corners("tristrips", place, strip, soup.vertices.len())?, &mut soup.triangles);
         }
     }
+    if soup.is_empty() {
+        header.elements.iter().try_for_each(check_has_corners)?;
+    }
     let warnings = short_warning(short).into_iter().chain(folded_warning(folded)).collect();
     Ok((soup, warnings))
+}
+
+/// Refuses faces or strips whose corners go by another name.
+fn check_has_corners(element: &Element) -> Result<()> {
+    let is_of_corners = matches!(element.name.as_str(), "face" | "tristrips") && element.count > 0;
+    if !is_of_corners || corner_list(element).is_some() {
+        return Ok(());
+    }
+    let [indices, index] = CORNERS;
+    Err(Fault::at(element.line, format!("`{}` has no list `{indices}` or `{index}`", element.name)))
+}
+
+/// Which property of an element is the list of its corners.
+fn corner_list(element: &Element) -> Option<usize> {
+    let is_list = |name: &str| element.properties.iter().position(|p| p.length.is_some() && p.name == name);
+    CORNERS.into_iter().find_map(is_list)
 }
 
 /// Every second triangle of a strip is turned round, so that all face the same way.
@@ -136,9 +155,7 @@ struct Lists {
 
 impl Lists {
     fn read(&mut self, element: &Element, payload: &mut Payload) -> Result<()> {
-        let is_list =
-            |name: &str| element.properties.iter().position(|p| p.length.is_some() && p.name == name);
-        let corners = CORNERS.into_iter().find_map(is_list);
+        let corners = corner_list(element);
         for number in 0..element.count {
             for (place, property) in element.properties.iter().enumerate() {
                 let keep = corners == Some(place);

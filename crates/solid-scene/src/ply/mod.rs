@@ -244,6 +244,11 @@ mod tests {
                 Some(11),
                 "the file ends in `face` 0: expected 9 numbers of `vertex_indices`",
             ),
+            (
+                header(xyz, &format!("{}0 0 0\n3 0 0 0\n", face.replace("indices", "indexes"))),
+                Some(7),
+                "`face` has no list `vertex_indices` or `vertex_index`",
+            ),
             // Each of the two has room, but not both.
             (
                 header(xyz, &format!("{}0 0 0\n", face.replace("face 1", "face 2"))),

@@ -28,7 +28,8 @@ fn parse(bytes: &[u8], stem: &str) -> Result<Part> {
     let (triangles, warning) = match is_text(bytes) {
         true => (ascii::read(bytes)?, None),
         false => {
-            let triangles = binary::read(bytes).map_err(|fault| zero_in_text(bytes).unwrap_or(fault))?;
+            let told = |fault| zero_in_text(bytes).or_else(|| other_text(bytes)).unwrap_or(fault);
+            let triangles = binary::read(bytes).map_err(told)?;
             (triangles, binary::left_over(bytes))
         }
     };
@@ -46,6 +47,15 @@ fn zero_in_text(bytes: &[u8]) -> Option<Fault> {
     let line = 1 + bytes[..zero].iter().filter(|&&byte| byte == b'\n').count();
     let expected = "expected text, or a binary file as long as its header tells";
     Some(Fault::at(line, format!("there is a zero byte, which no text has; {expected}")))
+}
+
+/// What to say of a text that begins otherwise, as a page of the web does, where its letters make no count of triangles.
+fn other_text(bytes: &[u8]) -> Option<Fault> {
+    let is_of_text = |c: char| !c.is_control() || matches!(c, '\t' | '\n' | '\r');
+    std::str::from_utf8(bytes)
+        .ok()
+        .filter(|text| !begins_as_text(bytes) && !bytes.is_empty() && text.chars().all(is_of_text))?;
+    Some(Fault::at(1, "the file is text, but does not begin with \"solid\"; expected an STL file"))
 }
 
 fn begins_as_text(bytes: &[u8]) -> bool {
@@ -174,9 +184,19 @@ mod tests {
         let message = "the header tells 1000000000 triangles, a file of 50000000084 bytes; the file has 134";
         assert_eq!(refused(&binary(b"\0", 1_000_000_000, 1)), (None, message.to_owned()));
         assert_eq!(
-            refused(b"short").1,
+            refused(b"\x01hort").1,
             "neither text that begins with \"solid\" nor the 84 bytes of a binary header"
         );
+    }
+
+    #[test]
+    fn other_texts_are_told() {
+        for text in
+            ["short\n", &format!("<!DOCTYPE html>\r\n{}", "\u{e9} ".repeat(100)), &format!("# {TEXT}")]
+        {
+            let message = "the file is text, but does not begin with \"solid\"; expected an STL file";
+            assert_eq!(refused(text.as_bytes()), (Some(1), message.to_owned()), "{text}");
+        }
     }
 
     #[test]
