@@ -152,14 +152,19 @@ fn chunks(bytes: &[u8]) -> Result<Chunks<'_>> {
     Ok((glb.json, glb.bin.map(Cow::into_owned)))
 }
 
-/// What the crate takes for granted of a `.glb`, or has no good words for: that its length is that of its header and more, and that
-/// the file has as much.
+/// What the crate takes for granted of a `.glb`, or has no good words for: that it is of version 2, that its length is that
+/// of its header and more, and that the file has as much.
 fn check_container(bytes: &[u8]) -> Result<()> {
-    let length = bytes.get(8..12).and_then(<[u8]>::first_chunk).map(|length| u32::from_le_bytes(*length));
+    let number = |at: usize| bytes.get(at..)?.first_chunk().map(|number| u32::from_le_bytes(*number));
+    let (version, length) = (number(4), number(8));
     let present = bytes.len();
     match length {
         _ if !bytes.starts_with(b"glTF") => Ok(()),
         None => Err(format!("the file ends in its header, of 12 bytes; it has {present}").into()),
+        _ if version != Some(2) => {
+            let version = version.unwrap_or_default();
+            Err(format!("the file is of glTF {version}, in its binary form; expected 2").into())
+        }
         Some(length) if length < 12 => {
             Err(format!("the header tells a length of {length} bytes; it has 12 itself").into())
         }

@@ -50,3 +50,11 @@ fn a_binary_file_that_was_cut_off_says_so() {
         );
     }
 }
+
+#[test]
+fn a_binary_file_of_another_version_says_so() {
+    let mut bytes = binary(&everything());
+    bytes[4] = 1;
+    let message = parse(&bytes, Path::new(""), None).map(|_| ()).unwrap_err().message().to_owned();
+    assert_eq!(message, "the file is of glTF 1, in its binary form; expected 2");
+}
