@@ -3,9 +3,9 @@
 
 mod common;
 
-use common::at;
+use common::{at, cube, torus};
 use glam::{DAffine3, DVec3};
-use solid3d::{Contact, ObjectId, Response, Shape, World, WorldOptions, glam};
+use solid3d::{Contact, ObjectId, Response, Shape, World, WorldOptions, glam, query};
 
 /// A square of four corners, of two triangles that meet along one diagonal or the other.
 fn square(other_diagonal: bool) -> Shape {
@@ -149,5 +149,47 @@ fn smart_response_tells_the_nearest_of_what_meets() {
         world.set_placement(thing, at(10.0, 0.3, -0.5)).unwrap();
         let (distance, normal) = approach(&mut world);
         assert!((distance - 0.5).abs() < 1e-9 && (normal - DVec3::Z).length() < 1e-9, "{distance} {normal}");
+    }
+}
+
+/// Law: of what was wholly in a solid, smart response tells how deep it was, not how far from the surface.
+#[test]
+fn smart_response_tells_how_deep_in_a_solid_something_was() {
+    let solid = cube(5.0).shape().into_solid().unwrap();
+    let ball = Shape::sphere(0.5).unwrap();
+    for solid_first in [false, true] {
+        let mut world = world_of(Response::Smart);
+        let mut add = |is_solid: bool| {
+            let shape = if is_solid { &solid } else { &ball };
+            world.add(shape, if is_solid { DAffine3::IDENTITY } else { at(4.0, 0.3, 0.2) }).unwrap()
+        };
+        let ids = [add(solid_first), add(!solid_first)];
+        world.proceed();
+        // Out through the surface.
+        world.set_placement(ids[usize::from(solid_first)], at(4.75, 0.3, 0.2)).unwrap();
+        let (distance, normal) = approach(&mut world);
+        let out = if solid_first { DVec3::NEG_X } else { DVec3::X };
+        assert!((distance + 1.5).abs() < 1e-9 && (normal - out).length() < 1e-9, "{distance} {normal}");
+    }
+}
+
+/// Law: of what rests, smart response tells the deepest of all that meets, whichever is the first.
+#[test]
+fn smart_response_tells_the_deepest_of_what_rests() {
+    let ring = torus(24, 12, 0.4).shape();
+    let block = Shape::cuboid([1.0, 0.7, 0.9]).unwrap();
+    for (other, place) in [&block, &ring].into_iter().flat_map(|it| [(it, 0.5), (it, 0.7), (it, 0.9)]) {
+        let here = at(place, 0.1, 0.2) * DAffine3::from_rotation_y(place);
+        let mut things = [(&ring, DAffine3::IDENTITY), (other, here)];
+        for _ in 0..2 {
+            let mut world = world_of(Response::Smart);
+            let [(a, at_a), (b, at_b)] = things;
+            world.add(a, at_a).unwrap();
+            world.add(b, at_b).unwrap();
+            let (distance, normal) = approach(&mut world);
+            let deepest = query::penetration(a, &at_a, b, &at_b).unwrap().unwrap();
+            assert_eq!((distance, normal), (-deepest.depth, deepest.normal), "{} at {place}", other.kind());
+            things.reverse();
+        }
     }
 }
