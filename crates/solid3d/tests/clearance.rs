@@ -354,6 +354,26 @@ fn the_clearance_of_a_pair_outlives_the_default() {
     assert_eq!(world.near().len(), 1);
 }
 
+/// Law: the greatest clearance of an object counts for its box, whichever was set last.
+#[test]
+fn a_lesser_clearance_takes_nothing_from_a_greater_one() {
+    let ball = Shape::sphere(1.0).unwrap();
+    for greater_first in [false, true] {
+        let mut world = World::new();
+        let [far, middle, near] =
+            [6.0, 0.0, -2.5].map(|x| world.add(&ball, DAffine3::from_translation(DVec3::X * x)).unwrap());
+        let mut pairs = [(middle, near, 1.0), (middle, far, 4.5)];
+        if greater_first {
+            pairs.reverse();
+        }
+        for (a, b, clearance) in pairs {
+            world.set_pair_clearance(a, b, clearance).unwrap();
+        }
+        let found: Vec<_> = world.near().iter().map(|near| (near.a, near.b, near.distance)).collect();
+        assert_eq!(found, [(far, middle, 4.0), (middle, near, 0.5)]);
+    }
+}
+
 /// Law: what touches is near at any clearance, and no distance is a negative zero.
 #[test]
 fn what_touches_is_near_without_a_clearance() {
@@ -413,6 +433,13 @@ fn near_costs_what_changed() {
     assert_eq!(near, [(ids[50], 0.0625)]);
     world.set_clearance(0.1875).unwrap();
     assert_eq!(world.near().len(), 97);
+    // Without caching all is looked at each time.
+    world.disable_caching();
+    for _ in 0..2 {
+        let before = world.statistics().examined;
+        assert_eq!(world.near().len(), 97);
+        assert!(world.statistics().examined - before >= 97);
+    }
 }
 
 /// Law: near the limits of coordinates, the boxes still overlap.
@@ -456,6 +483,7 @@ fn a_bound_saves_work() {
     };
     let (far, near) = (work(0.5), work(9.0));
     assert_eq!((far.0, near.0), (0, 1));
+    assert!(near.2 > 0, "the nearest primitives are tested");
     assert_eq!(far.2, 0, "no primitive is tested that is too far");
     assert!(3 * far.1 < near.1, "{far:?} {near:?}");
 }
