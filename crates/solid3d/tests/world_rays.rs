@@ -345,6 +345,14 @@ fn of_objects_in_one_place_the_first_is_told() {
         let object = world.closest_object(&ball, &here, 2.0, |_| true).unwrap().unwrap();
         let told = [cast.object, hit.object, point.object, object.object];
         assert_eq!(told, [objects[0]; 4], "{moved:?}");
+        // Also where each is met at once, or no farther away than at all.
+        let inside = world.closest_point(DVec3::X * 4.5, 0.0, |_| true).unwrap().unwrap();
+        let around = world.closest_object(&ball, &there, 0.0, |_| true).unwrap().unwrap();
+        assert_eq!([inside.object, around.object], [objects[0]; 2], "{moved:?}");
+        let all = world.cast_ray_all(&ray, &RayOptions::default(), |_| true).unwrap();
+        let all: Vec<_> = all.iter().map(|found| (found.hit.t, found.object)).collect();
+        let [first, second] = objects;
+        assert_eq!(all, [(3.0, first), (3.0, second), (5.0, first), (5.0, second)], "{moved:?}");
     }
 }
 
