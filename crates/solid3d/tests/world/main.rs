@@ -12,6 +12,7 @@ mod model;
 mod stage;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use bits::{Bits, all_bits, bits};
 use common::{Soup, assert_rate, in_cube, placement, shape_of, stretch, torus, try_shape_of};
@@ -22,8 +23,8 @@ use rand::rngs::StdRng;
 use solid_oracle::Convex;
 use solid_oracle::generate::{Regime, random_pair, random_shape, seeded};
 use solid3d::{
-    Boxes, BroadPhaseKind, Collision, EventKind, Motion, ObjectId, Response, Shape, Statistics, World,
-    WorldOptions, glam, query,
+    Boxes, BroadPhaseKind, Collision, Contact, EventKind, Motion, ObjectId, Response, Shape, Statistics,
+    World, WorldOptions, glam, query,
 };
 use stage::{RESPONSES, Stage};
 
@@ -435,6 +436,18 @@ fn responses_of_removed_objects_do_not_come_back() {
     }
 }
 
+/// Law: an object is where it was placed last, to the bit: signs of zeros too.
+#[test]
+fn a_placement_is_kept_to_the_bit() {
+    let mut world = World::new();
+    let id = world.add(&Shape::sphere(1.0).unwrap(), DAffine3::IDENTITY).unwrap();
+    for zero in [-0.0, 0.0, -0.0] {
+        let at = DAffine3 { translation: DVec3::splat(zero), ..DAffine3::IDENTITY };
+        world.set_placement(id, at).unwrap();
+        assert_eq!(world.placement(id).unwrap().translation.x.to_bits(), f64::to_bits(zero));
+    }
+}
+
 /// At the limit of precision, at any size ratio and far from the origin, boxes and caches must not decide otherwise than
 /// the narrow phase does.
 #[test]
@@ -492,6 +505,27 @@ fn boxes_and_caches_lose_no_touch() {
         }
     }
     assert_rate("near touching", hits, tests);
+}
+
+/// Law: a world keeps nothing of a collision that is no more.
+#[test]
+fn what_parts_leaves_nothing_of_its_collision() {
+    let block = Shape::cuboid([1.0; 3]).unwrap();
+    for response in [Response::Curve, Response::Contacts] {
+        let mut world =
+            World::with_options(&WorldOptions { default_response: response, ..WorldOptions::default() });
+        let [_, upper] =
+            [0.0, 0.75].map(|y| world.add(&block, DAffine3::from_translation(DVec3::Y * y)).unwrap());
+        let mut found = world.test();
+        world.set_placement(upper, DAffine3::from_translation(DVec3::Y * 9.0)).unwrap();
+        assert!(world.test().is_empty());
+        let owners = match found.remove(0).contact {
+            Contact::Curve { curve, .. } => Arc::strong_count(&curve),
+            Contact::Contacts { manifolds, .. } => Arc::strong_count(&manifolds),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(owners, 1, "{response:?}");
+    }
 }
 
 /// Within a frame the last test counts; what comes and goes between two ends of frames is no event.
