@@ -74,11 +74,16 @@ mod tests {
             }
         }
         assert_eq!(findings.len(), 160);
-        for object in objects {
+        for &object in &objects {
             looked_at += lapsed.take_of(object, &mut findings);
         }
         assert_eq!(findings.len(), 0);
         assert!(looked_at <= 3 * 200, "{looked_at}");
         lapsed.take_all(&mut findings);
+        // What lapses after all were taken is taken with its object as before.
+        let collision = Collision { a: objects[0], b: objects[1], when: When::Now, contact: Contact::Simple };
+        lapsed.add(findings.add((0, 1), collision));
+        lapsed.take_of(objects[1], &mut findings);
+        assert_eq!(findings.len(), 0);
     }
 }

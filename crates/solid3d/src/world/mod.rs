@@ -438,6 +438,28 @@ mod tests {
         Ok(())
     }
 
+    /// Law: to forget which objects ended their frames alone keeps those that did not.
+    #[test]
+    fn what_did_not_end_its_frame_alone_ends_it_with_the_others() -> Result<()> {
+        let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        world.set_default_response(Response::Smart);
+        let at = |x: f64| DAffine3::from_translation(DVec3::X * x);
+        let [resting, moved, busy] = [0.0, 3.0, 9.0].map(|x| world.add(&ball, at(x)).unwrap());
+        world.set_placement(moved, at(1.5))?;
+        for step in 0..100 {
+            world.set_placement(busy, at(9.0 + f64::from(step % 2)))?;
+            world.proceed_object(busy)?;
+        }
+        // The balls were 1 apart, and are 0.5 in each other.
+        for expected in [1.0, -0.5] {
+            let found = world.test();
+            assert_eq!((found[0].a, found[0].b), (resting, moved));
+            assert!(matches!(found[0].contact, Contact::Smart { distance, .. } if distance == expected));
+            world.proceed();
+        }
+        Ok(())
+    }
+
     /// What an object and a candidate take, beyond the shape: counted in bytes, so that a field more does not pass unseen.
     #[test]
     fn objects_and_candidates_are_small() {
@@ -460,14 +482,20 @@ mod tests {
         assert_eq!(world.test_pair(early, far)?, None);
         world.clear_pair_response(early, late)?;
         assert_eq!(world.test_pair(early, late)?, None);
+        // Each was a candidate but the last; the one far away did not collide.
+        let Statistics { candidates, examined, collisions, .. } = world.statistics();
+        assert_eq!((candidates, examined, collisions), (4, 4, 3));
         Ok(())
     }
 
     /// A response that comes to depend on the previous frame sees that frames end, whichever way it was set.
     #[test]
     fn responses_that_come_to_look_back_see_frames_end() -> Result<()> {
-        for way in 0..3 {
-            let (mut world, ball) = (World::new(), Shape::sphere(1.0)?);
+        for way in 0..4 {
+            let default_response = if way == 3 { Response::Smart } else { Response::Witness };
+            let mut world =
+                World::with_options(&WorldOptions { default_response, ..WorldOptions::default() });
+            let ball = Shape::sphere(1.0)?;
             let at = |y: f64| DAffine3::from_translation(DVec3::Y * y);
             let ids = [world.add(&ball, at(0.0))?, world.add(&ball, at(3.0))?];
             world.proceed();
@@ -476,6 +504,7 @@ mod tests {
             match way {
                 0 => world.set_default_response(Response::Smart),
                 1 => world.set_object_response(ids[0], Response::Smart)?,
+                3 => {}
                 _ => world.set_pair_response(ids[0], ids[1], Response::Smart)?,
             }
             // The balls were 1 apart, and are 0.5 in each other.
