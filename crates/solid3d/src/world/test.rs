@@ -272,7 +272,10 @@ mod tests {
                 world.set_placement(collision.b, placement * DAffine3::from_rotation_y(0.1)).unwrap();
             });
             assert_eq!(hits, count - 1);
-            (world.statistics().candidates, world.broad.counters().node_visits - before.node_visits)
+            // What is examined between collisions counts, too.
+            let Statistics { candidates, examined, collisions, .. } = world.statistics();
+            assert_eq!((candidates, collisions), (examined, hits as u64));
+            (candidates, world.broad.counters().node_visits - before.node_visits)
         };
         let ((few, few_visits), (many, many_visits)) = (work(500), work(4000));
         assert!(many <= 9 * few, "{few} candidates for 500 balls, {many} for 4000");
