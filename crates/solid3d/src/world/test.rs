@@ -134,8 +134,6 @@ impl World {
         if self.response(a, b)? == Response::Ignore {
             return Ok(None);
         }
-        // What depends on the way of a swept object is brought up to date with its box.
-        self.refresh();
         let (a, b) = self.objects.in_order(a, b);
         let mut described = Vec::new();
         let Self { objects, responses, caching, workers, statistics, .. } = self;
