@@ -309,6 +309,17 @@ fn wild_motions_are_survived() {
     }
 }
 
+/// Law: a mirroring placement does not turn a mesh inside out.
+#[test]
+fn winding_numbers_are_the_same_in_a_mirror() {
+    let mesh = common::cube(1.0).shape();
+    for signs in [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, -2.0, 1.0], [-1.0, -2.0, -3.0]] {
+        let at = DAffine3::from_scale(DVec3::from_array(signs));
+        let winding = query::winding_number(&mesh, &at, DVec3::splat(0.25)).unwrap();
+        assert!((winding - 1.0).abs() < 1e-12, "{winding} for {signs:?}");
+    }
+}
+
 /// The winding number of closed meshes is a whole number, and not 0 exactly inside.
 #[test]
 fn winding_numbers_tell_inside_from_outside() {
