@@ -8,7 +8,7 @@
 use glam::{DVec2, DVec3};
 use solid_convex::simd::each;
 
-use crate::exact::{flatten, orient2d, orient3d, plain, segments_meet, segments_meet_in_space};
+use crate::exact::{self, flatten, orient2d, orient3d, plain, segments_meet, segments_meet_in_space};
 
 /// Three corners.
 pub(crate) type Triangle = [DVec3; 3];
@@ -16,6 +16,9 @@ pub(crate) type Triangle = [DVec3; 3];
 /// Whether two triangles share a point. Worth asking when their boxes do.
 pub(crate) fn intersect(x: &Triangle, y: &Triangle) -> bool {
     let [x, y] = [&each(*x, plain), &each(*y, plain)];
+    if are_level(x, y) && (has_parting_edge(x, y) || has_parting_edge(y, x)) {
+        return false;
+    }
     let (x_flat, y_flat) = (collinear(x), collinear(y));
     let y_sides = each(*x, |p| orient3d(y[0], y[1], y[2], p));
     if !y_flat && same_strict_side(y_sides) {
@@ -36,6 +39,27 @@ pub(crate) fn intersect(x: &Triangle, y: &Triangle) -> bool {
         })
     };
     edge_meets(x, y_sides, y, y_flat) || edge_meets(y, x_sides, x, x_flat)
+}
+
+/// Whether two triangles lie in one plane, about. Of these an exact sign of three dimensions takes long, and is rarely what parts them.
+fn are_level(x: &Triangle, [p, q, r]: &Triangle) -> bool {
+    /// Relative to the unit of the data: some rounding errors.
+    const LEVEL: f64 = 1e-14;
+    let normal = (*q - *p).cross(*r - *p);
+    let most = LEVEL * normal.abs().max_element();
+    x.iter().all(|&corner| normal.dot(corner - *p).abs() <= most)
+}
+
+/// Whether an edge of a triangle parts it from another, seen along the axis from which it looks the largest.
+fn has_parting_edge(x: &Triangle, y: &Triangle) -> bool {
+    let normal = (x[1] - x[0]).cross(x[2] - x[0]);
+    let [x, y] =
+        [x, y].map(|triangle| each(*triangle, |corner| flatten(normal.abs().max_position(), corner)));
+    EDGES.iter().zip([2, 0, 1]).any(|(&[i, j], third)| {
+        let side = |point: DVec2| orient2d(x[i], x[j], point);
+        let sides = each(y, side);
+        same_strict_side(sides) && !exact::same_strict_side(sides[0], side(x[third]))
+    })
 }
 
 const EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
@@ -112,7 +136,7 @@ mod tests {
         assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))));
     }
 
-    /// The same in one plane, also a slanted one; no other test sees so many coplanar pairs.
+    /// The same in one plane, also a slanted one; no other test sees so many coplanar pairs. Those that do not meet are parted by an edge.
     #[test]
     fn coplanar_triangles_agree_with_the_oracle() {
         let seed = 21;
@@ -129,7 +153,15 @@ mod tests {
             let lift = |t: Triangle| t.map(|p| p.x * u + p.y * v);
             let (x, y) =
                 (lattice_triangle(&mut rng, 5), lattice_triangle(&mut rng, 5).map(|p| p + 2.0 * DVec3::X));
-            hits += i32::from(check(&lift(x), &lift(y)));
+            let [x, y] = [lift(x), lift(y)];
+            let meet = check(&x, &y);
+            let are_wide = !collinear(&x) && !collinear(&y);
+            assert!(
+                meet || !are_wide
+                    || are_level(&x, &y) && (has_parting_edge(&x, &y) || has_parting_edge(&y, &x)),
+                "{x:?} {y:?}"
+            );
+            hits += i32::from(meet);
         }
         println!("{hits} of {cases} hit");
         assert!((0.3..=0.7).contains(&(f64::from(hits) / f64::from(cases))));
