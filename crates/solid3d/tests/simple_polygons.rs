@@ -65,6 +65,42 @@ fn any_shape(rng: &mut StdRng) -> Shape {
     }
 }
 
+/// Law: the pairs of primitives that meet have the numbers that the user gave, on either side, whatever pieces polygons are cut into.
+#[test]
+fn pairs_of_polygons_have_the_numbers_of_the_user() {
+    // Combs of five teeth, side by side.
+    let comb = |k: u32| {
+        let teeth = (0..5).flat_map(|i| [[f64::from(2 * i), 3.0], [f64::from(2 * i + 1), 1.0]]);
+        let outline = teeth.chain([[9.0, 0.0], [0.0, 0.0]]);
+        outline.map(move |[x, y]| DVec3::new(x + 10.0 * f64::from(k), y, 0.0))
+    };
+    let combs = |count: u32| {
+        let builder = ComplexShapeBuilder::new((0..count).flat_map(comb).collect::<Vec<_>>());
+        let polygon = |k: u32| (12 * k..12 * (k + 1)).collect::<Vec<_>>();
+        (0..count).fold(builder, |builder, k| builder.simple_polygon(&polygon(k))).build().unwrap()
+    };
+    let (long, short) = (combs(4), combs(2));
+    // Across the second comb of the long one, and along it.
+    let at = DAffine3::from_translation(DVec3::new(14.5, 0.5, 0.5))
+        * DAffine3::from_rotation_y(std::f64::consts::FRAC_PI_2);
+    let along = DAffine3::from_translation(DVec3::new(14.5, 0.2, -0.1)) * DAffine3::from_rotation_x(0.1);
+    for (placement, expected) in [(at, vec![[1, 0]]), (along, vec![[1, 0], [2, 0], [2, 1], [3, 1]])] {
+        for mirrored in [false, true] {
+            let mut found = Vec::new();
+            let mut take = |i, j| {
+                found.push(if mirrored { [j, i] } else { [i, j] });
+                std::ops::ControlFlow::Continue(())
+            };
+            let (here, there) = ((&long, &DAffine3::IDENTITY), (&short, &placement));
+            let (a, b) = if mirrored { (there, here) } else { (here, there) };
+            query::intersecting_primitives(a.0, a.1, b.0, b.1, &mut take).unwrap();
+            found.sort_unstable();
+            found.dedup();
+            assert_eq!(found, expected, "mirrored: {mirrored}");
+        }
+    }
+}
+
 /// Law: a polygon in a complex shape is its triangles, in every query and against every kind.
 #[test]
 fn polygons_are_their_triangles_in_every_query() {
