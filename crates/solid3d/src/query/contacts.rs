@@ -32,7 +32,8 @@ use crate::shape::Shape;
 ///
 /// Cost: that of the [`penetration`](super::penetration()), and some hundred nanoseconds for faces of four sides, more in proportion for faces of more; for a
 /// convex hull, or a convex piece of a complex shape, also of finding its faces, once; for meshes for each pair of primitives whose boxes are as near,
-/// where of a face of many sides a triangle looks at those near it, and O(n) once after each deformation.
+/// where of a face of many sides a triangle looks at those near it, and O(n) once after each deformation; of a closed convex mesh
+/// O(n log n), a microsecond or two for each triangle.
 ///
 /// ```
 /// use solid3d::{Shape, glam::{DAffine3, DVec3}, query::{self, ContactOptions}};

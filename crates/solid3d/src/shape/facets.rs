@@ -166,7 +166,6 @@ impl<'a> Triangles<'a> {
         seeds.sort_unstable_by(|&i, &j| areas[j].total_cmp(&areas[i]).then(i.cmp(&j)));
         let mut face_of = vec![NO_FACE; areas.len()];
         let (mut faces, mut all_corners) = (Vec::new(), Vec::new());
-        let (mut stack, mut members) = (Vec::new(), Vec::new());
         for seed in seeds {
             // What is left that is no wider than rounding is a sliver within a face, or has no plane.
             let wide = self.cross(seed).length() > FLATNESS * self.longest_edge(seed);
@@ -174,7 +173,7 @@ impl<'a> Triangles<'a> {
             let Some(normal) = self.cross(seed).try_normalize().filter(|_| wide && is_left) else {
                 continue;
             };
-            self.grow(seed, normal, faces.len() as u32, &mut face_of, &mut stack, &mut members);
+            let members = self.grow(seed, normal, faces.len() as u32, &mut face_of);
             let height = |index: &u32| normal.dot(self.corner(*index));
             let lowest = members.iter().copied().min_by(|i, j| height(i).total_cmp(&height(j)));
             let lowest = lowest.expect("a face has a triangle");
@@ -191,37 +190,27 @@ impl<'a> Triangles<'a> {
         (Facets { faces, corners: all_corners, at_point, extreme: Vec::new() }, face_of)
     }
 
-    /// Makes a face of a triangle and what lies around it in its plane; the corners of these are its members, ascending.
-    fn grow(
-        &self,
-        seed: usize,
-        normal: DVec3,
-        number: u32,
-        face_of: &mut [u32],
-        stack: &mut Vec<usize>,
-        members: &mut Vec<u32>,
-    ) {
+    /// Makes a face, of a number, of a triangle and what lies around it in its plane; gives the corners of these, ascending.
+    fn grow(&self, seed: usize, normal: DVec3, number: u32, face_of: &mut [u32]) -> Vec<u32> {
         let origin = self.corner(self.triangles[seed][0]);
         let in_plane = |&index: &u32| normal.dot(self.corner(index) - origin).abs() <= FLATNESS;
-        members.clear();
-        stack.push(seed);
+        let (mut stack, mut members) = (vec![seed], Vec::new());
         face_of[seed] = number;
         // Each triangle enters once.
         while let Some(index) = stack.pop() {
             members.extend(self.triangles[index]);
-            for edge in edges(self.triangles[index]) {
-                for other in self.beyond(edge) {
-                    let same_side = self.cross(other).dot(normal) >= -FLATNESS;
-                    let is_left = face_of[other] == NO_FACE;
-                    if is_left && same_side && self.triangles[other].iter().all(in_plane) {
-                        face_of[other] = number;
-                        stack.push(other);
-                    }
+            for other in edges(self.triangles[index]).into_iter().flat_map(|edge| self.beyond(edge)) {
+                let same_side = self.cross(other).dot(normal) >= -FLATNESS;
+                let is_left = face_of[other] == NO_FACE;
+                if is_left && same_side && self.triangles[other].iter().all(in_plane) {
+                    face_of[other] = number;
+                    stack.push(other);
                 }
             }
         }
         members.sort_unstable();
         members.dedup();
+        members
     }
 }
 
