@@ -19,15 +19,15 @@ const ROUNDING: f64 = 1e-14;
 /// once in each direction, and from its back, passes through itself nowhere, and then there is no more to it (Van Heijenoort, *On locally convex
 /// manifolds*, 1952). Cost: O(n log n).
 pub(super) fn convex_facets(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<Facets> {
-    let edges = Triangles::new(points, triangles);
-    let (facets, face_of) = edges.merged();
+    let mesh = Triangles::new(points, triangles);
+    let (facets, face_of) = mesh.merged();
     if face_of.contains(&NO_FACE) {
         return None;
     }
-    let surface = Surface { points, triangles, facets, face_of };
+    let surface = Surface { mesh, facets, face_of };
     let is_convex = match surface.facets.len() {
         2 => (0..2).all(|side| surface.covers_outline(side)),
-        _ => surface.bend(&edges) <= BEND && surface.is_seen_from_inside(),
+        _ => surface.bend() <= BEND && surface.is_seen_from_inside(),
     };
     is_convex.then_some(surface.facets)
 }
@@ -39,24 +39,24 @@ pub(super) fn six_volumes([p, q, r]: [DVec3; 3]) -> f64 {
 
 /// A closed surface and its faces.
 struct Surface<'a> {
-    points: &'a [DVec3],
-    triangles: &'a [[u32; 3]],
+    mesh: Triangles<'a>,
     facets: Facets,
     /// The face that each triangle is a part of.
     face_of: Vec<u32>,
 }
 
 impl Surface<'_> {
-    fn corner(&self, point: u32) -> DVec3 {
-        self.points[point as usize]
+    /// The triangles, and the face that each is a part of.
+    fn parts(&self) -> impl Iterator<Item = (&[u32; 3], u32)> {
+        self.mesh.triangles.iter().zip(self.face_of.iter().copied())
     }
 
     /// By how much all edges bend inward, together. Within a face, which is as flat as rounding leaves it, none does.
-    fn bend(&self, edges_of: &Triangles) -> f64 {
+    fn bend(&self) -> f64 {
         let mut bend = 0.0;
-        for (&triangle, &face) in self.triangles.iter().zip(&self.face_of) {
+        for (&triangle, face) in self.parts() {
             for edge in edges(triangle) {
-                let beyond = edges_of.beyond(edge).filter(|&beyond| self.face_of[beyond] > face);
+                let beyond = self.mesh.beyond(edge).filter(|&beyond| self.face_of[beyond] > face);
                 bend += beyond.map(|beyond| self.bend_at(edge, face, beyond)).sum::<f64>();
             }
         }
@@ -66,10 +66,10 @@ impl Surface<'_> {
     /// By how much an edge of a face bends inward. Where a surface is hardly curved, faces have ragged edges, at which the normals say less than the corners do.
     fn bend_at(&self, [from, to]: [u32; 2], face: u32, beyond: usize) -> f64 {
         let [normal, other] = [face, self.face_of[beyond]].map(|face| self.facets.get(face).normal);
-        let [start, end] = [from, to].map(|point| self.corner(point));
-        let is_above = |&point: &u32| normal.dot(self.corner(point) - start) > ROUNDING;
+        let [start, end] = [from, to].map(|point| self.mesh.corner(point));
+        let is_above = |&point: &u32| normal.dot(self.mesh.corner(point) - start) > ROUNDING;
         let turn = normal.cross(other).dot((end - start).normalize_or_zero());
-        if turn < 0.0 && self.triangles[beyond].iter().any(is_above) { -turn } else { 0.0 }
+        if turn < 0.0 && self.mesh.triangles[beyond].iter().any(is_above) { -turn } else { 0.0 }
     }
 
     /// Whether, from its centroid, it is seen once in each direction, and from its back.
@@ -77,17 +77,18 @@ impl Surface<'_> {
         let Some(center) = self.centroid() else { return false };
         let shows_back = |face: u32| {
             let facet = self.facets.get(face);
-            facet.normal.dot(self.corner(facet.lowest) - center) > 0.0
+            facet.normal.dot(self.mesh.corner(facet.lowest) - center) > 0.0
         };
-        let half = |corners: &[u32; 3]| half_solid_angle(corners.map(|i| self.corner(i) - center));
-        (0..self.facets.len()).all(shows_back) && self.triangles.iter().map(half).sum::<f64>() < 1.5 * TAU
+        let half = |corners: &[u32; 3]| half_solid_angle(corners.map(|i| self.mesh.corner(i) - center));
+        (0..self.facets.len()).all(shows_back)
+            && self.mesh.triangles.iter().map(half).sum::<f64>() < 1.5 * TAU
     }
 
     /// The centroid of what it bounds; `None` without a volume.
     fn centroid(&self) -> Option<DVec3> {
         let (mut moment, mut volume) = (DVec3::ZERO, 0.0);
-        for corners in self.triangles {
-            let [p, q, r] = corners.map(|i| self.corner(i));
+        for corners in self.mesh.triangles {
+            let [p, q, r] = corners.map(|i| self.mesh.corner(i));
             let here = six_volumes([p, q, r]);
             moment += here * (p + q + r);
             volume += here;
@@ -99,10 +100,10 @@ impl Surface<'_> {
     fn covers_outline(&self, side: u32) -> bool {
         let facet = self.facets.get(side);
         let area = |corners: &[u32]| {
-            let way = |i: usize| self.corner(corners[i]) - self.corner(corners[0]);
+            let way = |i: usize| self.mesh.corner(corners[i]) - self.mesh.corner(corners[0]);
             (2..corners.len()).map(|i| way(i - 1).cross(way(i)).dot(facet.normal)).sum::<f64>()
         };
-        let covering = self.triangles.iter().zip(&self.face_of).filter(|&(_, &face)| face == side);
+        let covering = self.parts().filter(|&(_, face)| face == side);
         let (covered, outlined) =
             (covering.map(|(corners, _)| area(corners)).sum::<f64>(), area(facet.corners));
         (covered - outlined).abs() <= BEND * outlined

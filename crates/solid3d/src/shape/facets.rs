@@ -58,6 +58,14 @@ impl Facet<'_> {
 }
 
 impl Facets {
+    /// Of so many points.
+    fn new(faces: Vec<Face>, corners: Vec<u32>, points: usize) -> Facets {
+        let mut facets = Facets { faces, corners, at_point: Incidence::default(), extreme: Vec::new() };
+        let each = (0..facets.len()).map(|face| facets.get(face).corners.iter().copied());
+        facets.at_point = Incidence::of(points, each);
+        facets
+    }
+
     /// The memory that they own, in bytes.
     pub fn bytes(&self) -> usize {
         let Facets { faces, corners, at_point, extreme } = self;
@@ -122,7 +130,7 @@ fn ends(points: &[DVec3], extreme: &[u32]) -> [u32; 2] {
 /// The triangles of a closed surface, counter-clockwise seen from outside; in a unit in which their distances are about one.
 pub(super) struct Triangles<'a> {
     points: &'a [DVec3],
-    triangles: &'a [[u32; 3]],
+    pub triangles: &'a [[u32; 3]],
     /// Those at each point.
     around: Incidence,
 }
@@ -132,7 +140,7 @@ impl<'a> Triangles<'a> {
         Triangles { points, triangles, around: Incidence::of(points.len(), triangles.iter().copied()) }
     }
 
-    fn corner(&self, point: u32) -> DVec3 {
+    pub fn corner(&self, point: u32) -> DVec3 {
         self.points[point as usize]
     }
 
@@ -161,16 +169,17 @@ impl<'a> Triangles<'a> {
     /// Grows a face from each triangle, the largest first, over its neighbours in the same plane. The number of the face that each is a part of is told, too;
     /// [`NO_FACE`] of what is no wider than rounding, and has none beside it.
     pub fn merged(&self) -> (Facets, Vec<u32>) {
-        let areas: Vec<f64> = (0..self.triangles.len()).map(|i| self.cross(i).length_squared()).collect();
-        let mut seeds: Vec<usize> = (0..areas.len()).collect();
-        seeds.sort_unstable_by(|&i, &j| areas[j].total_cmp(&areas[i]).then(i.cmp(&j)));
-        let mut face_of = vec![NO_FACE; areas.len()];
-        let (mut faces, mut all_corners) = (Vec::new(), Vec::new());
+        let crosses: Vec<DVec3> = (0..self.triangles.len()).map(|i| self.cross(i)).collect();
+        let area = |i: usize| crosses[i].length_squared();
+        let mut seeds: Vec<usize> = (0..crosses.len()).collect();
+        seeds.sort_unstable_by(|&i, &j| area(j).total_cmp(&area(i)).then(i.cmp(&j)));
+        let mut face_of = vec![NO_FACE; crosses.len()];
+        let (mut faces, mut corners) = (Vec::new(), Vec::new());
         for seed in seeds {
             // What is left that is no wider than rounding is a sliver within a face, or has no plane.
-            let wide = self.cross(seed).length() > FLATNESS * self.longest_edge(seed);
+            let wide = crosses[seed].length() > FLATNESS * self.longest_edge(seed);
             let is_left = face_of[seed] == NO_FACE;
-            let Some(normal) = self.cross(seed).try_normalize().filter(|_| wide && is_left) else {
+            let Some(normal) = crosses[seed].try_normalize().filter(|_| wide && is_left) else {
                 continue;
             };
             let members = self.grow(seed, normal, faces.len() as u32, &mut face_of);
@@ -180,14 +189,10 @@ impl<'a> Triangles<'a> {
             let (u, v) = normal.any_orthonormal_pair();
             let flat: Vec<DVec2> =
                 members.iter().map(|&i| DVec2::new(u.dot(self.corner(i)), v.dot(self.corner(i)))).collect();
-            all_corners.extend(outline(&flat, FLATNESS).into_iter().map(|i| members[i]));
-            faces.push(Face { normal, lowest, end: all_corners.len() as u32 });
+            corners.extend(outline(&flat, FLATNESS).into_iter().map(|i| members[i]));
+            faces.push(Face { normal, lowest, end: corners.len() as u32 });
         }
-        let starts = std::iter::once(0).chain(faces.iter().map(|face| face.end as usize));
-        let each =
-            starts.zip(&faces).map(|(start, face)| all_corners[start..face.end as usize].iter().copied());
-        let at_point = Incidence::of(self.points.len(), each);
-        (Facets { faces, corners: all_corners, at_point, extreme: Vec::new() }, face_of)
+        (Facets::new(faces, corners, self.points.len()), face_of)
     }
 
     /// Makes a face, of a number, of a triangle and what lies around it in its plane; gives the corners of these, ascending.

@@ -1,7 +1,7 @@
 //! Which of some lists name an element, for each of the elements.
 
 /// For each element the lists that name it, one after the other.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Incidence {
     /// Those that name element `i` are `lists[starts[i]..starts[i + 1]]`, ascending.
     starts: Vec<u32>,
