@@ -564,15 +564,19 @@ pub(super) fn as_written(text: &str) -> String {
 
 /// A word of the language that stands in a number, as the parser ends that before it.
 fn keyword_within(number: &str) -> Option<&'static str> {
-    let begins_hex = number.starts_with("0x") || number.starts_with("0X");
     let rest =
-        if begins_hex { number[2..].trim_start_matches(|c: char| c.is_ascii_hexdigit()) } else { number };
+        hexadecimal(number).map_or(number, |rest| rest.trim_start_matches(|c: char| c.is_ascii_hexdigit()));
     KEYWORDS.into_iter().find(|keyword| rest.contains(keyword))
+}
+
+/// What follows the sign that a number is hexadecimal.
+fn hexadecimal(word: &str) -> Option<&str> {
+    word.strip_prefix("0x").or_else(|| word.strip_prefix("0X"))
 }
 
 /// Whether a hexadecimal integer that 32 bits do not hold begins here.
 fn has_wide_hex(word: &str) -> bool {
-    let Some(digits) = word.strip_prefix("0x").or_else(|| word.strip_prefix("0X")) else { return false };
+    let Some(digits) = hexadecimal(word) else { return false };
     let digits = digits.trim_start_matches('0').bytes();
     digits.take_while(u8::is_ascii_hexdigit).count() > HEX_DIGITS_MAX
 }
