@@ -41,6 +41,13 @@ static void in_place(void) {
     set_height(vertices, 0);
     dtChangeVertexBase(shape, vertices);
     CHECK(test() == 1 && records[0].object1 == &sheet);
+    /* An object that is no more is not missed. */
+    dtDeleteObject(&other);
+    dtChangeVertexBase(shape, vertices);
+    CHECK(dtGetError() == DT_NO_ERROR && test() == 1);
+    dtCreateObject(&other, shape);
+    dtTranslate(0, -2, 0);
+    CHECK(test() == 1 && records[0].object1 == &sheet);
     /* A bad array changes nothing. */
     vertices[7] = HUGE_VAL;
     REFUSED(dtChangeVertexBase(shape, vertices), DT_ERROR_VALUE);

@@ -56,6 +56,15 @@ static void placements(void) {
     dtLoadIdentity();
     dtMultMatrixf(matrixf);
     CHECK(at(10, 22.99, 30));
+    /* In the coordinates that are scaled already. */
+    dtSelectObject(&a);
+    dtLoadIdentity();
+    dtScale(1, 2, 1);
+    dtRotate(0, 0, half, half);
+    CHECK(at(0, 5.99, 0) && !at(2, 0, 0));
+    dtSelectObject(&a);
+    dtMultMatrixd(matrix);
+    CHECK(at(-20, 20, 30) && at(-22.99, 20, 30));
     /* Any quaternion but zero; mirroring. */
     dtSelectObject(&a);
     dtLoadIdentity();

@@ -58,6 +58,29 @@ static void before_and_after(void) {
     dtDeleteObject(&a);
     dtDeleteObject(&b);
     dtDeleteObject(&c);
+
+    /* Of a pair, before either is there, in whichever order they come, and with nothing else defined. */
+    dtSetPairResponse(&a, &b, record, DT_SIMPLE_RESPONSE, &of_pair);
+    dtCreateObject(&b, ball);
+    dtCreateObject(&a, ball);
+    CHECK(told() == &of_pair);
+    /* It is gone with either of them. */
+    dtDeleteObject(&a);
+    dtCreateObject(&a, ball);
+    CHECK(test() == 0);
+    dtSetDefaultResponse(record, DT_SIMPLE_RESPONSE, &of_default);
+    CHECK(told() == &of_default);
+    dtSetPairResponse(&a, &b, record, DT_SIMPLE_RESPONSE, &of_pair);
+    dtDeleteObject(&b);
+    dtCreateObject(&b, ball);
+    CHECK(told() == &of_default);
+    dtClearDefaultResponse();
+    CHECK(test() == 0);
+    /* Of an object that is there, with nothing else defined. */
+    dtSetObjectResponse(&b, record, DT_SIMPLE_RESPONSE, &of_b);
+    CHECK(told() == &of_b);
+    dtDeleteObject(&a);
+    dtDeleteObject(&b);
 }
 
 /* Complex objects first, in the callback and in the order of the callbacks; otherwise by creation. */
@@ -147,6 +170,16 @@ static void smart(void) {
     CHECK(NEAR(data->normal[0] * data->normal[0] + data->normal[1] * data->normal[1] + data->normal[2] * data->normal[2], 1));
     CHECK(NEAR(data->point1[0], -data->normal[0]) && NEAR(data->point2[0], data->normal[0]));
     CHECK(NEAR(data->point1[1], -data->normal[1]) && NEAR(data->point2[1], data->normal[1]));
+    dtDeleteObject(&a);
+    dtDeleteObject(&b);
+
+    /* Placing a new object before the first dtProceed is no motion; placing it after that is. */
+    dtCreateObject(&a, ball);
+    dtCreateObject(&b, ball);
+    place(&b, 0, 0, 4);
+    dtProceed();
+    place(&b, 0, 0, 1);
+    CHECK(test() == 1 && NEAR(data->normal[2], -2) && NEAR(data->point1[2], 1));
     dtDeleteObject(&a);
     dtDeleteObject(&b);
 
