@@ -135,6 +135,41 @@ fn a_convex_polygon_is_as_deep_as_one_that_is_not_cut() {
     assert_rate("convex polygons in anything", hits, cases);
 }
 
+/// Law: so are polygons of so many corners that their pieces are in many leaves, of which triangles pass through the one and reach the other.
+#[test]
+fn a_polygon_of_many_corners_is_as_deep_as_one_that_is_not_cut() {
+    let seed = 250;
+    println!("seed {seed}");
+    let mut rng = seeded(seed);
+    let (cases, mut hits) = (400, 0);
+    for case in 0..cases {
+        let corners = 96;
+        let corner = |i: usize| {
+            let angle = std::f64::consts::TAU * i as f64 / corners as f64;
+            DVec3::new(angle.cos(), angle.sin(), 0.0)
+        };
+        let [cut, whole] = cut_and_whole(&[(0..corners).map(corner).collect()]);
+        let triangles: Vec<DVec3> = (0..6)
+            .flat_map(|_| {
+                let place = corner(rng.random_range(0..corners)) * rng.random_range(0.5..1.05);
+                let size = rng.random_range(0.1..0.5);
+                [(); 3].map(|()| place + size * in_cube(&mut rng))
+            })
+            .collect();
+        let indices: Vec<[u32; 3]> = (0..6).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let other = Shape::mesh(triangles, indices).unwrap();
+        let [at, at_other] = [placement(&mut rng, 0.01), placement(&mut rng, 0.01)];
+        let depth =
+            |shape: &Shape| query::penetration(shape, &at, &other, &at_other).unwrap().map(|it| it.depth);
+        let [found, expected] = [depth(&cut), depth(&whole)];
+        assert_eq!(found.is_some(), expected.is_some(), "case {case}");
+        let (Some(found), Some(expected)) = (found, expected) else { continue };
+        hits += 1;
+        assert!((found - expected).abs() < 1e-9, "case {case}: {found}, not {expected}");
+    }
+    assert_rate("polygons of many corners", hits, cases);
+}
+
 /// Law: so says smart response, of polygons that met in the previous frame and of those that did not.
 #[test]
 fn smart_response_takes_a_convex_polygon_whole() {
