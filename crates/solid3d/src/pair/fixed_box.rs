@@ -48,6 +48,9 @@ fn rounded_up(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pair::Placed;
+    use crate::pair::reach::world_bounds;
+    use crate::shape::Shape;
     use glam::{DMat3, DQuat};
     use rand::Rng;
     use solid_oracle::generate::seeded;
@@ -76,8 +79,32 @@ mod tests {
         for factors in [[1.0, 1.0, 1.1], [1.00001, 1.0, 1.0], [1e-100, 1.0, 1.0], [1.0, 1e100, 1.0]] {
             assert_eq!(fixed_bounds(&DAffine3::from_scale(DVec3::from_array(factors)), 1.0), None);
         }
-        let sheared = DAffine3::from_cols(DVec3::X, DVec3::new(1e-5, 1.0, 0.0), DVec3::Z, DVec3::ZERO);
-        assert_eq!(fixed_bounds(&sheared, 1.0), None);
+        for (axis, along) in [(0, 1), (1, 2), (2, 0)] {
+            for shear in [1e-5, -1e-5] {
+                let mut sheared = DAffine3::IDENTITY;
+                sheared.matrix3.col_mut(along)[axis] = shear;
+                assert_eq!(fixed_bounds(&sheared, 1.0), None, "{sheared}");
+            }
+        }
         assert!(fixed_bounds(&DAffine3::from_scale(DVec3::new(-2.0, 2.0, 2.0)), 1.0).is_some());
+    }
+
+    /// Law: the box holds that around what is within the radius, near and far, also where some directions are stretched by a little more than others.
+    #[test]
+    fn all_within_the_radius_is_in_the_box() {
+        let mut rng = seeded(901);
+        let mut stretched = 0;
+        for case in 0..1000 {
+            let [y, z] = [0, 1].map(|_| 1.0 + 4e-7 * rng.random_range(-1.0..1.0) * f64::from(case % 2));
+            let scale = rng.random_range(1.0..2.0) * DVec3::new(1.0, y, z);
+            let far = DVec3::splat(10f64.powi([0, 3, 11, 13][case as usize / 2 % 4]));
+            let placement = DAffine3 { translation: far, ..DAffine3::from_scale(scale) };
+            let fixed = fixed_bounds(&placement, 0.5).expect("it is as good as rigid");
+            let ball = Shape::sphere(0.5).expect("it has a size");
+            let bounds = world_bounds(Placed { shape: &ball, placement: &placement });
+            assert!(fixed.contains(&bounds), "case {case}: {fixed:?} {bounds:?}");
+            stretched += usize::from(scale.max_element() > scale.x);
+        }
+        assert!(stretched > 300);
     }
 }
