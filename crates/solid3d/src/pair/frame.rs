@@ -216,3 +216,173 @@ impl Stretch {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pair::Placed;
+    use crate::pair::reach::{reach, world_bounds};
+    use crate::shape::Shape;
+    use glam::DQuat;
+    use rand::Rng;
+    use rand::rngs::StdRng;
+    use solid_oracle::generate::{in_cube, seeded};
+
+    /// Turned, stretched and mirrored anyhow.
+    fn linear(rng: &mut StdRng) -> DMat3 {
+        let turn = |rng: &mut StdRng| {
+            DMat3::from_quat(DQuat::from_axis_angle(in_cube(rng).normalize(), rng.random_range(0.0..6.0)))
+        };
+        let sizes = [(); 3].map(|()| 10f64.powf(rng.random_range(-2.0..2.0)));
+        turn(rng) * DMat3::from_diagonal(DVec3::from_array(sizes)) * turn(rng)
+    }
+
+    /// Law: the common space is the same whichever of two comes first, also where they differ in some coordinates only, or in none.
+    #[test]
+    fn the_common_space_is_that_of_both() {
+        let mut rng = seeded(184);
+        for case in 0..200 {
+            let [mut at_a, at_b] = [0, 1].map(|_| DAffine3 {
+                matrix3: linear(&mut rng),
+                translation: in_cube(&mut rng) * 10f64.powi(case % 9),
+            });
+            for axis in (0..3).filter(|axis| case >> axis & 1 == 1) {
+                at_a.translation[axis] = at_b.translation[axis];
+            }
+            let shapes = [1.0, 2.0].map(|size| Shape::cuboid([size, 1.0, 3.0]).expect("it has a size"));
+            let [reach_a, reach_b] = shapes.each_ref().map(reach);
+            let [one, other] =
+                [Frame::new(&at_a, reach_a, &at_b, reach_b), Frame::new(&at_b, reach_b, &at_a, reach_a)];
+            let [of_b, of_a] = other.common;
+            assert_eq!(
+                (one.common, one.origin, one.scale),
+                ([of_a, of_b], other.origin, other.scale),
+                "{case}"
+            );
+            let [in_a, in_b] = [(0, &at_a), (1, &at_b)]
+                .map(|(i, placement)| world_bounds(Placed { shape: &shapes[i], placement }));
+            let one = Around::new([&at_a, &at_b], [reach_a, reach_b], [in_a, in_b]);
+            let other = Around::new([&at_b, &at_a], [reach_b, reach_a], [in_b, in_a]);
+            let [of_b, of_a] = other.common;
+            assert_eq!(
+                (one.common, one.origin, one.scale),
+                ([of_a, of_b], other.origin, other.scale),
+                "{case}"
+            );
+        }
+    }
+
+    /// Law: around two shapes, of whatever size and however far from their local origins, all of both has coordinates of a few units at most, and
+    /// what positions are rounded there is said: next to nothing.
+    #[test]
+    fn all_is_near_in_the_space_around_two_shapes() {
+        let mut rng = seeded(185);
+        for case in 0..400 {
+            let size = 10f64.powi(rng.random_range(-60..60));
+            let far = [0.0, 1.0, 1e4, 1e9][case % 4] * size * in_cube(&mut rng);
+            let apart = [0.0, 1.0, 1e3][case / 4 % 3] * size * in_cube(&mut rng);
+            let mut corners =
+                |place: DVec3| -> Vec<DVec3> { (0..8).map(|_| place + size * in_cube(&mut rng)).collect() };
+            let corners = [corners(far), corners(far + apart)];
+            let shapes =
+                corners.each_ref().map(|corners| Shape::convex_hull(corners).expect("they are finite"));
+            let at = DAffine3::IDENTITY;
+            let bounds = shapes.each_ref().map(|shape| world_bounds(Placed { shape, placement: &at }));
+            let around = Around::new([&at; 2], shapes.each_ref().map(reach), bounds);
+            for (corners, common) in corners.iter().zip(&around.common) {
+                for &corner in corners {
+                    let image = common.transform_point3(corner);
+                    assert!(image.abs().max_element() <= 4.0, "case {case}: {image}");
+                    let off = around.to_world(image) - corner;
+                    assert!(
+                        (off * around.scale).abs().max_element() <= around.rounding,
+                        "case {case}: {off}"
+                    );
+                }
+            }
+            assert!(around.rounding <= 1e-8, "case {case}: {}", around.rounding);
+        }
+    }
+
+    /// Law: no distance in the common frame is less than is said, whichever is `A`: of two points, nor of two planes of one coordinate.
+    #[test]
+    fn nothing_is_nearer_than_the_stretch_says() {
+        let mut rng = seeded(186);
+        for case in 0..200 {
+            let [at_a, at_b] = [0, 1].map(|_| DAffine3::from_mat3(linear(&mut rng)));
+            let frame = Frame::new(&at_a, DVec3::ONE, &at_b, DVec3::ONE);
+            for (common, stretch) in frame.common.iter().zip(frame.stretch()) {
+                let grown = 1.0 + 1e-9;
+                for _ in 0..20 {
+                    let v = in_cube(&mut rng);
+                    let length = (common.matrix3 * v).length() * grown;
+                    assert!(length >= stretch.least * v.length(), "case {case}");
+                    assert!((stretch.facets * v.abs()).max_element() <= length, "case {case}");
+                }
+                // Across a facet it is as much.
+                for axis in 0..3 {
+                    let across = common.matrix3.inverse().transpose().col(axis);
+                    let v = common.matrix3.inverse() * (across / across.length_squared());
+                    assert!((v[axis] - 1.0).abs() < 1e-6, "case {case}");
+                    assert!((common.matrix3 * v).length() <= stretch.facets[axis] * grown, "case {case}");
+                }
+            }
+        }
+    }
+
+    /// Law: the image of a point in the other space is as near to where it truly lies as is said, also where a placement flattens nearly all. Judged in
+    /// whole numbers.
+    #[test]
+    fn an_image_is_as_exact_as_is_said() {
+        let mut rng = seeded(187);
+        let mut inexact = 0;
+        for case in 0..1000 {
+            let mut whole = |most: i64| [(); 3].map(|()| rng.random_range(-most..=most));
+            let mut map = |is_flat: bool| {
+                let (x, z, off) =
+                    (whole(1 << 28), whole(1 << 28), whole(if is_flat { 1 << 8 } else { 1 << 28 }));
+                [x, std::array::from_fn(|i| x[i] + off[i]), z]
+            };
+            let maps = [map(case % 2 == 0), map(case % 3 == 0)];
+            let (places, point) = ([whole(1 << 40), whole(1 << 40)], whole(1000));
+            let [at_a, at_b] = [0, 1].map(|i| DAffine3 {
+                matrix3: DMat3::from_cols_array_2d(&maps[i].map(|column| column.map(|x| x as f64))),
+                translation: DVec3::from_array(places[i].map(|x| x as f64)),
+            });
+            let cross = |p: [i64; 3], q: [i64; 3]| {
+                [1, 2, 0].map(|i| {
+                    i128::from(p[i]) * i128::from(q[(i + 1) % 3])
+                        - i128::from(p[(i + 1) % 3]) * i128::from(q[i])
+                })
+            };
+            let dot = |p: [i128; 3], q: [i128; 3]| -> i128 { (0..3).map(|i| p[i] * q[i]).sum() };
+            let determinant = |m: &[[i64; 3]; 3]| dot(cross(m[0], m[1]), m[2].map(i128::from));
+            if maps.iter().any(|map| determinant(map) == 0) {
+                continue;
+            }
+            let reach = DVec3::splat(1000.0);
+            let relative = Frame::new(&at_a, reach, &at_b, reach).relative();
+            for (from, to, image, slack) in
+                [(1, 0, relative.b_to_a, relative.slack_in_a), (0, 1, relative.a_to_b, relative.slack_in_b)]
+            {
+                let exact: [i128; 3] = std::array::from_fn(|i| {
+                    let sum: i64 = (0..3).map(|k| maps[from][k][i] * point[k]).sum();
+                    i128::from(sum + places[from][i] - places[to][i])
+                });
+                let image = image.transform_point3(DVec3::from_array(point.map(|x| x as f64)));
+                let m = &maps[to];
+                let rows = [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])];
+                for axis in 0..3 {
+                    // To 2^-20, times the determinant.
+                    let computed = (image[axis] * f64::from(1 << 20)) as i128 * determinant(m);
+                    let off = (computed - (dot(rows[axis], exact) << 20)).unsigned_abs() as f64;
+                    let off = off / determinant(m).unsigned_abs() as f64 / f64::from(1 << 20);
+                    let resolution = 2.0 / f64::from(1 << 20);
+                    assert!(off <= slack + resolution, "case {case}: {off:e}, not {slack:e}");
+                    inexact += u32::from(off > 1e-4);
+                }
+            }
+        }
+        assert!(inexact > 500, "{inexact}");
+    }
+}
