@@ -125,12 +125,12 @@ impl Glance {
                 (to_common.transform_point3(balls.inner.center), Body::between(&balls, stretch, gap))
             }
         };
-        Some(Glance::of(body, middle, map, normal, 0.0))
+        Some(Glance::of(body, middle, map, normal))
     }
 
-    /// For a body with its middle, where triangles are placed by a map and are off by no more than `slack` then.
+    /// For a body with its middle, where triangles are placed by a map.
     #[inline(always)]
-    pub fn of(body: Body, middle: DVec3, map: &DAffine3, normal: &Normal, slack: f64) -> Glance {
+    pub fn of(body: Body, middle: DVec3, map: &DAffine3, normal: &Normal) -> Glance {
         let DMat3 { x_axis, y_axis, z_axis } = map.matrix3;
         let [x, y, z] = [x_axis * normal.scale, y_axis * normal.scale, z_axis * normal.scale];
         let terms = to_world(&abs(&map.matrix3), normal.origin.abs())
@@ -141,11 +141,11 @@ impl Glance {
             body,
             linear: Linear::Rows([[x.x, y.x, z.x], [x.y, y.y, z.y], [x.z, y.z, z.z]]),
             offset: (to_world(&map.matrix3, normal.origin) + map.translation - middle).to_array(),
-            slack: slack + ROUNDING_F64 * terms.max_element(),
+            slack: ROUNDING_F64 * terms.max_element(),
         }
     }
 
-    /// The same, where a map but makes all so many times as long.
+    /// The same, where a map but makes all so many times as long, and triangles are off by no more than `slack` then.
     #[inline(always)]
     pub fn upright(body: Body, middle: DVec3, times: f64, normal: &Normal, slack: f64) -> Glance {
         let (step, origin) = (times * normal.scale, times * normal.origin);

@@ -200,7 +200,7 @@ impl<'s> Alike<'s> {
         let (body, middle) = match body {
             Outline::Box { half, .. } => {
                 let cube = self.cube(*half)?;
-                return Some(Glance::of(Body::cube(&cube), DVec3::ZERO, &cube.map, normal, 0.0));
+                return Some(Glance::of(Body::cube(&cube), DVec3::ZERO, &cube.map, normal));
             }
             Outline::Round { half_height, radius } => {
                 let radii = [*radius, radius + half_height];
