@@ -37,7 +37,10 @@ fn check(a: &Polygon, b: &Polygon, context: &str) -> bool {
     expected
 }
 
-/// The segments are sorted, disjoint, and lie in both polygons; the last as far as rounding lets them.
+/// How far beside a segment is looked, in sizes of the polygons.
+const BESIDE: f64 = 1e-4;
+
+/// The segments are sorted, disjoint, lie in both polygons as far as rounding lets them, and are all that do.
 fn check_segments(segments: &[[DVec3; 2]], polygons: [&Polygon; 2], show: &dyn Fn() -> String) {
     let size = polygons[0].reach().max(polygons[1].reach());
     for polygon in polygons {
@@ -46,6 +49,17 @@ fn check_segments(segments: &[[DVec3; 2]], polygons: [&Polygon; 2], show: &dyn F
             assert!(bounds.contains(&crate::Aabb::of_points([begin, end])), "{}", show());
             let middle = 0.5 * (begin + end);
             assert!(polygon.meets_sphere(middle, 1e-9 * size).unwrap(), "{begin} {end} {}", show());
+        }
+    }
+    // They are all: just before and behind each at least one of the polygons is not.
+    let along = polygons[0].plane().normal.cross(polygons[1].plane().normal).normalize();
+    let beside = BESIDE * size * along * along.dot(segments.last().unwrap()[1] - segments[0][0]).signum();
+    let gaps = segments.windows(2).map(|pair| pair[0][1].distance(pair[1][0]));
+    let gaps: Vec<f64> = [f64::INFINITY].into_iter().chain(gaps).chain([f64::INFINITY]).collect();
+    for (&[begin, end], near) in segments.iter().zip(gaps.windows(2)) {
+        for (place, gap) in [(begin - beside, near[0]), (end + beside, near[1])] {
+            let is_common = polygons.iter().all(|it| it.meets_sphere(place, 1e-14 * size).unwrap());
+            assert!(gap < 2.0 * BESIDE * size || !is_common, "{place} is in both, {}", show());
         }
     }
     let line = segments.last().unwrap()[1] - segments[0][0];
@@ -77,6 +91,58 @@ fn algorithms_agree_on_flat_polygons() {
     println!("{segments} in segments, {by_oracle} confirmed by the oracle, {convex} as convex hulls");
     assert_rate("flat polygons", hits, cases);
     assert!(convex > 500);
+}
+
+/// Law: what meets in a point is one segment: edges on the line in which the planes meet, and the inside beside them.
+#[test]
+fn segments_that_touch_are_one() {
+    let flat = |corners: &[[f64; 2]]| -> Vec<DVec3> {
+        corners.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)).collect()
+    };
+    let wall = [[-9.0, -9.0], [9.0, -9.0], [0.0, 9.0]].map(|[x, z]| DVec3::new(x, 0.0, z));
+    let wall = Polygon::new(wall).unwrap();
+    let joined = [
+        flat(&[[1.0, 0.0], [2.0, 0.0], [2.0, -1.0], [3.0, -1.0], [3.0, 1.0], [1.0, 1.0]]),
+        flat(&[[1.0, 0.0], [1.5, 0.0], [2.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0]]),
+        flat(&[[1.0, 0.0], [2.0, -1.0], [2.0, 0.0], [3.0, 0.0], [2.0, 1.0]]),
+    ];
+    for chain in joined {
+        for turned in 0..2 * chain.len() {
+            let mut chain = chain.clone();
+            let first = turned % chain.len();
+            chain.rotate_left(first);
+            if turned < chain.len() {
+                chain.reverse();
+            }
+            let polygon = Polygon::new(chain).unwrap();
+            let Intersection::Segments(segments) = polygon.intersection(&wall) else { panic!("they meet") };
+            let ends = segments.concat().into_iter().map(|p| p.x);
+            let [least, greatest] = [ends.clone().fold(9.0, f64::min), ends.fold(-9.0, f64::max)];
+            assert_eq!((segments.len(), least, greatest), (1, 1.0, 3.0), "{segments:?}");
+        }
+    }
+}
+
+/// Law: coordinates that are too small beside others for exact signs count as zero, also where only one of two polygons has such: what has an area
+/// by these alone is its edges.
+#[test]
+fn what_is_too_thin_for_signs_is_its_edges() {
+    let triangle = |corners: [[f64; 3]; 3]| Polygon::new(corners.map(DVec3::from_array)).unwrap();
+    let sliver = triangle([[0.0; 3], [1.0, 0.0, 1.0], [2.0, 1e-250, 2.0]]);
+    for (needle, meets) in [
+        ([[0.0, 0.0, 2.0], [0.25, 0.0, 1.75], [0.25, 0.0, 1.75]], false),
+        ([[0.5, 0.0, 0.75], [0.75, 0.0, 0.5], [0.75, 0.0, 0.5]], true),
+        ([[0.5, -1.0, 0.75], [0.75, 1.0, 0.5], [0.75, 1.0, 0.5]], true),
+        ([[0.5, -1.0, 0.75], [0.75, 2.0, 0.5], [0.75, 2.0, 0.5]], false),
+        ([[1.25, -1.0, 1.75], [1.75, 1.0, 1.25], [1.75, 1.0, 1.25]], true),
+    ] {
+        assert_eq!(check(&sliver, &triangle(needle), "needle"), meets, "{needle:?}");
+    }
+    // The smallest beside the largest.
+    let [small, large] = [1e-95, 1e95];
+    let large = triangle([[-large, -large, 0.0], [large, -large, 0.0], [0.0, large, 0.0]]);
+    let small = triangle([[0.0, small, -small], [small, 0.0, small], [-small, 0.0, small]]);
+    assert!(check(&small, &large, "small and large"));
 }
 
 /// Law 4. Powers of two, reversed and rotated chains.

@@ -7,7 +7,7 @@ use solid_oracle::mesh_distance;
 
 use super::{assert_rate, cases};
 use crate::polygon::{
-    Counters, Polygon, intersect_sorted, intersect_straightforward, intersect_triangulated,
+    Counters, Intersection, Polygon, intersect_sorted, intersect_straightforward, intersect_triangulated,
 };
 
 /// Law 3, in general position: all algorithms agree, though no polygon is flat.
@@ -56,6 +56,8 @@ fn unevenness_matters_only_near_touching() {
             Polygon::with_tolerance(vertices, 1e-5 * size).and_then(Polygon::simple)
         });
         let (Ok(a), Ok(b)) = (a, b) else { continue };
+        let found = a.intersection(&b);
+        assert_eq!(found != Intersection::Apart, a.intersects(&b), "case {case}: {found:?}");
         let limit = 2.0 * (a.plane().deviation + b.plane().deviation);
         let counters = &mut Counters::default();
         let exact = intersect_triangulated(&a, &b);
