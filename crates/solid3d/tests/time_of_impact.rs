@@ -422,6 +422,40 @@ fn what_leaves_does_not_meet_at_the_start() {
     }
 }
 
+/// What is round may turn about its axis, or its middle, as near as it likes to what is beside it: a wheel and a ball that roll, a pin in a hole.
+#[test]
+fn what_is_round_rolls_and_spins_beside_what_it_nearly_touches() {
+    let here = DAffine3::IDENTITY;
+    let tile = [[-9.0, 0.0, -9.0], [9.0, 0.0, -9.0], [9.0, 0.0, 9.0], [-9.0, 0.0, 9.0]].map(DVec3::from);
+    let floor = Shape::mesh(tile, [[0, 2, 1], [0, 3, 2]]).unwrap();
+    let [ball, wheel] = [Shape::sphere(1.0).unwrap(), Shape::cylinder(1.0, 0.5).unwrap()];
+    let upright = DAffine3::from_rotation_x(std::f64::consts::FRAC_PI_2);
+    for gap in [1e-2, 1e-4, 1e-6, 1e-7] {
+        let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 1.0 + gap, 0.0));
+        for (round, start, turn) in [
+            (&ball, here, DAffine3::from_rotation_z(-1.5)),
+            (&ball, here, DAffine3::from_axis_angle(DVec3::ONE.normalize(), 3.0)),
+            (&wheel, upright, DAffine3::from_rotation_z(-1.5)),
+        ] {
+            let (from, to) = (at(0.0) * start, at(1.5) * turn * start);
+            let forth = query::time_of_impact(round, &from, &to, &floor, &here, &here, &OPTIONS).unwrap();
+            let back = query::time_of_impact(&floor, &here, &here, round, &from, &to, &OPTIONS).unwrap();
+            assert_eq!((forth, back), (None, None), "{} {gap}", round.kind());
+        }
+
+        let pin = Shape::cylinder(1.0, 3.0).unwrap();
+        let side = 2.0 * (1.0 + gap) * (std::f64::consts::PI / 32.0).tan();
+        let slab = Shape::cuboid([1.0, 2.0, side]).unwrap();
+        for i in 0..32 {
+            let around = DAffine3::from_rotation_y(f64::from(i) * std::f64::consts::PI / 16.0)
+                * DAffine3::from_translation(DVec3::X * (1.5 + gap));
+            let spun = DAffine3::from_rotation_y(3.0);
+            let found = query::time_of_impact(&pin, &here, &spun, &slab, &around, &around, &OPTIONS).unwrap();
+            assert_eq!(found, None, "{i} {gap}");
+        }
+    }
+}
+
 /// A unit cube as a body, as a hull and as a mesh, whose surface alone is met.
 fn cubes() -> [Shape; 3] {
     let mesh = common::cube(0.5).shape();

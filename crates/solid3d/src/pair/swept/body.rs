@@ -175,3 +175,68 @@ impl<'a> Body<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Shape;
+    use crate::pair::swept::path::{Path, Roundness};
+    use crate::shape::{Class, ShapeKind};
+    use rand::Rng;
+    use solid_oracle::generate::{PlacementKind, random_placement, seeded};
+
+    /// Law: a body reaches no further, after a time, than its velocities and the bound on its accelerations tell; and what is round, and turns about its axis or
+    /// its middle, stays where it is.
+    #[test]
+    fn a_body_reaches_no_further_than_its_velocities_and_accelerations_tell() {
+        let mut rng = seeded(2110);
+        let shapes = [
+            Shape::sphere(0.7).unwrap(),
+            Shape::cone(0.6, 1.5).unwrap(),
+            Shape::cylinder(0.4, 1.8).unwrap(),
+            Shape::capsule(0.3, 1.2).unwrap(),
+            Shape::cuboid([0.5, 1.1, 0.8]).unwrap(),
+        ];
+        let (mut spins, mut sharp) = (0, 0);
+        for case in 0..20_000 {
+            let shape = &shapes[case % shapes.len()];
+            let Class::Convex(convex) = shape.class() else { unreachable!("none is a mesh") };
+            let mut vector = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+            let (by, tilt, n) = (vector(), 0.3 * vector(), vector().normalize());
+            let from = random_placement(&mut rng, PlacementKind::ALL[case / 5 % PlacementKind::ALL.len()]);
+            let spindle = from.matrix3.y_axis.normalize();
+            let (about, is_spin) = match case / 5 % 4 {
+                0 => (by.normalize(), false),
+                1 => (spindle, true),
+                2 => ((spindle + tilt).normalize(), false),
+                _ => ((spindle + 1e-3 * tilt).normalize(), false),
+            };
+            let to = DAffine3 {
+                matrix3: DMat3::from_axis_angle(about, rng.random_range(0.0..3.0)) * from.matrix3,
+                translation: from.translation + by,
+            };
+            let way = Way::new(&from, &to, Path::Turning).of_round(Roundness::of(shape.kind()));
+            let mut body = Body::shape(convex, &way, way.origin, 1.0);
+            let (t, after) = (rng.random_range(0.0..0.9), rng.random_range(0.0..0.1));
+            body.seek(t);
+            let (now, slow) = (body.furthest(n, 0.0), body.acceleration_along(n));
+            let told = body.furthest(n, after) + 0.5 * after * after * slow;
+            let speed = (way.origin[1] - way.origin[0]).dot(n);
+            body.seek(t + after);
+            let then = body.furthest(n, 0.0);
+            let size = from.matrix3.to_cols_array().into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+            assert!(then <= told + 1e-11 * size, "{case} {}: {then} {told}", shape.kind());
+            let rigid = (from.matrix3 * from.matrix3.transpose()).abs_diff_eq(DMat3::IDENTITY, 1e-12);
+            let is_still = shape.kind() == ShapeKind::Sphere
+                || is_spin && shape.kind() != ShapeKind::Cuboid && way.turn.is_some();
+            if rigid && is_still {
+                spins += 1;
+                assert!((now + speed * after - then).abs() < 1e-12, "{case}");
+                assert!((told - then).abs() < 1e-12, "{case} {}: {then} {told}", shape.kind());
+            }
+            sharp += usize::from(told - then < 0.1 * after * after);
+        }
+        println!("{spins} spin, {sharp} bounds are sharp");
+        assert!(spins > 500 && sharp > 2000);
+    }
+}

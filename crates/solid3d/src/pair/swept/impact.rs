@@ -11,7 +11,7 @@ use super::advance::{Arrival, Nearness, Span, advance};
 use super::bodies::{Moving, MovingClass, MovingComplex, MovingConvex};
 use super::body::Body;
 use super::moving_box::MovingBox;
-use super::path::{Path, Way};
+use super::path::{Path, Roundness, Way};
 use super::query::{TreeSpace, size};
 use crate::pair::frame::Frame;
 use crate::pair::reach::{convex_bounds, image_reach, reach};
@@ -97,7 +97,10 @@ impl Course {
     fn new(a: &Moving, b: &Moving, path: Path, tolerance: f64) -> Course {
         let deforms = [a, b].iter().any(|moving| moving.from.shape.is_deformation_of(moving.to.shape));
         let path = if deforms { Path::Straight } else { path };
-        let ways = [a, b].map(|moving| Way::new(moving.from.placement, moving.to.placement, path));
+        let ways = [a, b].map(|moving| {
+            let way = Way::new(moving.from.placement, moving.to.placement, path);
+            way.of_round(Roundness::of(moving.from.shape.kind()))
+        });
         let origin = [0, 1].map(|end| ways[0].origin[end] - ways[1].origin[end]);
         let far =
             greatest(a, reach) + greatest(b, reach) + origin[0].abs().max(origin[1].abs()).max_element();

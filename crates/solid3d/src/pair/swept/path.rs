@@ -16,6 +16,7 @@ use libm::{atan2, sincos};
 use solid_convex::unit_scale;
 
 use crate::placement::inverse_linear;
+use crate::shape::ShapeKind;
 
 /// How shapes move between two placements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -45,6 +46,33 @@ const POLAR_ERROR: f64 = 1e-15;
 /// A map is flat when its volume is less, of the larger of those at the ends of the way.
 const FLAT: f64 = 1e-6;
 
+/// How far from round about its axis a shape may be placed that counts as round, relative to its size: a hundredth of the least gap that is a contact,
+/// and a hundred times what rotations are rounded.
+const ROUNDNESS: f64 = 1e-12;
+
+/// What is round about an axis, and turns about one that is off that by an angle of at most this sine, turns as its axis does. Where it is more, little is
+/// gained, and [`share_along`](Way::share_along) is lost.
+const TILT_MAX: f64 = 0.25;
+
+/// About what a shape is round, in its own space: to turn about that changes nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Roundness {
+    Nothing,
+    /// The axis y.
+    Axis,
+    Origin,
+}
+
+impl Roundness {
+    pub fn of(kind: ShapeKind) -> Roundness {
+        match kind {
+            ShapeKind::Sphere => Roundness::Origin,
+            ShapeKind::Cone | ShapeKind::Cylinder | ShapeKind::Capsule => Roundness::Axis,
+            _ => Roundness::Nothing,
+        }
+    }
+}
+
 /// A rotation at constant speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
@@ -61,6 +89,8 @@ pub(super) struct Way {
     pub linear: [DMat3; 2],
     pub origin: [DVec3; 2],
     pub turn: Option<Turn>,
+    /// The axis about which the shape is round, a unit vector, where it was; see [`of_round`](Way::of_round).
+    spindle: Option<DVec3>,
     ends: [DAffine3; 2],
 }
 
@@ -81,16 +111,26 @@ impl Turn {
         DMat3::from_quat(DQuat::from_vec4((self.axis * sine).extend(cosine)))
     }
 
-    /// What a vector that turns changes by in a unit of time.
-    fn rate(&self) -> DMat3 {
-        let DVec3 { x, y, z } = self.axis * self.angle;
-        DMat3::from_cols(DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0))
+    /// What it does in a unit of time, as a vector along its axis.
+    fn velocity(&self) -> DVec3 {
+        self.axis * self.angle
+    }
+
+    /// The sine of the angle to a unit vector.
+    fn tilt(&self, of: DVec3) -> f64 {
+        self.axis.cross(of).length()
     }
 
     /// The angle in a unit of time.
     pub fn angle(&self) -> f64 {
         self.angle
     }
+}
+
+/// What a vector that turns changes by in a unit of time.
+fn rate(velocity: DVec3) -> DMat3 {
+    let DVec3 { x, y, z } = velocity;
+    DMat3::from_cols(DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0))
 }
 
 /// The rotation nearest to a map, by Newton's iteration (Higham, *Computing the Polar Decomposition*, 1986); `None` when it
@@ -122,7 +162,30 @@ impl Way {
             linear: [from.matrix3, turn.map_or(to.matrix3, back)],
             origin: [from.translation, to.translation],
             turn,
+            spindle: None,
             ends: [*from, *to],
+        }
+    }
+
+    /// The same of a shape that is round, for which turns about its axis, or its middle, are none: then a ball that rolls moves straight.
+    ///
+    /// With `w` the axis of the turn times the angle, and `a` that of the shape, which turns with it, the points of the shape may as well have the velocities
+    /// `u x y` with `u = w - (w.a) a`: the shape is where it is. The angle from `w` to `a` stays as it is, and `u` changes by `w x u`, so that
+    /// points accelerate by `(w x u) x y + u x (u x y) + 2 u x y'`, which is nothing for a wheel.
+    pub fn of_round(self, roundness: Roundness) -> Way {
+        let Some(turn) = self.turn else { return self };
+        let [from, to] = self.linear;
+        let [x, y, z] = [from.x_axis, from.y_axis, from.z_axis];
+        let is_alike = |p: DVec3, q: DVec3| (p.length() - q.length()).abs() <= ROUNDNESS * p.length();
+        let is_upright = |p: DVec3, q: DVec3| p.dot(q).abs() <= ROUNDNESS * p.length() * q.length();
+        let is_kept = (0..3).all(|i| (to.col(i) - from.col(i)).length() <= ROUNDNESS * from.col(i).length());
+        let is_round = is_kept && is_alike(x, z) && is_upright(x, y) && is_upright(y, z) && is_upright(z, x);
+        match roundness {
+            Roundness::Origin if is_round && is_alike(x, y) => Way { turn: None, ..self },
+            Roundness::Axis if is_round && turn.tilt(y.normalize()) <= TILT_MAX => {
+                Way { spindle: Some(y.normalize()), ..self }
+            }
+            _ => self,
         }
     }
 
@@ -164,20 +227,27 @@ impl Way {
 
     /// `Q'(t)`.
     pub fn rotation_rate(&self, t: f64) -> DMat3 {
-        self.turn.map_or(DMat3::ZERO, |turn| turn.rate() * turn.rotation(t))
+        let Some(turn) = self.turn else { return DMat3::ZERO };
+        let rotation = turn.rotation(t);
+        let about = self.spindle.map_or(DVec3::ZERO, |spindle| rotation * spindle);
+        rate(turn.velocity() - about * turn.velocity().dot(about)) * rotation
     }
 
     /// A bound on the acceleration of a point that never is further than `reach` from the local origin, and would move by
-    /// `change` if it did not turn: `|Q''| |y| + 2 |Q'| |y'|`.
+    /// `change` if it did not turn: `|Q''| |y| + 2 |Q'| |y'|`; of what is round, see [`of_round`](Way::of_round).
     pub fn acceleration(&self, reach: f64, change: f64) -> f64 {
-        let angle = self.turn.map_or(0.0, |turn| turn.angle);
-        angle * (angle * reach + 2.0 * change)
+        let Some(turn) = self.turn else { return 0.0 };
+        let angle = turn.angle;
+        match self.spindle.map(|spindle| turn.tilt(spindle)) {
+            Some(tilt) => angle * tilt * ((1.0 + tilt) * angle * reach + 2.0 * change),
+            None => angle * (angle * reach + 2.0 * change),
+        }
     }
 
     /// A bound on the share of an acceleration that is along a unit vector `n`. With `w` the axis times the angle, the acceleration is
-    /// `w x (w x y) + 2 w x y'`, whose product with `n` is one of two vectors with `n x w`: along the axis nothing accelerates.
+    /// `w x (w x y) + 2 w x y'`, whose product with `n` is one of two vectors with `n x w`: along the axis nothing accelerates. Of what is round it is all.
     pub fn share_along(&self, n: DVec3) -> f64 {
-        self.turn.map_or(0.0, |turn| n.cross(turn.axis).length())
+        self.turn.map_or(0.0, |turn| if self.spindle.is_some() { 1.0 } else { turn.tilt(n) })
     }
 }
 
