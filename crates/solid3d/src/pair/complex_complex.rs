@@ -9,6 +9,7 @@ use solid_convex::{Closest, Witness, gjk};
 
 use super::containment::{PlacedSolid, part_inside};
 use super::crossing_point::{crossing_point, weighted};
+use super::far;
 use super::frame::Frame;
 use super::leaf_pair::{LeafTest, MeetingLeaves, transposed};
 use super::row::{CONFIRMED, Near, Rows, distances, exceed};
@@ -148,8 +149,14 @@ pub(super) fn closest_within(
     if let Relation::Common(points) = intersection(a, b, scratch) {
         return Some(Closest { distance: 0.0, points });
     }
-    let (i, j) = closest_pair(a, b, bound, scratch)?;
-    Some(closest_of(a, i, b, j)).filter(|closest| closest.distance <= bound)
+    let closest = match far::complex_complex(a, b) {
+        Some(closest) => closest,
+        None => {
+            let (i, j) = closest_pair(a, b, bound, scratch)?;
+            closest_of(a, i, b, j)
+        }
+    };
+    (closest.distance <= bound).then_some(closest)
 }
 
 /// The primitives of two complex shapes that are closest to each other, up to [`CONFIRMED`]; of shapes that are farther apart

@@ -22,6 +22,7 @@ mod curve;
 mod deepest;
 mod depth;
 mod direct;
+mod far;
 mod fixed_box;
 mod frame;
 mod gaps;

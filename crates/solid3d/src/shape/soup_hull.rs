@@ -19,23 +19,28 @@ impl<'a> SoupHull<'a> {
     }
 }
 
-impl Support for SoupHull<'_> {
-    fn support(&self, direction: DVec3) -> DVec3 {
-        let vertices = self.soup.vertices();
-        let (mut first, mut furthest, mut best) = (u32::MAX, DVec3::ZERO, f64::NEG_INFINITY);
-        self.soup.tree().furthest(direction, &mut best.clone(), &mut |leaf, limit| {
-            for &primitive in leaf {
-                for &i in self.soup.primitive(primitive) {
-                    let point = vertices[i as usize];
-                    let height = point.dot(direction);
-                    if height > best || (height == best && primitive < first) {
-                        (first, furthest, best) = (primitive, point, height);
-                    }
+/// The point of all primitives of a soup that is furthest along a direction.
+pub(super) fn furthest(soup: &Complex, direction: DVec3) -> DVec3 {
+    let vertices = soup.vertices();
+    let (mut first, mut furthest, mut best) = (u32::MAX, DVec3::ZERO, f64::NEG_INFINITY);
+    soup.tree().furthest(direction, &mut best.clone(), &mut |leaf, limit| {
+        for &primitive in leaf {
+            for &i in soup.primitive(primitive) {
+                let point = vertices[i as usize];
+                let height = point.dot(direction);
+                if height > best || (height == best && primitive < first) {
+                    (first, furthest, best) = (primitive, point, height);
                 }
             }
-            *limit = best;
-        });
-        furthest
+        }
+        *limit = best;
+    });
+    furthest
+}
+
+impl Support for SoupHull<'_> {
+    fn support(&self, direction: DVec3) -> DVec3 {
+        furthest(self.soup, direction)
     }
 
     fn reach(&self) -> DVec3 {

@@ -20,6 +20,7 @@ use std::ops::ControlFlow;
 use solid_convex::{Closest, Witness, gjk};
 
 use super::containment::PlacedSolid;
+use super::far;
 use super::frame::Frame;
 use super::table::{PlacedComplex, PlacedConvex};
 use super::{Relation, Scratch};
@@ -84,6 +85,9 @@ pub(super) fn closest_to_surface(
     bound: f64,
     scratch: &mut Scratch,
 ) -> Option<Closest> {
+    if let Some(closest) = far::complex_convex(complex, convex) {
+        return (closest.distance <= bound).then_some(closest);
+    }
     let (primitive, closest) = approach::closest_primitive(complex, convex, frame, bound, scratch)?;
     let mut closest = closest.unwrap_or_else(|| closest_to(complex, primitive, convex));
     // Of primitives as near as each other, another may be the one that touches.
