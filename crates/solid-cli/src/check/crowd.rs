@@ -40,10 +40,10 @@ impl Crowd {
         }
         if !self.admits(boxes) {
             bail!(
-                "at {} s the boxes of more than {} pairs of objects overlap, each of which would take a kilobyte of memory or more: are \
+                "at {} s the boxes of more than {} of objects overlap, each of which would take a kilobyte of memory or more: are \
                  objects in one place that should not be, or is a clearance too great? --max-pairs allows more",
                 words::seconds(time),
-                self.pairs_max
+                words::count(self.pairs_max, "pair")
             );
         }
         Ok(())

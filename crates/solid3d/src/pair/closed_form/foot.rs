@@ -13,7 +13,7 @@ use crate::placement::length_and_direction;
 use crate::shape::Body;
 
 /// Where a surface is nearest to a point, in the space of the surface.
-pub(super) struct Foot<V> {
+pub(in crate::pair) struct Foot<V> {
     /// Negative inside.
     pub distance: f64,
     /// Outward, of length one.

@@ -1,13 +1,14 @@
 //! Pairs that need no search: balls, capsules and boxes that their placements leave what they are; and balls and points beside cones and cylinders. Beside
-//! hulls, where no face is nearest, one for the centre alone.
+//! hulls, where no face is nearest, one for the centre alone. Of a ball or point in an ellipsoid, how deep it is.
 //!
-//! A closed form speaks only where it is sure: the placements must be rotations with a uniform scale, up to
+//! A closed form speaks only where it is sure: the placements, but that of a ball that is an ellipsoid, must be rotations with a uniform scale, up to
 //! [`SKEW_MAX`](solid_convex::similarity::SKEW_MAX), and the gap or overlap more than [`GAP_MIN`] of the size of the data, beyond which GJK is right too
 //! ([`TOUCHING_ERROR`](solid_convex::gjk::TOUCHING_ERROR)). So both say the same, and GJK decides the rest.
 
 mod ball;
 mod boxes;
 mod cast;
+mod ellipsoid;
 mod foot;
 mod point;
 mod quick;
@@ -27,6 +28,7 @@ use crate::shape::{ShapeKind, Simple};
 use ball::BallAndBody;
 use boxes::PlacedBox;
 use cast::cast;
+pub(super) use ellipsoid::Ellipsoid;
 pub(super) use foot::foot;
 pub use point::ClosestPoint;
 pub(crate) use point::{closest_to, contains, nearest_on_surface};
@@ -123,7 +125,7 @@ pub(super) fn ball_intersects(a: Placed, b: Placed) -> Option<bool> {
 pub(super) fn penetration(a: Placed, b: Placed) -> Option<Penetration> {
     let of_rounds = || quickly_penetration(a, b).or_else(|| in_unit(a, b, quickly_penetration));
     let found = if are_round(a, b) { of_rounds() } else { None };
-    found.or_else(|| Some(depth_of_ball(a, b)?.found))
+    found.or_else(|| Some(depth_of_ball(a, b)?.found)).or_else(|| ellipsoid::penetration(a, b))
 }
 
 /// What [`penetration`] says of sizes that are plain. Placements need not have been checked: those of an answer are good.

@@ -30,7 +30,7 @@ const REGULAR_PARTS: RangeInclusive<f64> = 1e-197..=1e197;
 const ROUGH_GAP_MIN: f64 = 8.0 * STRETCH_ERROR;
 
 /// The error of a distance that is given out, relative to the size of the data: no more than GJK's.
-const DISTANCE_ERROR: f64 = 0.25 * solid_convex::gjk::TOUCHING_ERROR;
+pub(super) const DISTANCE_ERROR: f64 = 0.25 * solid_convex::gjk::TOUCHING_ERROR;
 
 /// The same in the margins of an answer.
 pub(super) const MARGIN_TO_ERROR: f64 = DISTANCE_ERROR / GAP_MIN;

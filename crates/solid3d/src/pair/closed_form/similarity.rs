@@ -20,6 +20,8 @@ pub(in crate::pair) struct Similarity {
 const SQUARE_MIN: f64 = 1e-270;
 
 impl Similarity {
+    pub const ONE: Similarity = Similarity { linear: DMat3::IDENTITY, stretch: 1.0 };
+
     /// `None` for other maps, and for one so small that squares of its lengths lose digits.
     #[inline]
     pub fn new(linear: &DMat3) -> Option<Similarity> {

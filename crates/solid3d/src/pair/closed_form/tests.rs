@@ -500,3 +500,82 @@ fn capsules_and_boxes_are_seen_as_gjk_tells_them() {
     println!("{sure_hits} of {hits} that meet, {sure_misses} of {misses} that do not");
     assert!(hits > 6_000 && misses > 6_000 && sure_hits * 10 > hits * 6 && sure_misses * 2 > misses);
 }
+
+/// Law: on an ellipsoid the foot of a point is on the surface and straight below the point, and no plane that touches the ellipsoid is nearer to a point inside, nor
+/// further from one outside.
+#[test]
+fn a_foot_on_an_ellipsoid_is_the_nearest() {
+    let mut rng = seeded(SEED + 9);
+    let (mut insides, mut cases) = (0, 0);
+    for case in 0..3_000 {
+        let stretch =
+            [DVec3::new(1.0, 0.4, 1.7), DVec3::new(1.0, 1e-3, 1.0), DVec3::new(2.5e-4, 2.0, 1e-3)][case % 3];
+        let turn = DMat3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 3.0));
+        let skew = DMat3::from_cols(DVec3::X, DVec3::new(0.3, 1.0, 0.0), DVec3::Z);
+        let linear =
+            turn * DMat3::from_diagonal(stretch) * if case % 2 == 0 { skew } else { DMat3::IDENTITY };
+        let found = Ellipsoid::new(&linear).expect("its axes are alike enough");
+        // Anywhere, or near or in the middle of one axis or more.
+        let within = in_cube(&mut rng)
+            * DVec3::from_array([0; 3].map(|_| [1.0, 0.0, 1e-9, 1e-17][rng.random_range(0..4)]));
+        let point = linear * within * [0.9, 4.0][case / 3 % 2];
+        let foot = found.foot(point).expect("the search ends");
+        let context = format!("case {case}: {linear}, {point}");
+        let size = linear.to_cols_array().iter().fold(0.0, |most: f64, x| most.max(x.abs())) + point.length();
+        let on_ball = linear.inverse() * foot.at;
+        assert!((on_ball.length() - 1.0).abs() < 1e-11, "{context}, {on_ball}");
+        assert!((point - foot.at - foot.normal * foot.distance).length() < 1e-14 * size, "{context}");
+        let beyond = |normal: DVec3| normal.dot(point) - (linear.transpose() * normal).length();
+        assert!((beyond(foot.normal) - foot.distance).abs() < 1e-14 * size, "{context}");
+        for _ in 0..200 {
+            let near =
+                (foot.normal + in_cube(&mut rng) * 10f64.powf(rng.random_range(-6.0..0.5))).normalize();
+            assert!(beyond(near) <= foot.distance + 1e-14 * size, "{context}, {near}");
+        }
+        insides += usize::from(foot.distance < 0.0);
+        cases += 1;
+    }
+    assert!((cases / 2..cases * 9 / 10).contains(&insides), "{insides} of {cases}");
+    assert!(Ellipsoid::new(&DMat3::from_diagonal(DVec3::new(1.0, 1e-5, 1.0))).is_none());
+}
+
+/// Law: how deep a ball or a point is in an ellipsoid is within the bounds of EPA, and its points are in their shapes; it is sought wherever they intersect clearly.
+#[test]
+fn depths_in_ellipsoids_are_those_of_epa() {
+    let mut rng = seeded(SEED + 10);
+    let (ball, stretched) = (Shape::sphere(0.6).unwrap(), Shape::sphere(0.5).unwrap());
+    let point = Shape::convex_hull(&[DVec3::ZERO]).unwrap();
+    let (mut answers, cases) = (0, 1_500);
+    for case in 0..cases {
+        let unit = 2f64.powi([0, 40, -60][case % 3]);
+        let round = if case % 2 == 0 { &ball } else { &point };
+        let turn = DMat3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 3.0));
+        let to = turn * DMat3::from_diagonal(DVec3::new(1.0, 0.3, 1.7)) * unit;
+        let at = DAffine3 { matrix3: to, translation: in_cube(&mut rng) * unit };
+        let at_ball = DAffine3 {
+            matrix3: turn.transpose() * (0.7 * unit),
+            translation: at.translation + to * in_cube(&mut rng) * 0.6,
+        };
+        let [a, b] =
+            [Placed { shape: round, placement: &at_ball }, Placed { shape: &stretched, placement: &at }];
+        let exact = epa::penetration(support(round), &at_ball, support(&stretched), &at);
+        let Some(found) = penetration(a, b) else {
+            assert!(exact.is_none_or(|exact| exact.depth < 1e-10 * unit), "case {case}: {exact:?}");
+            continue;
+        };
+        answers += 1;
+        let exact = exact.expect("they meet");
+        let error = 1e-12 * unit;
+        assert!(
+            (exact.lower - error..=exact.upper + error).contains(&found.depth),
+            "case {case}: {found:?}, {exact:?}"
+        );
+        let [on_ball, on_stretched] =
+            [at_ball.transform_point3(found.points.on_a), at.transform_point3(found.points.on_b)];
+        let apart = on_stretched - on_ball - found.direction * found.depth;
+        assert!(apart.length() < error, "case {case}: {apart}");
+        let mirrored = penetration(b, a).unwrap();
+        assert_eq!((mirrored.depth, mirrored.direction), (found.depth, -found.direction));
+    }
+    assert!(answers > cases / 2, "{answers} of {cases}");
+}

@@ -7,7 +7,7 @@
 use glam::DVec3;
 use solid_convex::Support;
 
-use super::super::closed_form::{Similarity, foot};
+use super::super::closed_form::{Ellipsoid, Similarity, foot};
 use super::super::triangle_triangle::Triangle;
 use super::ball::Way;
 use super::face::Placed;
@@ -28,6 +28,8 @@ const FACETS_EACH: usize = 16;
 pub(super) enum Inside<'a> {
     /// One that its map leaves what it is, and its origin.
     Similar(&'a Body<'a>, Similarity, DVec3),
+    /// What a ball is that its map stretches, and its origin.
+    Ellipsoid(Ellipsoid, DVec3),
     /// The outward normals of a hull's facets, and how far the hull reaches along each.
     Facets(Vec<(DVec3, f64)>),
 }
@@ -39,8 +41,12 @@ impl<'a> Inside<'a> {
             Body::Hull { hull, .. } => facets(hull, body.map, count).map(Inside::Facets),
             Body::Simplex(_) => None,
             _ => {
-                let at = Similarity::new(body.map.linear())?;
-                Some(Inside::Similar(body.body(), at, body.map.affine.translation))
+                let (linear, origin) = (body.map.linear(), body.map.affine.translation);
+                if let Some(at) = Similarity::new(linear) {
+                    return Some(Inside::Similar(body.body(), at, origin));
+                }
+                let Body::Sphere(ball) = *body.body() else { return None };
+                Some(Inside::Ellipsoid(Ellipsoid::new(&(*linear * ball.radius()))?, origin))
             }
         }
     }
@@ -61,6 +67,10 @@ impl<'a> Inside<'a> {
     fn foot(&self, point: DVec3) -> Option<(f64, DVec3)> {
         match self {
             Inside::Similar(body, at, origin) => foot(body, at, point - *origin),
+            Inside::Ellipsoid(ellipsoid, origin) => {
+                let foot = ellipsoid.foot(point - *origin)?;
+                Some((foot.distance, foot.normal))
+            }
             Inside::Facets(facets) => {
                 let distances = facets.iter().map(|&(normal, height)| (normal.dot(point) - height, normal));
                 distances.reduce(|nearest, plane| if plane.0 > nearest.0 { plane } else { nearest })
@@ -94,18 +104,21 @@ mod tests {
 
     use super::super::ways::{assert_is_shortest, bodies, support};
     use super::*;
-    use crate::shape::Shape;
+    use crate::shape::{Shape, ShapeKind};
 
-    /// Law: where there is an answer it is within the bounds of EPA, the points are each in their object, and there is one of nearly all small triangles.
+    /// Law: where there is an answer it is within the bounds of EPA, the points are each in their object, and there is one of nearly all small triangles. The last body is an ellipsoid.
     #[test]
     fn the_way_out_is_the_shortest() {
         let mut rng = seeded(169);
-        for (kind, shape) in bodies(&mut rng).iter().enumerate() {
+        let ball = Shape::sphere(0.7).unwrap();
+        for (kind, shape) in bodies(&mut rng).iter().chain([&ball]).enumerate() {
             let (mut answers, mut of_small, mut small, cases) = (0, 0, 0, 2000);
             for case in 0..cases {
                 let turn = DMat3::from_quat(DQuat::from_scaled_axis(in_cube(&mut rng) * 3.0));
-                let at =
-                    DAffine3 { matrix3: turn * rng.random_range(0.3..1.0), translation: in_cube(&mut rng) };
+                let stretch =
+                    if shape.kind() == ShapeKind::Sphere { DVec3::new(1.0, 0.3, 1.7) } else { DVec3::ONE };
+                let linear = turn * DMat3::from_diagonal(stretch) * rng.random_range(0.3..1.0);
+                let at = DAffine3 { matrix3: linear, translation: in_cube(&mut rng) };
                 let map = Map::new(at);
                 let body = shape.body().unwrap();
                 let placed = Placed::new(&body, &map);
