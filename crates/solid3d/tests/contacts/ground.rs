@@ -413,3 +413,47 @@ fn a_table_stands_on_its_legs() {
         assert!(manifold.points.iter().all(|point| point.primitives[0] == leg));
     }
 }
+
+/// Law: of two prisms that are not convex and stand on each other, turned a little and beside each other by less than a wall is thick, no contact is deeper than they
+/// overlap, upwards or aside; though the floor of the one hangs over the walls of the other by less than it is in it.
+#[test]
+fn prisms_stand_on_prisms() {
+    let prism = |ring: &[(f64, f64)], floor: &[[u32; 3]]| {
+        let count = ring.len() as u32;
+        let layer = |y: f64| ring.iter().map(move |&(x, z)| DVec3::new(x, y, z));
+        let vertices: Vec<DVec3> = layer(-0.5).chain(layer(0.5)).collect();
+        let mut triangles = floor.to_vec();
+        triangles.extend(floor.iter().map(|&[p, q, r]| [p, r, q].map(|vertex| vertex + count)));
+        for i in 0..count {
+            let next = (i + 1) % count;
+            triangles.extend([[i, i + count, next], [next, i + count, next + count]]);
+        }
+        Shape::mesh(vertices, triangles).unwrap().into_solid().unwrap()
+    };
+    let of_u = [(0, 0), (4, 0), (4, 3), (3, 3), (3, 1), (1, 1), (1, 3), (0, 3)]
+        .map(|(x, z)| (f64::from(x), f64::from(z)));
+    let of_l = [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)].map(|(x, z)| (f64::from(x), f64::from(z)));
+    let shapes = [
+        prism(&of_u, &[[0, 1, 4], [0, 4, 5], [0, 5, 6], [0, 6, 7], [1, 2, 3], [1, 3, 4]]),
+        prism(&of_l, &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]),
+    ];
+    let mut rng = seeded(SEED);
+    for case in 0..1200 {
+        let shape = &shapes[case % 2];
+        let depth = [0.0001, 0.001, 0.01][case % 3];
+        let (turn, beside) = (rng.random_range(-0.02..0.02), in_cube(&mut rng) * 0.1);
+        let tilt = if case % 4 < 2 { 0.0 } else { 0.001 * rng.random_range(-1.0..1.0) };
+        let place = at(beside.x, 1.0 - depth, beside.z)
+            * DAffine3::from_rotation_y(turn)
+            * DAffine3::from_rotation_z(tilt);
+        let found = contacts(shape, &place, shape, &DAffine3::IDENTITY);
+        let is_up = |region: &&Manifold| region.normal.y > 0.999;
+        let (up, aside): (Vec<_>, Vec<_>) = found.iter().partition(is_up);
+        let deepest_of = |regions: Vec<&Manifold>| {
+            regions.into_iter().map(|region| deepest(std::slice::from_ref(region))).fold(0.0, f64::max)
+        };
+        let (up, aside) = (deepest_of(up), deepest_of(aside));
+        let (most, most_aside) = (depth + 5.0 * tilt.abs(), 0.1 + 5.0 * turn.abs());
+        assert!(up > 0.0 && up < most + 1e-9 && aside < most_aside, "case {case}: {up}, {aside}, {found:#?}");
+    }
+}

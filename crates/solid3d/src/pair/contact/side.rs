@@ -123,6 +123,11 @@ impl<'a> Side<'a> {
         Some(self.outward().unwrap_or_else(of_surface))
     }
 
+    /// How deep the primitive of another soup is in a triangle, along that normal.
+    pub fn own_depth(&self, beside: &Side) -> Option<f64> {
+        Some(self.other.depth(self.body.corners, self.own_beside(beside)?))
+    }
+
     /// The normal of a triangle, or its opposite: to the side on which more of another soup is.
     fn toward(&self, other: &Stars, normal: DVec3) -> DVec3 {
         let [low, high] = other.extremes(normal);

@@ -15,7 +15,7 @@ use super::near_pairs::near_pairs;
 use super::other::Other;
 use super::places::{told, untold};
 use super::side::{Corrected, Side};
-use super::stars::Stars;
+use super::stars::{LEVEL, Stars};
 use super::whole::{nearest, whole};
 use super::{Pair, Patch, SAME_DEPTH, Touch, face};
 use crate::shape::{Body, Complex};
@@ -145,19 +145,23 @@ fn own_touches(pair: &Pair, [of_a, of_b]: [&Side; 2], of_first: bool) -> Option<
 }
 
 /// The contacts of two primitives, along a normal that the surfaces have; `None` where there is none. Where one surface does not have that along which they
-/// are left, it is the normal of a triangle: of the larger one, if that may be.
+/// are left, it is the normal of a triangle: of the larger one, if that may be, but where that is much longer a way than that of the other. A floor that hangs over
+/// a wall by less than the wall is in it is left upwards, not along itself as far as it reaches.
 fn touches(pair: &Pair, [of_a, of_b]: [&Side; 2], meeting: &Meeting) -> Option<(DVec3, Vec<Touch>)> {
     let on_b = of_b.corrected(meeting.normal, meeting.tilt)?;
     let on_a = || of_a.corrected(-meeting.normal, meeting.tilt);
     let is_replaced = |on: Corrected| matches!(on, Corrected::Replaced(_));
+    let own = |of_first: bool| {
+        let (chosen, other) = if of_first { (of_a, of_b) } else { (of_b, of_a) };
+        let is_long = meeting.depth >= 0.0 && is_long(chosen, other);
+        own_touches(pair, [of_a, of_b], of_first != is_long)
+    };
     if is_replaced(on_b) {
-        let of_first = of_a.is_wider(of_b) && on_a().is_some_and(|on_a| of_a.is_own(on_a.normal()));
-        return own_touches(pair, [of_a, of_b], of_first);
+        return own(of_a.is_wider(of_b) && on_a().is_some_and(|on_a| of_a.is_own(on_a.normal())));
     }
     let on_a = on_a()?;
     if is_replaced(on_a) {
-        let of_second = of_b.is_wider(of_a) && of_b.is_own(on_b.normal());
-        return own_touches(pair, [of_a, of_b], !of_second);
+        return own(!(of_b.is_wider(of_a) && of_b.is_own(on_b.normal())));
     }
     let (in_a, in_b) = (&of_a.body, &of_b.body);
     Some(match (on_a, on_b) {
@@ -168,6 +172,14 @@ fn touches(pair: &Pair, [of_a, of_b]: [&Side; 2], meeting: &Meeting) -> Option<(
             (meeting.normal, pair.touches(in_a, in_b, &meeting))
         }
     })
+}
+
+/// Whether the normal of one of two triangles that meet is much longer a way than that of the other.
+fn is_long(chosen: &Side, other: &Side) -> bool {
+    /// How many times as long it may be.
+    const LONG: f64 = 4.0;
+    let depths = chosen.own_depth(other).zip(other.own_depth(chosen));
+    depths.is_some_and(|(chosen, other)| chosen > LONG * other + LEVEL)
 }
 
 /// The shortest way out of two triangles that have a common point.
