@@ -30,8 +30,8 @@ use crate::shape::Shape;
 /// nearest point may be off by the square root of that. At an edge or a corner the normal leads to the point, or, within
 /// 1e-11 of the size of the data, is that of one of the faces there.
 ///
-/// Cost: below a microsecond for what its placement leaves a ball, box, cone, cylinder or capsule; some microseconds for other
-/// convex shapes; for a mesh, by branch and bound over its tree.
+/// Cost: below a microsecond for what its placement leaves a ball, box, cone, cylinder or capsule, and for a point inside of an ellipsoid; some microseconds, deep
+/// inside up to a hundred, for other convex shapes; for a mesh, by branch and bound over its tree.
 ///
 /// ```
 /// use solid3d::{Shape, query, glam::{DAffine3, DVec3}};
