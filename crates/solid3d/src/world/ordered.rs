@@ -199,8 +199,11 @@ impl<T> Spare<T> {
     /// A block that is empty.
     fn block(&mut self) -> Block<T> {
         self.blocks.pop().unwrap_or_else(|| {
-            self.blocks_made += 1;
+            // How many blocks as many entries take depends on the order in which they came: some more, so that others like them find room.
+            let more = self.blocks_made / 4;
+            self.blocks_made += 1 + more;
             self.blocks.reserve(self.blocks_made);
+            self.blocks.extend((0..more).map(|_| Vec::with_capacity(BLOCK_MAX)));
             Vec::with_capacity(BLOCK_MAX)
         })
     }
