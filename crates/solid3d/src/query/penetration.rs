@@ -35,7 +35,8 @@ pub struct Penetration {
 ///   one plane or on one line have depth 0 across it.
 /// - **Meshes and complex shapes** are unions of primitives, without an inside. The answer is that of the pair of
 ///   primitives that are deepest in each other, over all pairs that intersect. The translation takes these two apart, and may leave
-///   others in each other: the depth is a lower bound of that of the whole. A
+///   others in each other: the depth is a lower bound of that of the whole, for small triangles a poor one; how deep a body is in
+///   a closed surface of many, its [`contacts`](super::contacts()) tell. A
 ///   [simple polygon](crate::ComplexShapeBuilder::simple_polygon) is one primitive where it is convex, else one of its triangles is.
 /// - **A [solid](Shape::into_solid) mesh** counts as its convex hull, and so has a depth wherever something is in it. For
 ///   a convex solid that is exact. For others the translation leads out of the hull, which is further than need be; put such

@@ -23,6 +23,7 @@ use crate::shape::ShapeKind;
 pub enum Path {
     /// The local origin moves straight, and the shape turns about it with constant speed, by the rotation nearest to that between
     /// the two placements, of at most half a turn. What is left of them (scale, shear) changes linearly.
+    /// What turns about another point, as the link of an arm about its joint, takes that point for the origin of its shape.
     ///
     /// Straight, when one of the two placements mirrors and the other does not, or when sizes change by so much that there is no
     /// nearest rotation in numbers. Where one of the two shapes deforms, both move straight.
