@@ -9,7 +9,7 @@ use solid_convex::{IndexedPoints, Support};
 use super::hulled::Hulled;
 use super::parts::parts;
 use super::solid::Solid;
-use super::soup_hull::{self, SoupHull};
+use super::soup_hull::SoupHull;
 use super::topology::{Positioned, Topology};
 use super::validate;
 use crate::bounds::Aabb;
@@ -389,11 +389,6 @@ impl Complex {
     /// deformation, for its middle.
     pub fn hull(&self) -> SoupHull<'_> {
         SoupHull::new(self, *self.center.get_or_init(|| self.corners().center()))
-    }
-
-    /// The point of all primitives that is furthest along a direction. Cost: some nodes of the tree, where few are as far.
-    pub fn furthest(&self, direction: DVec3) -> DVec3 {
-        soup_hull::furthest(self, direction)
     }
 
     /// The corners of all primitives, one after the other.

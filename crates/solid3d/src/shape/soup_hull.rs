@@ -19,28 +19,30 @@ impl<'a> SoupHull<'a> {
     }
 }
 
-/// The point of all primitives of a soup that is furthest along a direction.
-pub(super) fn furthest(soup: &Complex, direction: DVec3) -> DVec3 {
-    let vertices = soup.vertices();
-    let (mut first, mut furthest, mut best) = (u32::MAX, DVec3::ZERO, f64::NEG_INFINITY);
-    soup.tree().furthest(direction, &mut best.clone(), &mut |leaf, limit| {
-        for &primitive in leaf {
-            for &i in soup.primitive(primitive) {
-                let point = vertices[i as usize];
-                let height = point.dot(direction);
-                if height > best || (height == best && primitive < first) {
-                    (first, furthest, best) = (primitive, point, height);
+impl Complex {
+    /// The point of all primitives that is furthest along a direction. Cost: some nodes of the tree, where few are as far.
+    pub fn furthest(&self, direction: DVec3) -> DVec3 {
+        let vertices = self.vertices();
+        let (mut first, mut furthest, mut best) = (u32::MAX, DVec3::ZERO, f64::NEG_INFINITY);
+        self.tree().furthest(direction, &mut best.clone(), &mut |leaf, limit| {
+            for &primitive in leaf {
+                for &i in self.primitive(primitive) {
+                    let point = vertices[i as usize];
+                    let height = point.dot(direction);
+                    if height > best || (height == best && primitive < first) {
+                        (first, furthest, best) = (primitive, point, height);
+                    }
                 }
             }
-        }
-        *limit = best;
-    });
-    furthest
+            *limit = best;
+        });
+        furthest
+    }
 }
 
 impl Support for SoupHull<'_> {
     fn support(&self, direction: DVec3) -> DVec3 {
-        furthest(self.soup, direction)
+        self.soup.furthest(direction)
     }
 
     fn reach(&self) -> DVec3 {

@@ -65,8 +65,7 @@ impl FatBox {
         let (change, moved) = if lasts { (change, moved) } else { (0.0, DVec3::ZERO) };
         let sway = (SWAY * change).min(sway_max);
         let way = FRAMES_AHEAD * moved;
-        let below = (-way).clamp(DVec3::ZERO, DVec3::splat(ahead_max));
-        let above = way.clamp(DVec3::ZERO, DVec3::splat(ahead_max));
+        let [below, above] = [-way, way].map(|way| way.clamp(DVec3::ZERO, DVec3::splat(ahead_max)));
         let room = DVec3::splat(margin + sway);
         FatBox::around(&Aabb::new(bounds.min - room - below, bounds.max + room + above))
     }
